@@ -25,12 +25,16 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages']),
+    run: async () => {
+      const args = ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages'];
+      // Examples are compiled by the test that runs them, and checked by clippy: the large ones would take longer than what they show.
+      return added(await tests(cargoCounts, 'cargo', [...args, '--lib', '--tests']), await tests(cargoCounts, 'cargo', [...args, '--doc']));
+    },
   },
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES, '--lib', '--tests']),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   python: {

@@ -24,6 +24,10 @@ export default function configure(eleventy) {
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
   eleventy.addTransform('letters', (content) => content.replaceAll(/<(m[in]) mathvariant="(bold|script)">(\w+)<\/\1>/g, (_, tag, style, text) => `<${tag}>${styled(text, style)}</${tag}>`));
+  // What scrolls can be reached by keys.
+  eleventy.addTransform('scrolling', (content) =>
+    content.replaceAll(/<pre(?![^>]*tabindex)/g, '<pre tabindex="0"').replaceAll(/<table>(.*?)<\/table>/gs, '<div class="scroll" role="group" aria-label="Table" tabindex="0"><table>$1</table></div>'),
+  );
   // An article's table of contents follows its headings.
   eleventy.addTransform('contents', (content) => content.replace(/(<nav class="contents"[^>]*>)(?=<\/nav>)/, (nav) => nav + contents(content)));
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));

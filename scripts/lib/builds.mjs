@@ -54,11 +54,16 @@ async function buildEach(modules) {
   }
 }
 
-/** Compiles what the modules depend on, while the tools that make them are being installed. Without it they take longer, and nothing else. */
+/**
+ * Compiles the modules while the tools that make them are being installed. Without it they take longer, and nothing else. The arguments are
+ * those of wasm-pack: cargo compiles even what they depend on in another way for a library that is no module.
+ */
 export async function compileAhead() {
-  const args = ['build', '--locked', '--release', '--target', TARGET, '--package', 'veronese', '--features', 'codecs'];
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
-  await run('cargo', [...args, ...configured()], { output: 'collect', env: FLAGS_OF_PROJECT });
+  for (const { features } of MODULES) {
+    const args = ['build', '--lib', '--release', '--target', TARGET, '--package', 'veronese-wasm', ...ofModule(features)];
+    await run('cargo', args, { output: 'collect', env: FLAGS_OF_PROJECT });
+  }
 }
 
 /** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
@@ -117,11 +122,10 @@ async function wasmPack(name, folder, features, flags = []) {
   // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
   // because wasm-pack optimises every module in the folder.
   const pack = ['build', 'wasm', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
-  const cargo = ['--locked', ...configured(flags), '--no-default-features', '--features', features.join(',')];
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',
-    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...cargo],
+    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...ofModule(features, flags)],
     { env: FLAGS_OF_PROJECT },
   );
 }
@@ -139,9 +143,10 @@ export async function buildPlainModule(folder) {
   return path;
 }
 
-/** Cargo's arguments for modules, with further flags of the compiler. */
-function configured(flags = []) {
-  return ['--config', `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`];
+/** Cargo's arguments for a module with these features, with further flags of the compiler. */
+function ofModule(features, flags = []) {
+  const config = `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`;
+  return ['--locked', '--config', config, '--no-default-features', '--features', features.join(',')];
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */

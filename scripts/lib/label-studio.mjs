@@ -20,8 +20,9 @@ const PATIENCE = 600_000;
 export async function prepareLabelStudio() {
   const pip = join(VENV, 'bin', 'pip');
   if (existsSync(pip) && (await run(pip, ['show', 'label-studio'], { output: 'collect' })).stdout.includes(`Version: ${VERSION}`)) return;
+  // Anew: programs of an environment that was moved name a Python that is not there.
   if (!which('python3')) throw new Stop('Label Studio needs Python: install python3 with its venv module.');
-  await longStep('Making a Python environment', 'It could not be made: install the venv module (Debian: `apt-get install python3-venv`).', 'python3', ['-m', 'venv', VENV]);
+  await longStep('Making a Python environment', 'It could not be made: install the venv module (Debian: `apt-get install python3-venv`).', 'python3', ['-m', 'venv', '--clear', VENV]);
   await longStep('Installing Label Studio (some minutes)', 'Label Studio could not be installed.', pip, ['install', '--quiet', `label-studio==${VERSION}`]);
 }
 

@@ -2,12 +2,15 @@
 
 const figures = document.querySelectorAll('figure[data-figure]');
 
+/** Figures that are only passed on the way to another one are not worth computing. Milliseconds. */
+const STAYS = 200;
+const coming = new Map();
+
 const near = new IntersectionObserver(
   (entries) => {
     for (const { isIntersecting, target } of entries) {
-      if (!isIntersecting) continue;
-      near.unobserve(target);
-      void start(target);
+      clearTimeout(coming.get(target));
+      if (isIntersecting) coming.set(target, setTimeout(begin, STAYS, target));
     }
   },
   { rootMargin: '400px' },
@@ -19,6 +22,18 @@ const wide = new ResizeObserver((entries) => {
   for (const { target } of entries) target.tabIndex = target.scrollWidth > target.clientWidth ? 0 : -1;
 });
 document.querySelectorAll('math[display="block"]').forEach((formula) => wide.observe(formula));
+
+// A reader who came by a link stays at its target while figures above it grow, until the first movement of their own.
+let goal;
+const aim = () => (goal = document.getElementById(location.hash.slice(1)));
+aim();
+addEventListener('hashchange', aim);
+for (const kind of ['wheel', 'touchstart', 'pointerdown', 'keydown']) addEventListener(kind, () => (goal = undefined), { passive: true });
+
+function begin(figure) {
+  near.unobserve(figure);
+  void start(figure);
+}
 
 async function start(figure) {
   // As an address, so that the bundler leaves it alone: each figure is a file of its own.
@@ -34,6 +49,7 @@ async function start(figure) {
     waiting.textContent = `This figure cannot be computed here: ${thrown.message}`;
     figure.dataset.failed = '';
   }
+  goal?.scrollIntoView({ behavior: 'instant' });
 }
 
 /** Says in words what a figure shows, once it has come to rest. */

@@ -4,6 +4,8 @@ import { html, svg, written } from './figures/kit.mjs';
 import { classOf } from './masks.mjs';
 import { FULL_COLOUR, SOURCES, exceededBy, flowAt, flows, framed, labelled, localFlow, masked, measured, plane, size } from './pair-pictures.mjs';
 
+/** Of a table of motions. */
+const HEAD = ['motion', 'explains best', 'its two rows'];
 const NAMES = { constraint: 'the constraint', window: 'windows', hypothesis: 'the other hypothesis' };
 
 /**
@@ -24,7 +26,7 @@ export const STAGES = [
       const [x, y, t] = [plain.horizontal, plain.vertical, plain.temporal].map(size);
       const ratio = written(t / Math.hypot(x, y), 1);
       return {
-        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and brightness constancy does not hold for derivatives.`,
+        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and the three no longer belong together.`,
         table: [['Frames', `${plain.width} × ${plain.height} pixels`], [symbol('I', 'x'), `${written(x)} grey levels per pixel`], [symbol('I', 'y'), `${written(y)} grey levels per pixel`], [symbol('I', 't'), `${written(t)} grey levels per frame`]],
         reading: `Root mean squares: I x ${written(x)}, I y ${written(y)} grey levels per pixel, I t ${written(t)} grey levels per frame, ${ratio} times the gradient.`,
       };
@@ -74,10 +76,8 @@ export const STAGES = [
       const said = rows.filter(({ count }) => count).map(({ source, count, best }) => `${count} from ${NAMES[source]}, the best with flow ${flowText(flowAt(best.matrix, middle))} would save ${written(best.gain, 0)}`);
       return {
         text: `Each dot is a motion, at its flow in the middle of the frame. Blue: read off the constraint. Orange: from windows. Purple: known from the other hypothesis about the ground. The larger, the more it would save beside the dominant motion, the cross. The price of a motion is ${written(price, 0)}.`,
-        table: [
-          ['From', 'how many', 'the best', 'saves'],
-          ...rows.map(({ source, count, best }) => [NAMES[source], `${count}`, ...(best ? [`${flowText(flowAt(best.matrix, middle))}${best.degree ? `, degree ${best.degree}` : ''}`, written(best.gain, 0)] : ['–', '–'])]),
-        ],
+        head: ['from', 'how many', 'flow of the best', 'saves'],
+        table: rows.map(({ source, count, best }) => [NAMES[source], `${count}`, ...(best ? [`${flowText(flowAt(best.matrix, middle))}${best.degree ? `, degree ${best.degree}` : ''}`, written(best.gain, 0)] : ['–', '–'])]),
         reading: `Candidates: ${said.join('; ')}. The price of a motion is ${written(price, 0)}.`,
       };
     },
@@ -87,6 +87,7 @@ export const STAGES = [
     views: ({ taken: { selection } }) => [['cheapest', 'best motion of each pixel', labelled(selection)]],
     what: ({ taken: { selected, price } }) => ({
       text: `The motion that saves most is taken, then the one that saves most of what is left, while one is worth its price of ${written(price, 0)}. Colours: the motion that explains each pixel best. No pixel asks its neighbours yet.`,
+      head: HEAD,
       table: motions(selected),
       reading: `${selected.length} motions are kept. ${supports(selected)}`,
     }),
@@ -99,6 +100,7 @@ export const STAGES = [
     ],
     what: ({ taken: { refined, selected } }) => ({
       text: `Each motion on its own pixels, on the brightness, from coarse to fine. At finer sizes, motions may be added and dropped: ${selected.length} were selected, ${refined.length} are left.`,
+      head: HEAD,
       table: motions(refined),
       reading: `${selected.length} motions before, ${refined.length} after. ${supports(refined)}`,
     }),
@@ -113,7 +115,7 @@ export const STAGES = [
     what: ({ taken: { draft, labelling } }) => ({
       text: 'The labels of the least sum: first a coarse draft, in which motions are dropped, split and joined, then the working size. Compare with what the pixels say alone.',
       table: [['Draft', `${draft.width} × ${draft.height}`, `${draft.motions.length} motions`], ['Working size', `${labelling.width} × ${labelling.height}`, `${labelling.motions.length} motions`], ...shares(labelling.labels, labelling.motions.length).map((share, k) => [key(k), percent(share)])],
-      reading: `${labelling.motions.length} motions are left. ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
+      reading: `${labelling.motions.length} motions are left: ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
     }),
   },
   {

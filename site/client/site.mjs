@@ -13,6 +13,12 @@ let asked = 0;
 
 open.hidden = false;
 open.addEventListener('click', show);
+// A field for searches would only be emptied.
+input.addEventListener('keydown', (event) => {
+  if (event.key !== 'Escape') return;
+  event.preventDefault();
+  dialog.close();
+});
 input.addEventListener('input', () => void search(input.value.trim()));
 dialog.addEventListener('click', ({ target }) => {
   if (target === dialog) dialog.close();

@@ -58,7 +58,7 @@ function fileOf(path) {
 
 test('works below another folder', async ({ page, baseURL }) => {
   const { problems } = watch(page);
-  const below = `http://127.0.0.1:${Number(new URL(baseURL).port) + 1}/a/b/`;
+  const below = `http://127.0.0.1:${Number(new URL(baseURL).port) + 1}/out/site/`;
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await page.goto(below);
   await expect(page.locator('.told')).toContainText('things that move', { timeout: 60_000 });

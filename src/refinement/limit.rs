@@ -7,9 +7,12 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use super::mixture::{EmBuffers, Mixture, Stop};
 use super::{Samples, Search};
 
+#[cfg(not(feature = "stages"))]
 #[path = "../stages/protocol.rs"]
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests of the public functions")]
 mod protocol;
+#[cfg(feature = "stages")]
+use veronese::stages::protocol;
 
 use protocol::{Protocol, Relation};
 

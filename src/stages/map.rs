@@ -59,7 +59,8 @@ pub fn veronese_map(points: &[f64], variables: usize, degree: usize) -> Result<V
         let reason = format!("must be 1 to {MOST} in number, not {rows}");
         return Err(Error::InvalidOption { name: "points", reason });
     }
-    if let Some(index) = points.iter().position(|value| !(value.abs() <= LARGEST)) {
+    let usable = |value: &f64| value.is_finite() && value.abs() <= LARGEST;
+    if let Some(index) = points.iter().position(|value| !usable(value)) {
         return Err(Error::NotFinite { what: "point", index: index / variables });
     }
     let homogeneous: Vec<[f64; 3]> = points
@@ -122,7 +123,7 @@ fn null_vector(triangle: &Triangle, largest: f64) -> Vec<f64> {
 }
 
 /// The normals of the real lines on which the form `c[0] xⁿ + c[1] xⁿ⁻¹y + … + c[n] yⁿ` vanishes, and the number of its other factors.
-fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
+pub(super) fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
     // With y = 1, a root x = r gives the factor x − r y, and a root at infinity the factor y.
     let ascending: Vec<f64> = c.iter().rev().copied().collect();
     let found = roots(&ascending);

@@ -15,7 +15,7 @@ const APART = [-0.85, -0.9];
 const MAGNIFIED = 1400;
 
 export default async function mount({ stage, say }) {
-  const state = { seed: SEED, distance: 1, noise: 0.003, pixel: [0.6, 0.6], angle: (52 * Math.PI) / 180 };
+  const state = { seed: SEED, distance: 1, noise: 0.003, pixel: [0.6, -0.6], angle: (52 * Math.PI) / 180 };
   // Third columns are flows at the origin, which the method moves to the centre of the measurements.
   let centre = [0, 0];
 
@@ -55,7 +55,7 @@ export default async function mount({ stage, say }) {
       'div',
       { class: 'beside thirds' },
       panel('By roots', columns.element, apart, pairs),
-      panel('By derivatives: choose a pixel', image.element, noise),
+      panel('By derivatives, at a pixel', image.element, noise),
       panel('The polynomial at that pixel', curve.element, direction),
     ),
     controls(button('Other noise', () => change({ seed: state.seed + 1 }))),

@@ -19,6 +19,7 @@ export default async function mount({ stage, say }) {
   const picture = html('div', { class: 'picture' });
   const heading = html('h3');
   const thought = html('p');
+  const head = html('thead');
   const numbers = html('tbody');
   const which = html('div');
   const news = html('p', { class: 'news', role: 'status' });
@@ -31,7 +32,7 @@ export default async function mount({ stage, say }) {
 
   stage.append(
     steps,
-    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Numbers of the stage' }, html('table', { class: 'numbers' }, numbers)))),
+    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Numbers of the stage' }, html('table', { class: 'numbers' }, head, numbers)))),
     controls(back, on, source, html('label', { class: 'own' }, html('span', {}, 'or two of your own: '), files)),
     news,
   );
@@ -91,8 +92,9 @@ export default async function mount({ stage, say }) {
     heading.textContent = `${at + 1} ${name}`;
     which.replaceChildren(...(options.length > 1 ? [choice({ label: 'Picture', options: options.map(([key, text]) => [key, text]), value: view[0], onInput: pick })] : []));
     picture.replaceChildren(view[2](pair, name));
-    const { text, table, reading } = what(pair);
+    const { text, head: columns = [], table, reading } = what(pair);
     thought.textContent = text;
+    head.replaceChildren(...(columns.length ? [html('tr', {}, ...columns.map((column) => html('th', { scope: 'col' }, column)))] : []));
     numbers.replaceChildren(...table.map(([label, ...values]) => html('tr', {}, html('th', { scope: 'row' }, label), ...values.map((value) => html('td', {}, value)))));
     say(`Stage ${at + 1} of ${STAGES.length}, ${name.toLowerCase()}. ${reading}`);
   }

@@ -118,7 +118,7 @@ function drawing(width) {
   }
   for (const level of LEVELS) {
     const [x] = area.at(level, 0);
-    grid.append(svg('text', { x, y: 324, 'text-anchor': 'middle' }, level === 5 ? '5 % noise' : String(level)));
+    grid.append(svg('text', { x, y: 324, 'text-anchor': 'middle' }, level === 5 ? '5 %' : String(level)));
   }
   return {
     element: area.element,
@@ -191,7 +191,7 @@ function sentence(levels, { motions, by }) {
   const own = levels[5];
   const named = METHODS.map(({ key, name }) => `${name} ${short(summary(own, key)?.[by] ?? NaN)} %`).join('; ');
   const count = roundsOf(levels);
-  if (count === 0) return `${motions} motions: the first trials are being computed.`;
+  if (count === 0) return `${motions} motions: not yet a trial for each noise level.`;
   const right = (key) => own.filter((trial) => trial.countRight[key]).length;
   return `${motions} motions, ${count} ${count === 1 ? 'trial' : 'trials'} for each noise level. ${by === 'mean' ? 'Mean' : 'Median'} errors at 5 % noise: ${named}. The number of motions is right in ${right('rule')} of ${own.length} trials by the paper’s rule, in ${right('best')} by ours.`;
 }

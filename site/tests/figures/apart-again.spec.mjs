@@ -65,3 +65,16 @@ test('the roots of the polynomial are what the motions predict for each directio
   for (const [k, x] of zero.entries()) expect(Math.abs(x - half[k])).toBeLessThan(0.01);
   expect(problems).toEqual([]);
 });
+
+test('with other noise the guess is another, and derivatives stay right', async ({ page }) => {
+  const { figure, reading, problems } = await open(page, 'apart-again');
+  await changes(reading, () => figure.getByRole('slider', { name: 'Distance' }).fill('0'));
+  const guesses = new Set();
+  for (let draw = 0; draw < 8; draw++) {
+    guesses.add(await figure.locator('.verdict').textContent());
+    expect((await numbers(reading, ERRORS))[2]).toBeLessThan(1);
+    await changes(reading, () => figure.getByRole('button', { name: 'Other noise' }).press('Enter'));
+  }
+  expect(guesses.size).toBe(2);
+  expect(problems).toEqual([]);
+});
