@@ -8,4 +8,4 @@ const text = readFileSync(new URL('../../CHANGELOG.md', import.meta.url), 'utf8'
 export default text
   .replace(/^# .*\n/, '')
   .replaceAll(/^## \[([^\]]+)\]/gm, '## $1')
- .replaceAll(/\]\((?!https?:|#)([^)]+)\)/g, `](${identity.repository}/blob/main/$1)`);
+  .replaceAll(/\]\((?!https?:|#)([^)]+)\)/g, `](${identity.repository}/blob/main/$1)`);
