@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { buildModules, buildPackage, buildPage, buildStagesModule } from './builds.mjs';
 import { HOSTS, SITE, prepareNpmPackages } from './npm-packages.mjs';
 import { prepare } from './prepare.mjs';
-import { projectText, root } from './project.mjs';
+import { root } from './project.mjs';
 import { referenceOfCrate, referenceOfPackage } from './references.mjs';
 import { must } from './run.mjs';
 
