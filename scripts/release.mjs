@@ -41,7 +41,7 @@ const STEPS = {
   archives: { title: 'the archives of npm and Cargo', run: packArchives },
   types: { title: 'publint and Are The Types Wrong?', run: checkPackage },
   wheel: { title: 'the Python wheel', run: addWheel },
-  site: { title: 'the site, and its notices', run: makeSite },
+  site: { title: 'the site, and its notices', run: addSite },
   sbom: { title: 'lists of what is shipped (CycloneDX)', run: listComponents },
 };
 
@@ -180,9 +180,10 @@ async function addWheel(release) {
   return [`${built.files.length} files:`, ...built.files.map((file) => `  ${file}`)];
 }
 
-async function makeSite() {
+async function addSite() {
   await buildSite();
-  refuse(missingNotices(readFileSync(join(SITE, 'licences/index.html'), 'utf8')).map((name) => `The site's page of licences lacks ${name}.`));
+  const missing = await missingNotices(readFileSync(join(SITE, 'licences/index.html'), 'utf8'));
+  refuse(missing.map((name) => `The site's page of licences lacks ${name}.`));
   return ['out/site, with all licences and notices'];
 }
 

@@ -5,17 +5,15 @@
 
 import { parseArgs } from 'node:util';
 
-import { prepare } from './lib/prepare.mjs';
 import { Stop, command } from './lib/run.mjs';
-import { OUT, buildSite } from './lib/site.mjs';
+import { OUT, makeSite } from './lib/site.mjs';
 import { serve } from './lib/static-server.mjs';
 
 const HOST = '127.0.0.1';
 
 await command(async (args) => {
   const { serves, port, onlyPages } = options(args);
-  await prepare();
-  await buildSite({ onlyPages });
+  await makeSite({ onlyPages });
   console.log('out/site/index.html');
   if (!serves) return;
   await serve(OUT, { host: HOST, port, headers: {} });

@@ -34,7 +34,7 @@ const PARTS = {
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES, '--lib', '--tests']),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   python: {

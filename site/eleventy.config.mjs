@@ -9,6 +9,8 @@ import highlighting from '@11ty/eleventy-plugin-syntaxhighlight';
 import katex from '@vscode/markdown-it-katex';
 import anchors from 'markdown-it-anchor';
 
+import IDENTITY from './data/identity.mjs';
+
 export default function configure(eleventy) {
   eleventy.addPlugin(highlighting);
   let library;
@@ -81,10 +83,12 @@ function contents(html) {
   return `<ol>${Array.from(sections, ([, id, title]) => `<li><a href="#${id}">${title.trim()}</a></li>`).join('')}</ol>`;
 }
 
-/** The same links, from the folder of the page at `url`. */
+/** The same links, from the folder of the page at `url`. The page of what is missing is shown at any address, so that its links are whole. */
 function withRelativeLinks(html, url) {
+  const whole = url === '/404.html' ? new URL(IDENTITY.site).pathname : undefined;
   const folder = url.endsWith('/') ? url : `${dirname(url)}/`;
   return html.replaceAll(/(\s(?:href|src|data-root|data-frames)=")\/(?!\/)([^"]*)"/g, (_, begin, path) => {
+    if (whole) return `${begin}${whole}${path}"`;
     const to = posix.relative(folder, `/${path}`) || '.';
     return `${begin}${to}${path.endsWith('/') || path === '' ? '/' : ''}"`;
   });

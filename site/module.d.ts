@@ -135,7 +135,7 @@ export interface Spectrum {
 /** What {@link Module.figure1Trial} returns. */
 export interface Figure1Trial {
   truth: Matrix[];
-  /** Mean relative errors (20), per cent; Infinity if a method fails. `best` is ours, `oracle` the maximum likelihood estimate that knows the labels. */
+  /** Mean relative errors (20), per cent; Infinity if a method fails. `best` is ours, `oracle` the least squares estimate that knows the labels. */
   errors: { factorisation: number; refined: number; best: number; oracle: number };
   /** Whether the rank rule (12), and ours, find the number of motions by themselves. */
   countRight: { rule: boolean; best: boolean };

@@ -19,10 +19,12 @@ export async function referenceOfPackage(folder) {
 }
 
 export async function referenceOfCrate(folder) {
-  const made = join(root, 'target', 'doc');
+  // A folder of its own: others document other crates at the same time.
+  const target = join(root, 'target', 'reference');
+  const made = join(target, 'doc');
   rmSync(made, { recursive: true, force: true });
-  const args = ['doc', '--quiet', '--locked', '--no-deps', '--lib', '--features', 'codecs,stages'];
-  await must('The reference of the crate could not be made.', 'cargo', args, { env: { CARGO_TARGET_DIR: undefined } });
+  const args = ['doc', '--quiet', '--target-dir', target, '--locked', '--no-deps', '--lib', '--features', 'codecs,stages'];
+  await must('The reference of the crate could not be made.', 'cargo', args);
   rmSync(folder, { recursive: true, force: true });
   cpSync(made, folder, { recursive: true });
 }

@@ -6,7 +6,8 @@ import { join } from 'node:path';
 
 import { buildModules, buildPackage, buildPage, buildStagesModule } from './builds.mjs';
 import { HOSTS, SITE, prepareNpmPackages } from './npm-packages.mjs';
-import { projectText, root } from './project.mjs';
+import { prepare } from './prepare.mjs';
+import { root } from './project.mjs';
 import { referenceOfCrate, referenceOfPackage } from './references.mjs';
 import { must } from './run.mjs';
 
@@ -16,8 +17,16 @@ const SAMPLES = ['passing-cars', 'intel-two-cars', 'parallax'];
 /** Made by others' programs. */
 const BESIDE = ['app', 'reference/package', 'reference/crate'];
 
+let built;
+
+/** The whole site, once for all who ask for it. */
+export function buildSite() {
+  return (built ??= makeSite());
+}
+
 /** With `onlyPages`, the app and the references stay as they are. */
-export async function buildSite({ onlyPages = false } = {}) {
+export async function makeSite({ onlyPages = false } = {}) {
+  await prepare();
   await prepareNpmPackages(SITE);
   await prepareNpmPackages(HOSTS);
   await buildModules();
@@ -41,10 +50,10 @@ export async function buildSite({ onlyPages = false } = {}) {
 }
 
 /** Licences and notices that the page of licences lacks: those of the project, of its archives and of what the site adds. */
-export function missingNotices(html) {
+export async function missingNotices(html) {
+  const { default: notices } = await import('../../site/data/notices.mjs');
   const text = html.replaceAll('&quot;', '"').replaceAll('&#39;', "'").replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
-  const whole = ['LICENSE-MIT', 'LICENSE-APACHE', 'THIRD-PARTY-NOTICES'].filter((name) => !text.includes(projectText(name).trim()));
-  return [...whole, ...['Pagefind', 'TypeDoc', 'rustdoc'].filter((name) => !text.includes(name))];
+  return [...notices.project, ...notices.site].filter((one) => !text.includes(one.text.trim())).map(({ name }) => name);
 }
 
 /** The scripts of the pages, each figure in a file of its own. */

@@ -7,6 +7,7 @@ const version = (folder) => JSON.parse(read(`${folder}/package.json`)).version;
 
 const PAGEFIND = 'site/node_modules/pagefind';
 const TYPEDOC = 'pkg/test/hosts/node_modules/typedoc';
+const LUNR = 'pkg/test/hosts/node_modules/lunr';
 
 export default {
   project: ['LICENSE-MIT', 'LICENSE-APACHE', 'THIRD-PARTY-NOTICES'].map((name) => ({ name, text: read(name) })),
@@ -18,5 +19,6 @@ export default {
       source: 'https://github.com/TypeStrong/typedoc',
       text: read(`${TYPEDOC}/LICENSE`),
     },
+    { name: `Lunr ${version(LUNR)}, the search of that reference`, licence: 'MIT', source: 'https://github.com/olivernn/lunr.js', text: read(`${LUNR}/LICENSE`) },
   ],
 };

@@ -24,7 +24,7 @@ pub struct Figure1Trial {
     pub refined: TrialError,
     /// The error of [`Method::Best`](crate::Method::Best).
     pub best: TrialError,
-    /// The error of the maximum likelihood estimate that knows the true labels.
+    /// The error of the least squares estimate that knows the true labels.
     pub oracle: TrialError,
     /// Whether the rank rule (12) finds the number of motions.
     pub rule_right: bool,

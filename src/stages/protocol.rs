@@ -174,7 +174,7 @@ impl Problem {
         Ok(Problem { measurements, motions, labels: true_labels })
     }
 
-    /// The maximum likelihood estimate of each motion from its own measurements.
+    /// The least squares estimate of each motion from its own measurements: maximum likelihood if the noise were normal.
     pub fn oracle(&self) -> Vec<AffineMotion> {
         (0..self.motions.len())
             .map(|i| {

@@ -42,8 +42,8 @@ pub use frames::{paint_labels, paint_labels_offscreen, relabel, segment_pair};
 pub use points::fit_motions;
 #[cfg(feature = "stages")]
 pub use stages::{
-    derivatives_of, figure_1_trial, motion_measurements, multibody_flow, paper_stages, segment_pair_stages,
-    veronese_map,
+    derivatives_of, embedded_spectra, figure_1_trial, motion_measurements, motions_at_pixel, multibody_flow,
+    paper_stages, segment_pair_stages, veronese_map,
 };
 
 /// Version of the report format.

@@ -8,7 +8,7 @@ const METHODS = [
   { key: 'factorisation', name: 'Paper, factorisation', tone: 'two' },
   { key: 'refined', name: 'Paper, refined', tone: 'four' },
   { key: 'best', name: 'Ours', tone: 'one' },
-  { key: 'oracle', name: 'Limit: labels known', tone: 'limit' },
+  { key: 'oracle', name: 'Yardstick: labels known', tone: 'limit' },
 ];
 /** What the paper states for 5 % noise, per cent. */
 const STATED = { 2: { factorisation: 6, refined: 2.1 }, 3: { refined: 8.2 }, 4: { refined: 13.3 } };
@@ -168,7 +168,7 @@ function legend() {
 
 function tabulated() {
   const body = html('tbody');
-  const names = ['Noise', 'Factorised', 'Refined', 'Ours', 'Limit', 'Number right, paper', 'Number right, ours'];
+  const names = ['Noise', 'Factorised', 'Refined', 'Ours', 'Labels known', 'Number right, paper', 'Number right, ours'];
   const head = html('tr', {}, ...names.map((name) => html('th', { scope: 'col' }, name)));
   const table = html('table', { class: 'numbers trials' }, html('thead', {}, head), body);
   const element = html('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Errors in numbers' }, table);
