@@ -5,18 +5,19 @@ const at = (name) => new URL(name, import.meta.url);
 
 /**
  * Asks a worker of its own: what computes for long must not keep others waiting. The function returns the result of the module's call
- * `name`, see module.d.ts, or rejects with the module's error, whose `code` is stable.
+ * `name`, see module.d.ts, or rejects with the module's error, whose `code` is stable. A worker that ends is replaced.
  */
-export function computer() {
+export function computer(script = at('worker.js')) {
   let worker;
   let count = 0;
   const waiting = new Map();
 
   function started() {
-    const one = new Worker(at('worker.js'), { type: 'module' });
-    one.onmessage = ({ data: { id, result, error } }) => {
+    const one = new Worker(script, { type: 'module' });
+    one.onmessage = ({ data: { id, result, error, ended } }) => {
       const { resolve, reject } = waiting.get(id);
       waiting.delete(id);
+      if (ended) replace();
       if (error) reject(Object.assign(new Error(error.message), { code: error.code }));
       else resolve(result);
     };
@@ -29,11 +30,23 @@ export function computer() {
     return one;
   }
 
-  return function ask(name, ...args) {
+  /** Those that wait have not been begun: a fresh worker answers them. */
+  function replace() {
+    worker.terminate();
+    worker = undefined;
+    for (const { message } of waiting.values()) send(message);
+  }
+
+  function send(message) {
     worker ??= started();
+    worker.postMessage(message);
+  }
+
+  return function ask(name, ...args) {
     return new Promise((resolve, reject) => {
-      waiting.set(++count, { resolve, reject });
-      worker.postMessage({ id: count, name, args });
+      const message = { id: ++count, name, args };
+      send(message);
+      waiting.set(message.id, { message, resolve, reject });
     });
   };
 }

@@ -9,8 +9,8 @@ const HEAD = ['motion', 'explains best', 'its two rows'];
 const NAMES = { constraint: 'the constraint', window: 'windows', hypothesis: 'the other hypothesis' };
 
 /**
- * Each stage: its pictures, as key, text and what draws it; and what is said of it: a sentence, a table and a reading for those who do not
- * see the picture.
+ * Each stage: its pictures, as key, text and what draws it; and what is said of it while the picture of a key is shown: a sentence, a table
+ * and a reading for those who do not see the picture.
  */
 export const STAGES = [
   {
@@ -124,9 +124,9 @@ export const STAGES = [
       ['groups', 'things', masked(({ result, groups }) => grouped(result.labels, groups))],
       ['motions', 'motions', masked(({ result }) => result.labels)],
     ],
-    what: ({ result, groups }) => ({
+    what: ({ result, groups }, view) => ({
       text: 'The borders at full size, along the edges of the picture, without what is recognised as a shadow. Motions that fit together along their border are one thing. They are numbered anew, by size.',
-      table: [['Motions', `${result.count}`], ['Things', `${groups.length}`], ...result.motions.map((one) => [key(one.label), percent(one.share), rows(one.matrix)])],
+      table: [['Motions', `${result.count}`], ['Things', `${groups.length}`], ...result.motions.map((one) => [key(one.label, view === 'motions' ? one.label : thingOf(groups, one.label)), percent(one.share), rows(one.matrix)])],
       reading: `${result.count} motions, ${groups.length} things: ${groups.map((labels, k) => `${k ? `thing ${k}` : 'the background'} has ${percent(labels.reduce((sum, label) => sum + result.motions[label].share, 0))}`).join(', ')}.`,
     }),
   },
@@ -140,11 +140,12 @@ const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 ==
 const matrix = (entries) => `(${entriesOf(entries).join(', ')})`;
 /** The two rows of a motion that are not given. */
 const rows = (entries) => html('span', {}, entriesOf(entries).slice(0, 3).join(', '), html('br'), entriesOf(entries).slice(3).join(', '));
-/** A motion with the colour of its pixels. */
-const key = (label) => html('span', {}, svg('svg', { class: `swatch ${label ? classOf(label) : ''}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, svg('rect', { width: 10, height: 10 })), ' ', symbol('A', label + 1));
+/** A motion with the colour of its pixels: its own, or that of the thing it is part of. */
+const key = (label, coloured = label) => html('span', {}, svg('svg', { class: `swatch ${coloured ? classOf(coloured) : ''}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, svg('rect', { width: 10, height: 10 })), ' ', symbol('A', label + 1));
 const motions = (all) => all.map((one, k) => [key(k), percent(one.support), rows(one.matrix)]);
 const supports = (all) => `${all.map(({ support }, k) => `A ${k + 1} explains ${percent(support)} best`).join(', ')}.`;
 const flowText = ([u, v]) => `(${written(u, 1)}, ${written(v, 1)})`;
+const thingOf = (groups, label) => groups.findIndex((group) => group.includes(label));
 const grouped = (labels, groups) => {
   const of = new Uint8Array(256);
   groups.forEach((group, k) => group.forEach((label) => (of[label] = k)));

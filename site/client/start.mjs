@@ -25,11 +25,21 @@ async function begin() {
     play.hidden = false;
     if (!still.matches) start();
   });
-  demo.addEventListener('error', ({ detail }) => (told.textContent = `The clip could not be segmented: ${detail.message}.`));
+  demo.addEventListener('error', ({ detail }) => failed(detail));
   play.addEventListener('click', () => (timer ? stop() : start()));
-  await import('../package/dist/element.js');
+  try {
+    await import('../package/dist/element.js');
+  } catch (thrown) {
+    failed(thrown);
+    return;
+  }
   demo.replaceChildren();
   demo.frames = names;
+}
+
+/** The picture stays, or the frames that have come. */
+function failed({ message }) {
+  told.textContent = `The clip could not be segmented: ${message.replace(/\.$/, '')}.`;
 }
 
 function start() {

@@ -14,10 +14,10 @@ const [first, second] = await Promise.all(['first.png', 'second.png'].map(async 
 
 const code = `import { segmentPair } from 'veronese';
 const { motions, labels } = await segmentPair(first, second);
-console.table(motions, ['pixels', 'group', 'residual']);`;
+console.table(motions, ['group', 'pixels']);`;
 
 export default function run() {
-  // In the package's own folder, where Node finds `veronese`.
+  // Below the project's folder, so that Node finds `veronese` in its node_modules.
   const folder = mkdtempSync(join(fileURLToPath(new URL('../../out/', import.meta.url)), 'sample-'));
   try {
     const file = join(folder, 'sample.mjs');

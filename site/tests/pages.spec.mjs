@@ -93,6 +93,25 @@ test('the start page segments its clip, plays it and stops', async ({ page }) =>
   expect(problems).toEqual([]);
 });
 
+for (const [what, address, status] of [['element', '**/package/dist/element.js', undefined], ['frames', '**/samples/passing-cars/frames/**', 404]]) {
+  test(`the start page says that its ${what} cannot be had, and goes on`, async ({ page }) => {
+    const { problems } = watch(page, []);
+    const thrown = [];
+    page.on('pageerror', ({ message }) => thrown.push(message));
+    await page.route(address, (route) => (status ? route.fulfill({ status }) : route.abort()));
+    await page.goto('');
+    await expect(page.locator('.told')).toContainText('The clip could not be segmented: ');
+    await expect(page.locator('.play')).toBeHidden();
+    await search(page, 'corrections');
+    await page.keyboard.press('Escape');
+    await page.getByRole('link', { name: 'See how it works' }).click();
+    await expect(page).toHaveURL(/\/method\/$/);
+    expect(thrown).toEqual([]);
+    // The browser's own complaint, and no other.
+    expect(problems.filter((problem) => !/Failed to load resource|^404 .*\/frames\//.test(problem))).toEqual([]);
+  });
+}
+
 test('search finds pages by keyboard', async ({ page }) => {
   const { problems } = watch(page);
   await page.goto('guide/');

@@ -92,7 +92,7 @@ export default async function mount({ stage, say }) {
     heading.textContent = `${at + 1} ${name}`;
     which.replaceChildren(...(options.length > 1 ? [choice({ label: 'Picture', options: options.map(([key, text]) => [key, text]), value: view[0], onInput: pick })] : []));
     picture.replaceChildren(view[2](pair, name));
-    const { text, head: columns = [], table, reading } = what(pair);
+    const { text, head: columns = [], table, reading } = what(pair, view[0]);
     thought.textContent = text;
     head.replaceChildren(...(columns.length ? [html('tr', {}, ...columns.map((column) => html('th', { scope: 'col' }, column)))] : []));
     numbers.replaceChildren(...table.map(([label, ...values]) => html('tr', {}, html('th', { scope: 'row' }, label), ...values.map((value) => html('td', {}, value)))));

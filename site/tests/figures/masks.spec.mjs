@@ -71,6 +71,28 @@ test('the camera rests, and the cars go up and down', async () => {
   expect(motions.reduce((sum, { share }) => sum + share, 0)).toBeCloseTo(100, 0);
 });
 
+test('things have one colour each, and so have motions, in the picture and in the table', async () => {
+  await stage(7).check();
+  const swatches = () => figure.locator('tbody .swatch').evaluateAll((all) => all.map((one) => getComputedStyle(one.querySelector('rect')).fill));
+  const outlines = () => figure.locator('.picture canvas').evaluate((one) => {
+    const { data } = one.getContext('2d').getImageData(0, 0, one.width, one.height);
+    const tones = ['one', 'two', 'three', 'four'].map((name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+    const counts = tones.map(() => 0);
+    for (let p = 0; p < data.length; p += 4) {
+      const tone = `#${[data[p], data[p + 1], data[p + 2]].map((value) => value.toString(16).padStart(2, '0')).join('')}`;
+      if (tones.includes(tone)) counts[tones.indexOf(tone)]++;
+    }
+    return counts.filter((count) => count > 20).length;
+  });
+  for (const choice of ['things', 'motions']) {
+    await figure.getByLabel(choice, { exact: true }).check();
+    const coloured = new Set((await swatches()).slice(1));
+    expect(coloured.size, choice).toBe(await outlines());
+    const row = (await rows()).find(([name]) => name.toLowerCase() === choice);
+    expect(coloured.size, choice).toBe(Number(row[1]) - 1);
+  }
+});
+
 test('selected motions explain all pixels, and labels drop those of single pixels', async () => {
   await stage(4).check();
   const selected = await rows();
