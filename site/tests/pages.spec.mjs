@@ -96,6 +96,7 @@ for (const [what, address, status] of [['element', '**/package/dist/element.js',
     await page.goto('');
     await expect(page.locator('.told')).toContainText('The clip could not be segmented: ');
     await expect(page.locator('.play')).toBeHidden();
+    await expect(page.getByAltText('two cars that pass each other')).toBeVisible();
     await search(page, 'corrections');
     await page.keyboard.press('Escape');
     await page.getByRole('link', { name: 'See how it works' }).click();
