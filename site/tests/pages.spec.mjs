@@ -29,6 +29,21 @@ for (const path of PAGES) {
   });
 }
 
+test('columns of tables keep their words whole on a phone', async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const path of ['', 'comparison/']) {
+    await page.goto(path);
+    const { columns, scrolls, inside } = await page.locator('.scroll > table').first().evaluate((table) => ({
+      columns: [...table.rows[1].cells].map((cell) => cell.getBoundingClientRect().width),
+      scrolls: table.parentElement.scrollWidth > table.parentElement.clientWidth,
+      inside: table.parentElement.getBoundingClientRect().right <= document.documentElement.clientWidth,
+    }));
+    expect(columns.length).toBeGreaterThanOrEqual(4);
+    expect(Math.min(...columns), path).toBeGreaterThan(60);
+    expect([scrolls, inside]).toEqual([true, true]);
+  }
+});
+
 test('every link within the site leads somewhere, and every fragment to an element', async ({ request }) => {
   const texts = new Map();
   const textOf = (file) => {
