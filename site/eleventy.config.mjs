@@ -26,6 +26,7 @@ export default function configure(eleventy) {
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
   eleventy.addTransform('letters', (content) => content.replaceAll(/<(m[in]) mathvariant="(bold|script)">(\w+)<\/\1>/g, (_, tag, style, text) => `<${tag}>${styled(text, style)}</${tag}>`));
+  eleventy.addTransform('formulas', (content) => together(numbersBeside(content)));
   // What scrolls can be reached by keys.
   eleventy.addTransform('scrolling', (content) =>
     content.replaceAll(/<pre(?![^>]*tabindex)/g, '<pre tabindex="0"').replaceAll(/<table>(.*?)<\/table>/gs, '<div class="scroll" role="group" aria-label="Table" tabindex="0"><table>$1</table></div>'),
@@ -75,6 +76,22 @@ function styled(text, style) {
     const range = first.find(([from, to, start]) => start && letter >= from && letter <= to);
     return old[letter] ?? (range ? String.fromCodePoint(range[2] + letter.codePointAt(0) - range[0].codePointAt(0)) : letter);
   }).join('');
+}
+
+/**
+ * The number of a formula beside it: KaTeX puts it into the formula, in a table as wide as the line, where it is cut off with a formula that
+ * is wider.
+ */
+function numbersBeside(html) {
+  const numbered = /<p class="katex-block"><span class="katex">(<math [^>]*display="block"><semantics>)<mtable width="100%"><mtr><mtd width="50%"><\/mtd><mtd>((?:(?!<\/math>).)*)<\/mtd><mtd width="50%"><\/mtd><mtd><mtext>([^<]*)<\/mtext><\/mtd><\/mtr><\/mtable>(.*?<\/math>)<\/span><\/p>/gs;
+  return html.replaceAll(numbered, (_, begin, formula, number, end) => `<p class="katex-block numbered"><span class="katex">${begin}<mrow>${formula}</mrow>${end}</span><span class="number">${number}</span></p>`);
+}
+
+/** A formula in a line of text and what is written next to it without a space: a browser may break the line around a formula. */
+function together(html) {
+  return html.replaceAll(/([(“]?)(<span class="katex"><math (?:(?!display=)[^>])*>(?:(?!<\/math>).)*<\/math><\/span>)([^\s<]*)/gs, (whole, before, formula, after) =>
+    before || after ? `<span class="together">${whole}</span>` : whole,
+  );
 }
 
 /** The sections of a page as a list of links. */

@@ -25,21 +25,32 @@ async function begin() {
     play.hidden = false;
     if (!still.matches) start();
   });
-  demo.addEventListener('error', ({ detail }) => failed(detail));
+  const picture = demo.querySelector('img');
+  demo.addEventListener('error', ({ detail: { message } }) => {
+    failed(message);
+    if (demo.frameCount === 0) pictureAlone(picture);
+  });
   play.addEventListener('click', () => (timer ? stop() : start()));
   try {
     await import('../package/dist/element.js');
-  } catch (thrown) {
-    failed(thrown);
+  } catch {
+    failed('its script could not be loaded');
     return;
   }
   demo.replaceChildren();
   demo.frames = names;
 }
 
-/** The picture stays, or the frames that have come. */
-function failed({ message }) {
-  told.textContent = `The clip could not be segmented: ${message.replace(/\.$/, '')}.`;
+function failed(why) {
+  told.textContent = `The clip could not be segmented: ${why}.`;
+}
+
+/** An element without a frame would be an empty area. */
+function pictureAlone(picture) {
+  const place = document.createElement('div');
+  place.className = demo.className;
+  place.append(picture);
+  demo.replaceWith(place);
 }
 
 function start() {

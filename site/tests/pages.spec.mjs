@@ -31,6 +31,21 @@ for (const path of PAGES.filter((page) => page !== '404.html')) {
   });
 }
 
+test('columns of tables keep their words whole on a phone', async ({ page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const path of ['', 'comparison/']) {
+    await page.goto(path);
+    const { columns, scrolls, inside } = await page.locator('.scroll > table').first().evaluate((table) => ({
+      columns: [...table.rows[1].cells].map((cell) => cell.getBoundingClientRect().width),
+      scrolls: table.parentElement.scrollWidth > table.parentElement.clientWidth,
+      inside: table.parentElement.getBoundingClientRect().right <= document.documentElement.clientWidth,
+    }));
+    expect(columns.length).toBeGreaterThanOrEqual(4);
+    expect(Math.min(...columns), path).toBeGreaterThan(60);
+    expect([scrolls, inside]).toEqual([true, true]);
+  }
+});
+
 test('every link within the site leads somewhere, and every fragment to an element', async ({ request }) => {
   const texts = new Map();
   const textOf = (file) => {
@@ -102,6 +117,7 @@ for (const [what, address, status] of [['element', '**/package/dist/element.js',
     await page.goto('');
     await expect(page.locator('.told')).toContainText('The clip could not be segmented: ');
     await expect(page.locator('.play')).toBeHidden();
+    await expect(page.getByAltText('two cars that pass each other')).toBeVisible();
     await search(page, 'corrections');
     await page.keyboard.press('Escape');
     await page.getByRole('link', { name: 'See how it works' }).click();

@@ -143,14 +143,14 @@ export function slider({ label, min, max, step, value, format = String, onInput 
   return html('label', { class: 'slider' }, html('span', {}, label), input, output);
 }
 
-/** One of several: `options` are pairs of value and text. */
+/** One of several: `options` are pairs of value and text, or a list of parts of it. */
 export function choice({ label, options, value, onInput }) {
   const name = `choice-${Math.random().toString(36).slice(2)}`;
   const buttons = options.map(([option, text]) => {
     const input = html('input', { type: 'radio', name, value: option });
     input.checked = option === value;
     input.addEventListener('change', () => onInput(option));
-    return html('label', {}, input, html('span', {}, text));
+    return html('label', {}, input, html('span', {}, ...[text].flat()));
   });
   return html('fieldset', { class: 'choice' }, html('legend', {}, label), ...buttons);
 }

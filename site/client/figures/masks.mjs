@@ -26,15 +26,14 @@ export default async function mount({ stage, say }) {
   const steps = html('div', { class: 'steps' });
   const back = button('Back', () => go(at - 1));
   const on = button('Next stage', () => go(at + 1));
-  const files = html('input', { type: 'file', accept: 'image/*', multiple: '', 'aria-label': 'Two frames of your own' });
+  const files = html('input', { type: 'file', accept: 'image/*', multiple: '' });
   files.addEventListener('change', () => own([...files.files]));
   const source = choice({ label: 'Frames', options: [['cars', 'two cars'], ['parallax', 'parallax']], value: 'cars', onInput: sample });
 
   stage.append(
     steps,
     beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Numbers of the stage' }, html('table', { class: 'numbers' }, head, numbers)))),
-    controls(back, on, source, html('label', { class: 'own' }, html('span', {}, 'or two of your own: '), files)),
-    news,
+    controls(back, on, source, html('label', { class: 'button own' }, 'Two frames of your own', files), news),
   );
   const parts = steps.nextElementSibling;
   parts.classList.add('clip-parts');
@@ -76,7 +75,7 @@ export default async function mount({ stage, say }) {
 
   function go(to) {
     at = Math.min(Math.max(0, to), STAGES.length - 1);
-    const radios = choice({ label: 'Stage', options: STAGES.map(({ name }, k) => [k, `${k + 1} ${name}`]), value: at, onInput: go });
+    const radios = choice({ label: 'Stage', options: STAGES.map(({ name }, k) => [k, [html('b', {}, String(k + 1)), ' ', html('span', { class: 'name' }, name)]]), value: at, onInput: go });
     const had = steps.contains(document.activeElement);
     steps.replaceChildren(radios);
     if (had) radios.querySelector(':checked').focus();
