@@ -1,4 +1,4 @@
-// A generator of random numbers for measurements and tests.
+// A generator of random numbers for measurements, tests and the figures of the site.
 
 /** Numbers from 0 to 1, the same for the same seed (mulberry32). */
 export function random(seed) {

@@ -33,8 +33,9 @@ export async function makeSite({ onlyPages = false } = {}) {
   await buildPackage();
   await buildPage();
   await buildStagesModule();
-  if (!onlyPages) rmSync(OUT, { recursive: true, force: true });
   mkdirSync(OUT, { recursive: true });
+  const kept = onlyPages ? ['app', 'reference'] : [];
+  for (const name of readdirSync(OUT)) if (!kept.includes(name)) rmSync(join(OUT, name), { recursive: true });
   const missing = BESIDE.filter((place) => !existsSync(join(OUT, place)));
   if (missing.includes('app')) cpSync(join(root, 'www/dist'), join(OUT, 'app'), { recursive: true });
   if (missing.includes('reference/package')) await referenceOfPackage(join(OUT, 'reference/package'));

@@ -34,7 +34,8 @@ document.addEventListener('keydown', (event) => {
 function show() {
   dialog.showModal();
   input.select();
-  void started();
+  // So that it is there with the first letter; where it fails, the search says so.
+  started().catch(() => (index = undefined));
 }
 
 async function started() {

@@ -1,5 +1,8 @@
 // What the figures are made of: plots, points to drag, sliders, choices, pictures. Everything works by mouse, touch and keyboard.
 
+/** The same numbers for the same seed, and so the same figure for every reader. */
+export { random } from '../../../scripts/lib/random.mjs';
+
 const SVG = 'http://www.w3.org/2000/svg';
 
 /** An SVG element. Attributes that are undefined are left out. */
@@ -240,17 +243,6 @@ export function formula(text) {
     return above ? node('msup', leaf(base), leaf(above)) : leaf(base);
   };
   return node('math', ...text.split(' ').map(term));
-}
-
-/** Random numbers from a seed, 0 to 1: the same figure for every reader. */
-export function random(seed) {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let mixed = Math.imul(state ^ (state >>> 15), 1 | state);
-    mixed = (mixed + Math.imul(mixed ^ (mixed >>> 7), 61 | mixed)) ^ mixed;
-    return ((mixed ^ (mixed >>> 14)) >>> 0) / 4294967296;
-  };
 }
 
 /** The colours of the motions, as CSS classes and as values of the page's theme. */
