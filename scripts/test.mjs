@@ -2,7 +2,7 @@
 //
 // Parts of one lane run one after another, because they would wait for each other: for cargo's lock on its folder, for ports, for cores. The
 // two lanes run side by side, and what a part writes is shown when it ends. Some page tests measure time, so that cargo takes the cores that
-// they leave.
+// they leave. A few tests that failed have another try, by themselves, when all else has ended: on a busy machine a page may come too late.
 
 import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -10,14 +10,14 @@ import { join } from 'node:path';
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
-import { added, cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
 import { Stop, command, inLane, say } from './lib/run.mjs';
 import { CRATES } from './lib/rust.mjs';
 import { buildSite } from './lib/site.mjs';
-import { tests } from './lib/tests.mjs';
+import { cargo, node, playwright, pytest } from './lib/test-programs.mjs';
+import { added, repeated, tests } from './lib/tests.mjs';
 
 const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
 
@@ -28,13 +28,13 @@ const PARTS = {
     run: async () => {
       const args = ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages'];
       // Examples are compiled by the test that runs them, and checked by clippy: the large ones would take longer than what they show.
-      return added(await tests(cargoCounts, 'cargo', [...args, '--lib', '--tests']), await tests(cargoCounts, 'cargo', [...args, '--doc']));
+      return added(await tests(cargo, 'cargo', [...args, '--lib', '--tests']), await tests(cargo, 'cargo', [...args, '--doc']));
     },
   },
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
+    run: () => tests(cargo, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   python: {
@@ -47,7 +47,7 @@ const PARTS = {
       const wheel = await buildWheel(OWN.python);
       await installWheel(OWN, wheel);
       // What is installed is tested, not the sources beside the tests.
-      return tests(pytestCounts, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
+      return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
     },
   },
   guide: {
@@ -58,7 +58,7 @@ const PARTS = {
       await buildModules();
       await buildPackage();
       if (chromium.problem) say(chromium.problem);
-      return tests(nodeCounts, process.execPath, ['--test', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
+      return tests(node, process.execPath, ['--test', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
     },
   },
   package: {
@@ -67,7 +67,7 @@ const PARTS = {
     run: async () => {
       await buildModules();
       await buildPackage();
-      return tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg']);
+      return tests(node, 'npm', ['test', '--silent', '--workspace', 'pkg']);
     },
   },
   formats: {
@@ -77,7 +77,7 @@ const PARTS = {
       await buildModules();
       await buildPackage();
       if (python.problem) say(python.problem);
-      return tests(nodeCounts, 'npm', ['run', '--silent', 'test:formats', '--workspace', 'pkg']);
+      return tests(node, 'npm', ['run', '--silent', 'test:formats', '--workspace', 'pkg']);
     },
   },
   hosts: {
@@ -89,7 +89,7 @@ const PARTS = {
       if (chromium.problem) throw new Stop(chromium.problem);
       if (python.problem) say(python.problem);
       const env = { VERONESE_CHROMIUM: chromium.path };
-      return tests(nodeCounts, 'npm', ['run', 'test:hosts', '--silent', '--workspace', 'pkg'], env);
+      return tests(node, 'npm', ['run', 'test:hosts', '--silent', '--workspace', 'pkg'], env);
     },
   },
   page: {
@@ -101,7 +101,7 @@ const PARTS = {
       await buildPage();
       if (chromium.problem) throw new Stop(chromium.problem);
       const env = { VERONESE_CHROMIUM: chromium.path };
-      return tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www'], env);
+      return tests(playwright, 'npm', ['test', '--silent', '--workspace', 'www'], env);
     },
   },
   site: {
@@ -112,8 +112,8 @@ const PARTS = {
       await buildSite();
       const env = { VERONESE_CHROMIUM: chromium.path };
       const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs') && name !== 'guide.test.mjs');
-      const inNode = await tests(nodeCounts, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
-      const inBrowser = await tests(playwrightCounts, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env);
+      const inNode = await tests(node, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
+      const inBrowser = await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env);
       return added(inNode, inBrowser);
     },
   },
@@ -125,7 +125,7 @@ const PARTS = {
     run: async () => {
       await buildModules();
       await buildPackage();
-      return tests(nodeCounts, 'npm', ['run', 'test:runtimes', '--silent', '--workspace', 'pkg']);
+      return tests(node, 'npm', ['run', 'test:runtimes', '--silent', '--workspace', 'pkg']);
     },
   },
   browsers: {
@@ -171,7 +171,9 @@ async function runParts(names, setup) {
       for (const name of own) results[name] = alone ? await runPart(PARTS[name], setup) : await runBeside(PARTS[name], setup, niceness);
     }),
   );
-  return names.map((name) => results[name]);
+  const ended = [];
+  for (const name of names) ended.push(await repeated(results[name]));
+  return ended;
 }
 
 /** Runs a part while others run, and shows what it has written when it ends. */
@@ -200,10 +202,12 @@ async function runPart({ title, run: runTests }, setup) {
 
 function summarise(results) {
   console.log('\n=== summary ===');
-  for (const { title, passed, failed, skipped, seconds, note } of results) {
+  for (const { title, passed, failed, skipped, seconds, note, failures = [], unsteady = [] } of results) {
     const extra = [skipped > 0 ? `${skipped} skipped` : '', note ?? ''].filter(Boolean);
     const counts = [`${passed} passed`, `${failed} failed`, ...extra].join(', ');
     console.log(`${failed === 0 ? 'passed' : 'FAILED'}  ${title}: ${counts} (${seconds.toFixed(0)} s)`);
+    for (const name of failures.slice(0, 10)) console.log(`        failed: ${name}`);
+    for (const name of unsteady) console.log(`        failed beside others, passed alone: ${name}`);
   }
   const total = (kind) => results.reduce((sum, result) => sum + result[kind], 0);
   console.log(`\n${total('passed')} passed, ${total('failed')} failed`);

@@ -3,13 +3,13 @@
 import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { added, playwrightCounts } from './counts.mjs';
 import { installDebianPackages } from './debian.mjs';
 import { which } from './project.mjs';
 import { Stop, say } from './run.mjs';
 import { prepareGeckodriver } from './rust.mjs';
 import { buildSite } from './site.mjs';
-import { tests } from './tests.mjs';
+import { playwright } from './test-programs.mjs';
+import { added, tests } from './tests.mjs';
 
 /** Each looks for its programs anew and returns what is missing, or how the browser is driven. */
 const BROWSERS = [
@@ -88,7 +88,7 @@ export async function testInBrowsers(browsers) {
   if (problems.length === browsers.length) return { passed: 0, failed: 0, skipped: problems.length };
   const env = { VERONESE_BROWSERS: JSON.stringify(browsers) };
   await buildSite();
-  const page = await tests(playwrightCounts, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);
-  const explainer = await tests(playwrightCounts, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.browsers.config.mjs'], env);
+  const page = await tests(playwright, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);
+  const explainer = await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.browsers.config.mjs'], env);
   return added(page, explainer);
 }

@@ -72,8 +72,9 @@ export async function runChecks() {
   else results.push(['licences, bans and sources of crates', licences.allowed]);
   say();
   for (const [title, good] of results) say(`${good ? 'passed' : 'FAILED'}  ${title}`);
-  const failed = results.filter(([, good]) => !good).length;
-  return { passed: results.length - failed, failed, skipped: Number(Boolean(licences.skipped)) + Number(names === undefined) };
+  const failures = results.flatMap(([title, good]) => (good ? [] : [title]));
+  const failed = failures.length;
+  return { passed: results.length - failed, failed, failures, skipped: Number(Boolean(licences.skipped)) + Number(names === undefined) };
 }
 
 /** Whether there is no problem; says those that there are. */

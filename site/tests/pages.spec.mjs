@@ -82,7 +82,7 @@ test('works below another folder', async ({ page, baseURL }) => {
   const below = `http://127.0.0.1:${Number(new URL(baseURL).port) + 1}/out/site/`;
   await page.emulateMedia({ reducedMotion: 'reduce' });
   await page.goto(below);
-  await expect(page.locator('.told')).toContainText('things that move', { timeout: 60_000 });
+  await expect(page.locator('.told')).toContainText('things that move');
   await page.getByRole('navigation', { name: 'Site' }).getByRole('link', { name: 'The method' }).click();
   await expect(page).toHaveURL(`${below}method/`);
   await search(page, 'corrections');
@@ -95,7 +95,7 @@ test('works below another folder', async ({ page, baseURL }) => {
 test('the start page segments its clip, plays it and stops', async ({ page }) => {
   const { problems } = watch(page);
   await page.goto('');
-  await expect(page.locator('.told')).toContainText(/29 frames, [1-9]\d* things that move/, { timeout: 60_000 });
+  await expect(page.locator('.told')).toContainText(/29 frames, [1-9]\d* things that move/);
   const play = page.locator('.play');
   await expect(play).toHaveText('Pause');
   const shown = () => page.evaluate(() => document.querySelector('veronese-segmenter').currentFrame);
@@ -148,7 +148,7 @@ for (const [path, budget] of [['', 200], ['method/', 400]]) {
   test(`/${path} loads at most ${budget} KB besides the module and samples`, async ({ page }) => {
     const { requests } = watch(page);
     await page.goto(path);
-    if (path === '') await expect(page.locator('.told')).toContainText('things that move', { timeout: 60_000 });
+    if (path === '') await expect(page.locator('.told')).toContainText('things that move');
     else await seeAll(page);
     // Workers load again what the browser has.
     const once = [...new Map(requests.map((request) => [request.url(), request])).values()];
@@ -173,6 +173,6 @@ for (const [path, budget] of [['', 200], ['method/', 400]]) {
 async function seeAll(page) {
   for (const figure of await page.locator('figure[data-figure]').all()) {
     await figure.scrollIntoViewIfNeeded();
-    await expect(figure).toHaveAttribute('data-ready', '', { timeout: 60_000 });
+    await expect(figure).toHaveAttribute('data-ready', '');
   }
 }

@@ -28,7 +28,7 @@ async function isAt(page: Page, selector: string, x: number, y: number): Promise
   await expect(async () => {
     const middle = await middleOf(page, selector);
     expect(Math.hypot(middle.x - x, middle.y - y), `${selector} at ${middle.x}, ${middle.y}, not ${x}, ${y}`).toBeLessThan(NEAR);
-  }).toPass({ timeout: 2000 });
+  }).toPass();
 }
 
 /** Moves the pointer to places of the view, 0 to 1, and paints from one to the other. */

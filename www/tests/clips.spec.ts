@@ -189,7 +189,7 @@ test('the camera is segmented live, and its last pair stays', async ({ page, con
   await context.grantPermissions(['camera']);
   await open(page);
   await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ frames per second, .* objects?\.$/, { timeout: 20_000 });
+  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ frames per second, .* objects?\.$/);
   await expect(page.locator('#caption')).toHaveText('Camera');
   await page.getByRole('button', { name: 'Stop camera' }).click();
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');

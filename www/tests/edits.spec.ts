@@ -268,7 +268,7 @@ test('corrections survive the camera', async ({ page, context }) => {
   await brush(page, 1);
   await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live/, { timeout: 20_000 });
+  await expect(page.locator('#status')).toHaveText(/^Live/);
   await expect(strokes(page)).toHaveCount(0);
   expect(await warns(page)).toBe(true);
   await page.getByRole('button', { name: 'Stop camera' }).click();

@@ -490,12 +490,12 @@ unwatched('the examples of README.md', async ({ page }) => {
   page.on('pageerror', (error) => logged.push(String(error)));
   try {
     await page.goto(`${address}/0.html`);
-    await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeAttached({ timeout: 30_000 });
+    await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeAttached();
     // Two frames without a form load nothing that is for clips and files.
     expect(asked.filter((path) => path.includes('later'))).toEqual([]);
     expect(logged).toEqual([]);
     await page.goto(`${address}/1.html`);
-    await expect(page).toHaveTitle(/^\d+ objects$/, { timeout: 30_000 });
+    await expect(page).toHaveTitle(/^\d+ objects$/);
     await page.getByRole('button', { name: 'Save' }).click();
     await expect.poll(() => logged.at(-1)).toBe('00000.png 00001.png 00002.png 00003.png');
     expect(logged.slice(0, 4).map((line) => line.split(' ')[0])).toEqual(['0', '1', '2', '3']);

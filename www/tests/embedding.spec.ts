@@ -14,7 +14,7 @@ async function openHost(page: Page, source = 'Passing cars, clip'): Promise<void
   await withSmallSampleClip(page);
   await page.goto('./embed.html');
   if (source !== 'Passing cars, clip') await page.getByLabel('Source').selectOption(source);
-  await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 33 frames\.$/ : /objects? in two frames\.$/, { timeout: 40_000 });
+  await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 33 frames\.$/ : /objects? in two frames\.$/);
 }
 
 /** The current labels of the element. */
@@ -93,9 +93,9 @@ test('nothing is saved before the masks are there, and a clip can be cancelled',
 test('frames and videos are opened from files', async ({ page }) => {
   await openHost(page, 'Parallax, pair');
   await page.getByLabel('Open a video, or frames as images').setInputFiles((await clipFrames(3, 96, 64)).reverse());
-  await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/, { timeout: 30_000 });
+  await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/);
   await page.getByLabel('Open a video, or frames as images').setInputFiles(await video(page, 4, 'webm', 'vp8'));
-  await expect(page.locator('#host-status')).toHaveText(/in 4 frames\.$/, { timeout: 30_000 });
+  await expect(page.locator('#host-status')).toHaveText(/in 4 frames\.$/);
   await page.getByLabel('Open a video, or frames as images').setInputFiles({ name: 'notes.mp4', mimeType: 'video/mp4', buffer: Buffer.from('text') });
   await expect(page.locator('#host-status')).toHaveText('No masks: the clip is not a video that this browser can read.');
 });

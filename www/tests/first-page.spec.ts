@@ -20,7 +20,6 @@ async function isAnythingKept(page: Page): Promise<boolean> {
 }
 
 test('the page opens with a clip and finds its two cars', async ({ page }) => {
-  test.setTimeout(180_000);
   await page.goto('./');
   await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
   await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
@@ -33,7 +32,7 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   await expect(page.locator('#clip-detail')).toContainText('of 51 frames');
   await expect(page.locator('#clip-cancel')).toBeEnabled();
   // The frames come with what is found, which cannot be worked on yet.
-  await expect(page.locator('#objects > li')).toHaveCount(3, { timeout: 60_000 }); // and the background
+  await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
   await expect(page.locator('#caption')).not.toHaveText(`Frame ${START}`);
   await expect(page.locator('#objects')).toHaveAttribute('inert');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
@@ -43,7 +42,7 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   // It plays, and ends where it began.
   await expect(page.locator('#play')).toHaveAccessibleName('Pause');
   await expect(page.locator('#caption')).not.toHaveText(`Frame ${START}`);
-  await expect(page.locator('#caption')).toHaveText(`Frame ${START}`, { timeout: 20_000 });
+  await expect(page.locator('#caption')).toHaveText(`Frame ${START}`);
   await expect(page.locator('#play')).toHaveAccessibleName('Play');
   await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
   await expect(page.locator('#status')).toHaveText('2 objects in this frame.');

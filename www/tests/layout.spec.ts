@@ -78,7 +78,7 @@ test('the whole name of a clip can be read at 1280 × 720', async ({ page }) => 
   await upload(page, frames.map((frame, k) => ({ ...frame, name: `${name} ${k}.png` })));
   await done(page);
   await page.locator('#clip-segment').click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done');
   const label = page.locator('#clip-name > span').first();
   await expect(label).toHaveText(`${name} 0-${name} 3.png`);
   await expect(page.locator('#clip-name')).toHaveAttribute('title', /camera 3 3\.png, 4 frames, 200\s×\s140$/);

@@ -40,7 +40,7 @@ test('an object before the camera keeps its colour', async ({ page, context }) =
   await context.grantPermissions(['camera']);
   await open(page, 'groups');
   await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ frames per second, one object\.$/, { timeout: 20_000 });
+  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ frames per second, one object\.$/);
   await expect(page.locator('#kinds')).toBeHidden();
   // The number of most pixels of the disc, whenever it is seen.
   const numbers: number[] = [];
@@ -50,7 +50,7 @@ test('an object before the camera keeps its colour', async ({ page, context }) =
     const [most] = [...counts].sort(([, one], [, other]) => other - one);
     if (most !== undefined) numbers.push(most[0]);
     expect(numbers.length).toBeGreaterThan(10);
-  }).toPass({ timeout: 20_000, intervals: [150] });
+  }).toPass({ intervals: [150] });
   expect(new Set(numbers)).toEqual(new Set([1]));
 
   // The last two frames stay as a pair like any other, with the kind of masks that was chosen before.

@@ -121,7 +121,6 @@ test('a first visit loads at most 500 KB, compressed, until it shows masks', asy
 });
 
 test('memory does not grow over 100 segmentations', async ({ page }) => {
-  test.setTimeout(180_000);
   await openEmpty(page);
   await upload(page, [await square('first.png', 200, 150, 0, 0), await square('second.png', 200, 150, 4, 2)]);
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
@@ -164,7 +163,7 @@ test.describe('with a service worker', () => {
   test('the page works offline after the first visit', async ({ page, context }) => {
     await open(page);
     const labels = await labelsOnCanvas(page);
-    await expect(page.locator('html')).toHaveAttribute('data-offline', 'ready', { timeout: 30_000 });
+    await expect(page.locator('html')).toHaveAttribute('data-offline', 'ready');
     await context.setOffline(true);
     await page.reload();
     await done(page);

@@ -84,7 +84,7 @@ async function isContinued(page: Page, files: readonly Upload[]): Promise<void> 
 /** Removes all projects from the browser, once none is being written. */
 async function forgetAll(page: Page): Promise<void> {
   const remove = async (): Promise<void> => page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
-  await expect(remove).toPass({ timeout: 10_000 });
+  await expect(remove).toPass();
 }
 
 test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
@@ -163,7 +163,7 @@ test('a run that was cancelled continues after a reload', async ({ page }) => {
   const clip = await video(page, 12, 'webm', 'vp8');
   await openClip(page, [clip], { count: 12 });
   await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
+  await expect(page.locator('#clip-detail')).toContainText('left');
   await page.locator('#clip-cancel').click();
   await clipPhase(page, 'cancelled');
   const told = (await page.locator('#clip-status').textContent())!;
@@ -245,7 +245,7 @@ test('a project whose state is of an older version is segmented again and correc
   await expect(page.locator('#caption')).toHaveText('Frame 3');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
   expect(differences(await numbersOnCanvas(page), corrected)).toBe(0); // at once, and when it is segmented
-  await expect(page.locator('#clip-status')).toHaveText('2 objects in 6 frames, corrected as before.', { timeout: 30_000 });
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 6 frames, corrected as before.');
   await expect(page.locator('#notice')).toBeHidden();
   expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
@@ -276,7 +276,7 @@ test('a project of an older version whose segmentation is cancelled keeps its ma
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
   await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.locator('#clip-status')).toHaveText('One object in 24 frames, corrected as before.', { timeout: 30_000 });
+  await expect(page.locator('#clip-status')).toHaveText('One object in 24 frames, corrected as before.');
   expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
   await expect(page.getByRole('button', { name: 'Delete Box' })).toBeEnabled();
 });

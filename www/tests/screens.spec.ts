@@ -27,7 +27,6 @@ for (const { width, height, colorScheme } of SHOWN) {
     test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
 
     test('the first page', async ({ page }) => {
-      test.setTimeout(180_000);
       await page.goto(SOAK ? './' : './#quality=fast');
       await done(page);
       await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
@@ -98,7 +97,7 @@ test('the host page', async ({ page }) => {
   await page.goto('./embed.html');
   await page.locator('#cancel').waitFor();
   await page.screenshot({ path: screen('embed-busy') });
-  await expect(page.locator('#host-status')).toHaveText(/in 33 frames/, { timeout: 40_000 });
+  await expect(page.locator('#host-status')).toHaveText(/in 33 frames/);
   await page.getByRole('listbox').focus();
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('ArrowRight');

@@ -51,6 +51,9 @@ export const test = base.extend<{ page: Page }>({
   },
 });
 
+/** How long a clip may take on a busy machine, in milliseconds. */
+const PATIENCE = 120_000;
+
 /** The options of {@link open}: most tests need masks, not the best ones. */
 export const FAST: SegmentOptions = { quality: 'fast' };
 
@@ -177,16 +180,16 @@ export async function openSampleClip(page: Page, settings = 'quality=fast'): Pro
 
 /** Waits until the clip is segmented. */
 export async function clipDone(page: Page): Promise<void> {
-  await clipPhase(page, 'done', 120_000);
+  await clipPhase(page, 'done');
 }
 
 /** Waits until the run on the clip has this phase. */
-export async function clipPhase(page: Page, name: string, timeout = 45_000): Promise<void> {
-  await phase(page, '#clip-run', name, timeout);
+export async function clipPhase(page: Page, name: string): Promise<void> {
+  await phase(page, '#clip-run', name);
 }
 
 /** Waits until an element has this phase: the page tells at once, where `expect` asks twice a second. */
-async function phase(page: Page, selector: string, name: string, timeout: number): Promise<void> {
+async function phase(page: Page, selector: string, name: string): Promise<void> {
   const reached = page.evaluate(
     ([selector, name, timeout]) =>
       new Promise<void>((resolve) => {
@@ -201,10 +204,10 @@ async function phase(page: Page, selector: string, name: string, timeout: number
         look();
         setTimeout(resolve, timeout);
       }),
-    [selector, name, timeout] as const,
+    [selector, name, PATIENCE] as const,
   );
   await reached.catch(() => undefined); // another page has taken its place
-  await expect(page.locator(selector)).toHaveAttribute('data-phase', name, { timeout });
+  await expect(page.locator(selector)).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
 }
 
 /** Makes the browser one that keeps no projects. */
@@ -217,7 +220,7 @@ export async function withoutStorage(page: Page): Promise<void> {
 
 /** Waits for the last request. */
 export async function done(page: Page): Promise<void> {
-  await phase(page, '#run', 'done', 45_000);
+  await phase(page, '#run', 'done');
 }
 
 /** Chooses a number of motions for this pair, or `Automatic`. */

@@ -1,6 +1,6 @@
 import { expect, test } from '@playwright/test';
 
-test.describe.configure({ mode: 'serial', timeout: 180_000 });
+test.describe.configure({ mode: 'serial' });
 
 /** The clip is segmented once, for all tests. */
 let page;
@@ -11,7 +11,7 @@ test.beforeAll(async ({ browser, baseURL }) => {
   await page.goto('method/#clip');
   figure = page.locator('#clip');
   await figure.scrollIntoViewIfNeeded();
-  await expect(figure).toHaveAttribute('data-ready', '', { timeout: 30_000 });
+  await expect(figure).toHaveAttribute('data-ready', '');
   await settled();
 });
 

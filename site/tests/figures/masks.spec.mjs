@@ -2,7 +2,7 @@ import { fileURLToPath } from 'node:url';
 
 import { expect, test } from '@playwright/test';
 
-test.describe.configure({ mode: 'serial', timeout: 180_000 });
+test.describe.configure({ mode: 'serial' });
 
 const SAMPLE = fileURLToPath(new URL('../../../www/public/samples/parallax/', import.meta.url));
 const STAGES = ['Derivatives', 'Dominant motion', 'Measurements', 'Candidates', 'Selection', 'Refinement', 'Labels', 'Masks'];

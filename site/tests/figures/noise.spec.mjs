@@ -52,7 +52,7 @@ test('another number of motions has trials of its own, and the page answers mean
     return longest;
   });
   expect(lasted).toBeLessThan(500);
-  await expect(reading).toContainText('3 motions, 1 trial for each noise level.', { timeout: 60_000 });
+  await expect(reading).toContainText('3 motions, 1 trial for each noise level.');
   await expect(figure.locator('.plot .series .stated')).toHaveCount(1);
   expect(problems).toEqual([]);
 });
