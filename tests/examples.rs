@@ -8,8 +8,10 @@ use std::process::Command;
 fn output(example: &str) -> String {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--quiet", "--locked", "--example", example]);
-    if cfg!(feature = "codecs") {
-        cargo.args(["--features", "codecs"]);
+    for (feature, enabled) in [("codecs", cfg!(feature = "codecs")), ("stages", cfg!(feature = "stages"))] {
+        if enabled {
+            cargo.args(["--features", feature]);
+        }
     }
     let output = cargo.output().unwrap();
     assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));

@@ -199,7 +199,7 @@ describe('masks of noise', () => {
   };
   for (const [title, encode] of Object.entries(encoders)) soon(`${title}: 1024 × 1024`, () => encode(large));
   for (const title of cases(['Supervisely'], ['CVAT MOTS', 'DAVIS'])) soon(`${title}: 2048 × 2048`, () => encoders[title](larger));
-  for (const title of ['COCO, polygons', 'CVAT, polygons', 'Label Studio, polygons', 'LabelMe, polygons', 'YOLO', 'Web Annotation']) {
+  for (const title of cases(['COCO, polygons', 'YOLO'], ['CVAT, polygons', 'Label Studio, polygons', 'LabelMe, polygons', 'Web Annotation'])) {
     soon(`${title}: 2048 × 2048 has too many vertices`, () => {
       assert.throws(() => encoders[title](larger), { code: 'invalid-input', message: /more than 4000000 vertices/ });
     });

@@ -12,7 +12,7 @@ export async function compile(source: WasmSource | Promise<WasmSource>, read: Re
     if (given instanceof WebAssembly.Module) return given;
     const isPlace = typeof given === 'string' || given instanceof URL;
     const bytes = await bytesOf(isPlace ? await read(given) : given);
-    checkMagic(bytes, isPlace ? String(given) : given instanceof Response ? given.url : undefined);
+    if (!isModule(bytes)) throw noModule(bytes, isPlace ? String(given) : (given as Partial<Response>).url);
     return await WebAssembly.compile(bytes);
   } catch (thrown) {
     if (thrown instanceof VeroneseError) throw thrown;
@@ -26,24 +26,28 @@ export function loadFailed(reason: string, cause?: unknown): VeroneseError {
 }
 
 async function bytesOf(source: Response | ArrayBuffer | ArrayBufferView): Promise<Uint8Array<ArrayBuffer>> {
+  if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer as ArrayBuffer, source.byteOffset, source.byteLength);
+  if (source instanceof ArrayBuffer) return new Uint8Array(source);
+  // Last, because in Node the name alone loads all that fetches, which takes as long as compiling the module.
   if (source instanceof Response) {
     if (!source.ok) throw loadFailed(`${source.url || 'the server'} answered ${source.status} ${source.statusText}`);
     return new Uint8Array(await source.arrayBuffer());
   }
-  if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer as ArrayBuffer, source.byteOffset, source.byteLength);
-  if (source instanceof ArrayBuffer) return new Uint8Array(source);
   throw loadFailed('the source must be a URL, string, Response, BufferSource or WebAssembly.Module');
 }
 
+function isModule(bytes: Uint8Array): boolean {
+  return bytes[0] === 0 && bytes[1] === 0x61 && bytes[2] === 0x73 && bytes[3] === 0x6d;
+}
+
 /** A server that answers with a page instead of the file is the usual failure: say so. */
-function checkMagic(bytes: Uint8Array, place: string | undefined): void {
-  if (bytes[0] === 0 && bytes[1] === 0x61 && bytes[2] === 0x73 && bytes[3] === 0x6d) return;
+function noModule(bytes: Uint8Array, place: string | undefined): VeroneseError {
   const where = place ? `${place} ` : 'the source ';
   if (bytes[0] === 0x3c && bytes[1] === 0x21) {
-    throw loadFailed(
+    return loadFailed(
       `${where}is an HTML page; the server sends its page where a module of the package should be. Under Vite 7 put ` +
         "optimizeDeps: { exclude: ['veronese'] } into the configuration, or pass the file's URL to init() or initPoints()",
     );
   }
-  throw loadFailed(`${where}is no WebAssembly module`);
+  return loadFailed(`${where}is no WebAssembly module`);
 }
