@@ -95,14 +95,14 @@ const PARTS = {
   page: {
     lane: 'node',
     title: 'page tests in Chromium',
-    run: async ({ chromium }) => {
-      await buildModules();
-      await buildPackage();
-      await buildPage();
-      if (chromium.problem) throw new Stop(chromium.problem);
-      const env = { VERONESE_CHROMIUM: chromium.path };
-      return tests(playwright, 'npm', ['test', '--silent', '--workspace', 'www'], env);
-    },
+    run: ({ chromium }) => inChromium(chromium, ['test', '--silent', '--workspace', 'www']),
+  },
+  screens: {
+    lane: 'node',
+    title: 'screenshots of the page, in out/screens',
+    // To be looked at: what they show is tested by the part page.
+    onRequest: true,
+    run: ({ chromium }) => inChromium(chromium, ['run', 'screens', '--silent', '--workspace', 'www']),
   },
   site: {
     lane: 'node',
@@ -140,6 +140,15 @@ const PARTS = {
   },
 };
 
+/** Builds the page and runs a script of npm that drives it. */
+async function inChromium(chromium, script) {
+  await buildModules();
+  await buildPackage();
+  await buildPage();
+  if (chromium.problem) throw new Stop(chromium.problem);
+  return tests(playwright, 'npm', script, { VERONESE_CHROMIUM: chromium.path });
+}
+
 await command(async (args) => {
   const unknown = args.filter((name) => !(name in PARTS));
   if (unknown.length > 0) {
@@ -149,7 +158,7 @@ await command(async (args) => {
   const names = args.length > 0 ? args : Object.keys(PARTS).filter((name) => !PARTS[name].onRequest);
   const setup = await prepare({
     checks: names.includes('check'),
-    browser: ['page', 'hosts', 'site', 'browsers', 'guide'].some((name) => names.includes(name)),
+    browser: ['page', 'screens', 'hosts', 'site', 'browsers', 'guide'].some((name) => names.includes(name)),
     python: ['formats', 'hosts'].some((name) => names.includes(name)),
     ownPython: names.includes('python'),
     hosts: names.includes('hosts'),

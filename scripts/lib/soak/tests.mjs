@@ -12,7 +12,7 @@ const RUNS = [
   [cargo, 'cargo', [...NATIVE, '--test', 'properties'], { PROPTEST_CASES: '200000' }],
   [cargo, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--', '--ignored']],
   [node, 'npm', ['test', '--silent', '--workspace', 'pkg'], SOAK],
-  [playwright, 'npm', ['test', '--silent', '--workspace', 'www', '--', 'screens', 'same-bits'], SOAK],
+  [playwright, 'npm', ['test', '--silent', '--workspace', 'www', '--', 'same-bits'], SOAK],
 ];
 
 export const RUN_COUNT = RUNS.length;

@@ -1,23 +1,14 @@
-//! Screenshots of the page in various states, written to `out/screens/` for review: one desktop and one phone, of which one is dark. With
-//! npm run soak in all sizes, light and dark.
+//! Screenshots of the page in various states, in all sizes, light and dark, written to `out/screens/` to be looked at.
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, clipDone, clipFrames, done, expect, goTo, openClip, openExport, sample, screen, square, test, upload } from './support.js';
+import { PAIR, clipDone, clipFrames, done, expect, goTo, openClip, openExport, sample, screen, square, test, upload } from '../tests/support.js';
 
 const SIZES = [[1440, 900], [1280, 720], [390, 844]] as const;
 const SCHEMES = ['light', 'dark'] as const;
 const ALL = SIZES.flatMap(([width, height]) => SCHEMES.map((colorScheme) => ({ width, height, colorScheme })));
-const SOAK = process.env.VERONESE_SOAK !== undefined;
-const SHOWN = SOAK ? ALL : [ALL[0]!, ALL.at(-1)!];
 
-/** Opens the page with the sample pair. What its masks are is seen in the sizes of npm run soak. */
-async function openPair(page: Page): Promise<void> {
-  await page.goto(SOAK ? PAIR : `${PAIR}&quality=fast`);
-  await done(page);
-}
-
-for (const { width, height, colorScheme } of SHOWN) {
+for (const { width, height, colorScheme } of ALL) {
   const shot = async (page: Page, state: string, fullPage = false): Promise<void> => {
     await page.waitForTimeout(300); // transitions and thumbnails
     await page.screenshot({ path: screen(`${state}-${width}-${colorScheme}`), fullPage });
@@ -27,7 +18,7 @@ for (const { width, height, colorScheme } of SHOWN) {
     test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
 
     test('the first page', async ({ page }) => {
-      await page.goto(SOAK ? './' : './#quality=fast');
+      await page.goto('./');
       await done(page);
       await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
       await clipDone(page);
@@ -38,7 +29,8 @@ for (const { width, height, colorScheme } of SHOWN) {
     });
 
     test('a pair', async ({ page }) => {
-      await openPair(page);
+      await page.goto(PAIR);
+      await done(page);
       await shot(page, 'pair');
       await shot(page, 'pair-whole', true);
       await page.locator('#look [value=split]').check({ force: true });
@@ -88,7 +80,7 @@ for (const { width, height, colorScheme } of SHOWN) {
       await page.locator('.stage').scrollIntoViewIfNeeded();
       await shot(page, 'clip-segmented');
       await shot(page, 'clip-segmented-whole', true);
-      if (SHOWN[0]!.width === width && SHOWN[0]!.colorScheme === colorScheme) await showExport(page);
+      if (ALL[0]!.width === width && ALL[0]!.colorScheme === colorScheme) await showExport(page);
     });
   });
 }
@@ -102,7 +94,7 @@ test('the host page', async ({ page }) => {
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('ArrowRight');
   await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
-  for (const { width, height, colorScheme } of SHOWN) {
+  for (const { width, height, colorScheme } of ALL) {
     await page.setViewportSize({ width, height });
     await page.emulateMedia({ colorScheme });
     await page.screenshot({ path: screen(`embed-${width}-${colorScheme}`), fullPage: true });

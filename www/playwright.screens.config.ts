@@ -1,0 +1,6 @@
+import { defineConfig } from '@playwright/test';
+
+import pages from './playwright.config.js';
+
+/** Screenshots of the page; `npm test -- screens` starts this. */
+export default defineConfig({ ...pages, testDir: 'screens' });
