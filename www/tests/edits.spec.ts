@@ -33,6 +33,7 @@ async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[
 /** Selects the brush, and a mask by its position in the list. */
 async function brush(page: Page, row: number): Promise<void> {
   await page.locator('#tools [value=brush]').check();
+  await expect(page.locator('#strokes .brush')).toBeAttached(); // it is loaded when it is first chosen
   const chosen = page.locator('#motions > li').nth(row);
   await chosen.locator('.motion-words').click();
   await expect(chosen).toHaveClass(/selected/);

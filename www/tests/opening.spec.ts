@@ -140,6 +140,7 @@ test('a step can be cancelled, and a stroke drawn meanwhile; a sample that canno
 
   // A stroke drawn during a step belongs to the frames on screen.
   await page.locator('#tools [value=brush]').check();
+  await expect(page.locator('#strokes .brush')).toBeAttached(); // it is loaded when it is chosen
   // The stroke begins before the step and ends before the new frames are loaded.
   await page.locator('.layers').evaluate((layers) => {
     layers.setPointerCapture = () => undefined; // a synthetic pointer cannot be captured

@@ -41,10 +41,10 @@ function fileInBrowser(page: Page): Promise<string> {
   });
 }
 
-/** The names of objects in that project. */
+/** The names of objects in that project; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {
-  const { clip } = JSON.parse((await fileInBrowser(page)).split('\n')[1]!) as { clip: { names: unknown } };
-  return clip.names;
+  const [, project] = (await fileInBrowser(page)).split('\n');
+  return project === undefined ? undefined : (JSON.parse(project) as { clip: { names: unknown } }).clip.names;
 }
 
 async function rename(page: Page, row: number, name: string): Promise<void> {

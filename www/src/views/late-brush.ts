@@ -1,4 +1,4 @@
-//! The brush is loaded when a tool that draws is first chosen. What a pointer does until then waits for it.
+//! The brush is loaded when a tool that draws is first chosen. What a pointer does until then waits for it, unless other frames come first.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -8,10 +8,12 @@ import type { Brush } from './brush.js';
 export class LateBrush {
   /** `null` until it is loaded. */
   now: Brush | null = null;
+  readonly #store: Store;
   readonly #load: () => Promise<Brush>;
   #loading: Promise<Brush> | null = null;
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
+    this.#store = store;
     this.#load = async () => {
       const { Brush } = await import('./brush.js');
       return (this.now = new Brush(stage, store, session));
@@ -27,7 +29,9 @@ export class LateBrush {
   }
 
   do(what: (brush: Brush) => void): void {
-    if (this.now !== null) what(this.now);
-    else this.#loading?.then(what, () => undefined);
+    if (this.now !== null) return what(this.now);
+    const { pair } = this.#store.get();
+    const later = (brush: Brush): void => (this.#store.get().pair === pair ? what(brush) : undefined);
+    this.#loading?.then(later, () => undefined);
   }
 }
