@@ -15,7 +15,7 @@ async function rename(page: Page, list: '#objects' | '#motions', row: number, na
   await input.press('Enter');
 }
 
-/** Waits until the work is written, and so is the copy of its frames. */
+/** Waits until the work is written. The copy of its frames comes after it. */
 async function written(page: Page, name: string): Promise<void> {
   await expect.poll(() => headers(page)).toContainEqual(expect.stringContaining(`"name":"${name}"`));
   await expect(page.locator('#saving button')).toBeVisible();
@@ -168,6 +168,7 @@ test('of several the newest comes first, and a sample needs no copy, also with i
   await openSegmented(page, await clipFrames(4));
   await rename(page, '#objects', 1, 'Disc');
   await written(page, 'f00-f03.png');
+  await expect.poll(() => copies(page)).toBe(1);
   await page.goto('about:blank');
   await page.goto(`${PARALLAX}&swapped=true`);
   await done(page);
