@@ -58,7 +58,7 @@ const PARTS = {
       await buildModules();
       await buildPackage();
       if (chromium.problem) say(chromium.problem);
-      return tests(node, process.execPath, ['--test', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
+      return tests(node, process.execPath, ['--test', '--test-reporter=tap', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
     },
   },
   package: {

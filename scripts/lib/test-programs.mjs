@@ -2,7 +2,7 @@
 
 const ESCAPES = /\u001b\[[0-9;]*m/g;
 
-/** cargo test and wasm-pack test: a line of counts for each binary. Their tests need nothing but processors, so that a second run is none. */
+/** cargo test and wasm-pack test: a line of counts for each binary. Their tests wait for nobody, so that a second run would tell nothing new. */
 export const cargo = {
   counts: (output) => {
     const counts = { passed: 0, failed: 0, skipped: 0 };
@@ -16,17 +16,17 @@ export const cargo = {
   failures: (output) => first(output, /^test (\S.*) \.\.\. FAILED$/gm),
 };
 
-/** Node's test runner. Its summary begins with # or ℹ, depending on the reporter; those that count the failed tests of suites name them too. */
+/** Node's test runner with the reporter `tap`, which is the default of some of its versions only. A failure counts for its suite too. */
 export const node = {
   counts: (output) => {
     const kinds = { pass: 'passed', fail: 'failed', cancelled: 'failed', skipped: 'skipped', todo: 'skipped' };
-    return sum(output, /^(?:#|ℹ) (pass|fail|cancelled|skipped|todo) (\d+)$/gm, kinds, ([, kind, count]) => [kind, count]);
+    return sum(output, /^# (pass|fail|cancelled|skipped|todo) (\d+)$/gm, kinds, ([, kind, count]) => [kind, count]);
   },
   failures: (output) => first(output, /^ *not ok \d+ - (.+)$/gm),
-  /** Whole files, because a test may need what one before it did. */
+  /** Whole files, because a test may need what one before it did; none if a test is not written in such a file. */
   again: (output) => {
     const files = first(output, /^ *not ok [^\n]*\n *---\n(?: *(?!\.\.\.)[^\n]*\n)*? *location: '([^']+?)(?::\d+)*'$/gm);
-    return files.length > 0 ? [process.execPath, ['--test', '--test-reporter=tap', '--test-concurrency=1', ...files]] : undefined;
+    return files.length > 0 && files.every((file) => file.endsWith('.test.mjs')) ? [process.execPath, ['--test', '--test-reporter=tap', '--test-concurrency=1', ...files]] : undefined;
   },
 };
 
