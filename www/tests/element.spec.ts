@@ -6,12 +6,12 @@ import type { AddressInfo } from 'node:net';
 import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-import { type Page, test as unwatched } from '@playwright/test';
+import type { Page } from '@playwright/test';
 import type { ClipTracks } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import type { VeroneseSegmenterElement } from 'veronese/element';
 
-import { clipFrames, clipInNode, differences, expect, test } from './support.js';
+import { clipFrames, clipInNode, differences, expect, test, unwatched } from './support.js';
 import { BIT, BITS, video } from './video.js';
 
 /** Opens the host page without its own masks, and gives the page `clip(count)`, frames of a moving square as pixels. */

@@ -5,9 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { test as unwatched } from '@playwright/test';
-
-import { PAIR, square, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, test, upload } from './support.js';
+import { PAIR, square, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, test, unwatched, upload } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 

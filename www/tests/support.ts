@@ -5,13 +5,14 @@ import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
-import { type Locator, type Page, test as base, expect } from '@playwright/test';
+import { type Locator, type Page, expect } from '@playwright/test';
 import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
+import { test as unwatched } from './kept.js';
 
-export { expect };
+export { expect, unwatched };
 
 /** The sample pair shows two cars on a road: it has at least this many motions. */
 export const MOTIONS_IN_SAMPLE = 3;
@@ -24,7 +25,7 @@ export interface Upload {
 }
 
 /** A test that fails if its page logs an error, violates the content security policy or contacts another host. */
-export const test = base.extend<{ page: Page }>({
+export const test = unwatched.extend<{ page: Page }>({
   page: async ({ page, baseURL }, use) => {
     const complaints: string[] = [];
     page.on('console', (message) => {
@@ -47,6 +48,7 @@ export const test = base.extend<{ page: Page }>({
       });
     });
     await use(page);
+    page.removeAllListeners();
     expect(complaints).toEqual([]);
   },
 });
