@@ -11,6 +11,8 @@ export default defineConfig({
   timeout: 240_000,
   expect: { timeout: 60_000 },
   forbidOnly: process.env.CI !== undefined,
+  // Sweeps over many settings, and what measures more than it tests: npm run soak.
+  ...(process.env.VERONESE_SOAK === undefined && { grepInvert: /@soak/ }),
   reporter: [['list']],
   use: {
     baseURL: `http://127.0.0.1:${PORT}/`,
@@ -32,8 +34,7 @@ export default defineConfig({
         '--disable-sync',
         '--no-first-run',
         '--no-pings',
-        // Nothing is drawn of the browser's own windows, of which each test has a new one, and no process waits for a second page in it:
-        // that takes as long as half of a page's own start.
+        // Nothing is drawn of the browser's own windows, and no process waits for a second page in them.
         '--disable-features=PreloadTopChromeWebUI,SpareRendererForSitePerProcess',
       ],
     },

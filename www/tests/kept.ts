@@ -34,6 +34,7 @@ export const test = base.extend<Options>({
     await use(kept.context);
     await Promise.all(scripts.splice(0).map((script) => script.dispose()));
     await Promise.all(sessions.splice(0).map((session) => session.detach().catch(() => undefined))); // with their page, some have ended
+    if (kept.page.isClosed()) return kept.context.close();
     await undone(kept, new URL(baseURL!).origin);
     keptContexts.set(kind, kept);
   },
