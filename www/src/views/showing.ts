@@ -1,5 +1,5 @@
 //! The clip that opens the page shows what is found while it is found: its frames come one after another with their masks. Then it plays.
-//! Whoever touches anything first is not interrupted.
+//! Whoever touches or opens anything first is not interrupted.
 
 import type { SampleClip } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
@@ -10,7 +10,7 @@ import { prefersStillness } from './markup.js';
 const TIMES = 2;
 const TOUCHES = ['pointerdown', 'keydown', 'wheel', 'dragover'] as const;
 
-export function mountShowing(root: Window, store: Store, session: Session, { start }: SampleClip): void {
+export function mountShowing(root: Window, store: Store, session: Session, sample: SampleClip): void {
   if (prefersStillness()) return;
   let touched = false;
   const touch = (): void => {
@@ -21,30 +21,35 @@ export function mountShowing(root: Window, store: Store, session: Session, { sta
   };
   for (const kind of TOUCHES) root.addEventListener(kind, touch, { capture: true, passive: true });
 
+  /** Something else that is being opened would be given up for the next frame. */
+  const mayGoOn = (): boolean => !touched && !store.get().opening && store.get().timeline?.clip.sample === sample;
   const play = async (): Promise<void> => {
-    for (let time = 0; time < TIMES && !touched; time++) {
+    for (let time = 0; time < TIMES && mayGoOn(); time++) {
       await session.frames.goTo(0);
-      if (!touched) await session.play.toggle();
+      if (mayGoOn()) await session.play.toggle();
     }
-    if (!touched) await session.frames.goTo(start);
+    if (mayGoOn()) await session.frames.goTo(sample.start);
   };
   /** On the way to the frame that was found last. */
-  let going: Promise<void> | null = null;
+  let isGoing = false;
+  let going = Promise.resolve();
   const follow = async (index: number): Promise<void> => {
+    isGoing = true;
     session.shown.kind('objects');
     await session.frames.goTo(index);
-    going = null;
+    isGoing = false;
   };
   const leave = store.subscribe(({ tracked, look, result }, before) => {
     if (tracked === null) return;
+    if (!isGoing && !mayGoOn()) return leave();
     const { previews, run } = tracked;
-    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && going === null) {
+    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && !isGoing) {
       const newest = previews.findLastIndex((frame) => frame !== null);
       // The masks of the first pair stay until there is something to see.
       if (newest >= 0 && (look.kind === 'objects' || previews[newest]!.objects.length > 0)) going = follow(newest);
     }
     if (run.phase !== 'done') return;
     leave();
-    if (run.cause === 'found') void Promise.resolve(going).then(play);
+    if (run.cause === 'found') void going.then(play);
   });
 }
