@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openClip, openEmpty, openExport, square, test, upload, withSamples, withoutStorage } from './support.js';
+import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, openAdvanced, openClip, openEmpty, openExport, square, test, upload, withoutStorage } from './support.js';
 
 /** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
 async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
@@ -65,6 +65,20 @@ async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
   await done(page);
 }
 
+/** Opens a pair of them. */
+async function openPair(page: Page): Promise<void> {
+  await openEmpty(page);
+  await upload(page, await frames(2));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+  await done(page);
+}
+
+/** Takes everything back. */
+async function undoAll(page: Page): Promise<void> {
+  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
+  await done(page);
+}
+
 /** Whether the page asks before it is left. */
 async function warns(page: Page): Promise<boolean> {
   const asked = new Promise<Dialog | null>((resolve) => {
@@ -83,206 +97,268 @@ async function warns(page: Page): Promise<boolean> {
   return true;
 }
 
-test('strokes drawn, undone or cancelled while they are being applied are kept, undone or kept', async ({ page }) => {
-  await open(page);
-  const found = await labelsOnCanvas(page);
-  await brush(page, 1);
-  const rows = [0.15, 0.2, 0.25, 0.3].map((y): [Place, Place] => [[0.7, y], [0.8, y]]);
-  await drawAtOnce(page, rows);
-  await expect(strokes(page)).toHaveCount(4); // at once
-  await done(page);
-  const painted = await labelsOnCanvas(page);
-  for (const [from, to] of rows) expect([...along(painted, 768, 432, from, to)]).toEqual([1]);
+test('strokes that are still being applied are undone, cancelled, exported and segmented with', async ({ page }) => {
+  await openPair(page);
 
-  for (let k = 3; k >= 0; k--) {
+  await test.step('strokes drawn, undone or cancelled while they are being applied are kept, undone or kept', async () => {
+    const found = await labelsOnCanvas(page);
+    await brush(page, 1);
+    const rows = [0.15, 0.2, 0.25, 0.3].map((y): [Place, Place] => [[0.7, y], [0.8, y]]);
+    await drawAtOnce(page, rows);
+    await expect(strokes(page)).toHaveCount(4); // at once
+    await done(page);
+    const painted = await labelsOnCanvas(page);
+    for (const [from, to] of rows) expect([...along(painted, 160, 96, from, to)]).toEqual([1]);
+
+    for (let k = 3; k >= 0; k--) {
+      await page.locator('#undo').click();
+      await expect(strokes(page)).toHaveCount(k);
+    }
+    await done(page);
+    await expect(page.locator('#undo')).toBeDisabled();
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+    for (let k = 0; k < 4; k++) await page.locator('#redo').click();
+    await done(page);
+    expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+    for (let k = 0; k < 4; k++) await page.locator('#undo').click();
+
+    // Undone while it is being applied, a stroke stays undone.
+    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#undo' });
+    await done(page);
+    await expect(page.locator('#status')).toHaveText('Undone.');
+    // Its result would come before that of the next.
+    await drag(page, [0.7, 0.3], [0.8, 0.3]);
+    await done(page);
+    await expect(strokes(page)).toHaveCount(1);
+    await page.keyboard.press('Control+z');
+    await expect(page.locator('#status')).toHaveText('Undone.');
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#undo' });
+    await page.keyboard.press('Control+Shift+z');
+    await done(page);
+    expect([...along(await labelsOnCanvas(page), 160, 96, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
     await page.locator('#undo').click();
-    await expect(strokes(page)).toHaveCount(k);
-  }
-  await done(page);
-  await expect(page.locator('#undo')).toBeDisabled();
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  for (let k = 0; k < 4; k++) await page.locator('#redo').click();
-  await done(page);
-  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
-  for (let k = 0; k < 4; k++) await page.locator('#undo').click();
+    await expect(page.locator('#undo')).toBeDisabled();
 
-  // Undone while it is being applied, a stroke stays undone.
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await page.keyboard.press('Control+z');
-  await done(page);
-  await expect(page.locator('#status')).toHaveText('Undone.');
-  await page.waitForTimeout(1500); // the result would have arrived
-  await expect(page.locator('#status')).toHaveText('Undone.');
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await page.keyboard.press('Control+Shift+z');
-  await done(page);
-  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
-  await page.locator('#undo').click();
-  await expect(page.locator('#undo')).toBeDisabled();
+    // Cancelling keeps them.
+    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
+    await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
+    await expect(strokes(page)).toHaveCount(1);
+    await page.locator('#again').click();
+    await done(page);
+    expect([...along(await labelsOnCanvas(page), 160, 96, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+    await undoAll(page);
+  });
 
-  // Cancelling keeps them.
-  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
-  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
-  await expect(strokes(page)).toHaveCount(1);
-  await page.locator('#again').click();
-  await done(page);
-  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+  await test.step('a stroke drawn during segmentation is applied afterwards', async () => {
+    const found = await labelsOnCanvas(page);
+    await brush(page, 1);
+    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { first: '#setting-quality-best' });
+    await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
+    await expect(strokes(page)).toHaveCount(1);
+    await done(page);
+    await expect(page.getByLabel('Best')).toBeChecked();
+    await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke is applied\.$/);
+    // The better result numbers its motions differently, and may split the mask in two. The stroke applies to one of its parts, which is
+    // still selected.
+    const now = await labelsOnCanvas(page);
+    const goesOn = (label: number): boolean => mostCommon([...found].filter((_, p) => now[p] === label)) === 1;
+    const drawn = [...along(now, 160, 96, [0.7, 0.2], [0.8, 0.2])];
+    expect(drawn).toHaveLength(1);
+    expect(drawn.filter(goesOn)).toEqual(drawn);
+    const same = mostCommon([...now].filter((_, p) => found[p] === 1));
+    await expect(page.locator('#motions > li.selected')).toHaveAttribute('data-mask', String(same));
+    await undoAll(page);
+    await page.getByLabel('Fast').check();
+    await done(page);
+  });
+
+  await test.step('an exported file includes them, and a name that is being typed survives', async () => {
+    await openExport(page);
+    await expect(page.locator('.export-buttons button').first()).toBeEnabled();
+    await page.keyboard.press('Escape');
+    await brush(page, 1);
+    const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
+    const { data } = await decodeImage(await readFile(await download.path()));
+    const p = Math.floor(0.2 * 96) * 160 + Math.floor(0.75 * 160);
+    expect([...data.subarray(4 * p, 4 * p + 3)]).toEqual([...davisPalette()[1]!]);
+
+    // A name that is being typed survives a new result.
+    await drag(page, [0.7, 0.3], [0.8, 0.3]);
+    const name = page.locator('#motions > li').nth(1).locator('.motion-name');
+    await name.focus();
+    await page.keyboard.press('Control+a');
+    await page.keyboard.type('Van', { delay: 5 });
+    await done(page);
+    await page.keyboard.type(' 2');
+    await page.keyboard.press('Enter');
+    await expect(name).toHaveValue('Van 2');
+    await expect(page.locator('#motions > li').nth(1).getByRole('checkbox')).toHaveAccessibleName('Show Van 2');
+    await page.locator('#undo').click();
+    await page.locator('#undo').click();
+
+    // A stroke without effect is rejected with a message.
+    await chooseMotions(page, 1);
+    await done(page);
+    await page.locator('#tools [value=eraser]').check();
+    await page.locator('#motions > li').first().locator('.motion-words').click();
+    await drag(page, [0.7, 0.2], [0.8, 0.2]);
+    await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
+    await expect(strokes(page)).toHaveCount(0);
+  });
 });
 
-test('a stroke drawn during segmentation is applied afterwards', async ({ page }) => {
-  await open(page);
-  const found = await labelsOnCanvas(page);
-  await brush(page, 1);
-  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { first: '#setting-quality-best' });
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
-  await expect(strokes(page)).toHaveCount(1);
-  await done(page);
-  await expect(page.getByLabel('Best')).toBeChecked();
-  await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke is applied\.$/);
-  // The better result numbers its motions differently, and may split the mask in two. The stroke applies to one of its parts, which is
-  // still selected.
-  const now = await labelsOnCanvas(page);
-  const goesOn = (label: number): boolean => mostCommon([...found].filter((_, p) => now[p] === label)) === 1;
-  const drawn = [...along(now, 768, 432, [0.7, 0.2], [0.8, 0.2])];
-  expect(drawn).toHaveLength(1);
-  expect(drawn.filter(goesOn)).toEqual(drawn);
-  const same = mostCommon([...now].filter((_, p) => found[p] === 1));
-  await expect(page.locator('#motions > li.selected')).toHaveAttribute('data-mask', String(same));
-});
-
-test('strokes, names, colours and undo are restored with their frames', async ({ page }) => {
+test('what is said of a pair is there when its frames are shown again', async ({ page }) => {
   await openClip(page, await frames(4), { kind: 'motions' });
-  const rows = page.locator('#motions > li');
-  await rows.nth(1).locator('.motion-name').fill('Square');
-  await rows.nth(1).locator('.motion-name').press('Enter');
-  await rows.nth(1).locator('.swatch').fill('#112233');
-  await brush(page, 1);
-  await drag(page, [0.8, 0.2], [0.9, 0.2]);
-  await done(page);
-  await drag(page, [0.8, 0.8], [0.9, 0.8]);
-  await done(page);
-  await page.locator('#undo').click();
-  await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
-  const mine = await labelsOnCanvas(page);
-  await rows.nth(1).locator('.swatch').fill('#112233');
 
-  await step(page, 1, 'f2.png');
-  await expect(page.locator('#undo')).toBeDisabled();
-  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Motion 1');
-  await step(page, -1, 'f1.png');
-  await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
-  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Square');
-  await expect(rows.nth(1).locator('.swatch')).toHaveValue('#112233');
-  await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
-  expect(differences(await labelsOnCanvas(page), mine)).toBe(0);
-  await expect(strokes(page)).toHaveCount(1);
-  await page.locator('#redo').click();
-  await done(page);
-  await expect(strokes(page)).toHaveCount(2);
-  await page.locator('#undo').click();
-  await page.locator('#undo').click();
-  await expect(page.locator('#undo')).toBeDisabled();
-});
+  await test.step('strokes, names, colours and undo', async () => {
+    const rows = page.locator('#motions > li');
+    await rows.nth(1).locator('.motion-name').fill('Square');
+    await rows.nth(1).locator('.motion-name').press('Enter');
+    await rows.nth(1).locator('.swatch').fill('#112233');
+    await brush(page, 1);
+    await drag(page, [0.8, 0.2], [0.9, 0.2]);
+    await done(page);
+    await drag(page, [0.8, 0.8], [0.9, 0.8]);
+    await done(page);
+    await page.locator('#undo').click();
+    await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+    const mine = await labelsOnCanvas(page);
+    await rows.nth(1).locator('.swatch').fill('#112233');
 
-test('a stroke drawn just before a step, or in progress then, is kept', async ({ page }) => {
-  await openClip(page, await frames(4), { kind: 'motions' });
-  await brush(page, 1);
-  await drag(page, [0.8, 0.2], [0.9, 0.2]);
-  await page.keyboard.press('.'); // while it is being applied
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(0);
-  await step(page, -1, 'f1.png');
-  await expect(strokes(page)).toHaveCount(1);
-  expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
-  await page.locator('#undo').click();
-  await expect(strokes(page)).toHaveCount(0);
+    await step(page, 1, 'f2.png');
+    await expect(page.locator('#undo')).toBeDisabled();
+    await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Motion 1');
+    await step(page, -1, 'f1.png');
+    await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
+    await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Square');
+    await expect(rows.nth(1).locator('.swatch')).toHaveValue('#112233');
+    await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+    expect(differences(await labelsOnCanvas(page), mine)).toBe(0);
+    await expect(strokes(page)).toHaveCount(1);
+    await page.locator('#redo').click();
+    await done(page);
+    await expect(strokes(page)).toHaveCount(2);
+    await page.locator('#undo').click();
+    await page.locator('#undo').click();
+    await expect(page.locator('#undo')).toBeDisabled();
+  });
 
-  // In progress when the frames change, it belongs to the old ones.
-  await brush(page, 1);
-  const box = (await page.locator('.layers').boundingBox())!;
-  await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.2 * box.height);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 0.9 * box.width, box.y + 0.2 * box.height, { steps: 4 });
-  await page.keyboard.press('.');
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
-  await page.mouse.up();
-  await done(page);
-  await expect(strokes(page)).toHaveCount(0);
-  await step(page, -1, 'f1.png');
-  await expect(strokes(page)).toHaveCount(1);
-});
+  await test.step('a stroke drawn just before a step, or in progress then', async () => {
+    await brush(page, 1);
+    await drag(page, [0.8, 0.2], [0.9, 0.2]);
+    await page.keyboard.press('.'); // while it is being applied
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
+    await done(page);
+    await expect(strokes(page)).toHaveCount(0);
+    await step(page, -1, 'f1.png');
+    await expect(strokes(page)).toHaveCount(1);
+    expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+    await page.locator('#undo').click();
+    await expect(strokes(page)).toHaveCount(0);
 
-test('corrections are restored when frames are opened again in any way', async ({ page }) => {
-  await openEmpty(page);
-  const files = await frames(4);
-  const pair = async (): Promise<void> => {
-    await upload(page, files.slice(0, 2));
+    // In progress when the frames change, it belongs to the old ones.
+    await brush(page, 1);
+    const box = (await page.locator('.layers').boundingBox())!;
+    await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.2 * box.height);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.9 * box.width, box.y + 0.2 * box.height, { steps: 4 });
+    await page.keyboard.press('.');
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
+    await page.mouse.up();
+    await done(page);
+    await expect(strokes(page)).toHaveCount(0);
+    await step(page, -1, 'f1.png');
+    await expect(strokes(page)).toHaveCount(1);
+    await undoAll(page);
+  });
+
+  await test.step('frames that are opened again in any way', async () => {
+    const files = await frames(4);
+    const pair = async (): Promise<void> => {
+      await upload(page, files.slice(0, 2));
+      await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+      await done(page);
+    };
+    await pair();
+    await brush(page, 1);
+    await drag(page, [0.8, 0.2], [0.9, 0.2]);
+    await done(page);
+
+    // Replaced and put back.
+    await page.getByLabel('Replace the second frame').setInputFiles([files[3]!]);
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f3.png');
+    await done(page);
+    await expect(strokes(page)).toHaveCount(0);
+    await page.getByLabel('Replace the second frame').setInputFiles([files[1]!]);
     await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
     await done(page);
-  };
-  await pair();
-  await brush(page, 1);
-  await drag(page, [0.8, 0.2], [0.9, 0.2]);
-  await done(page);
+    await expect(strokes(page)).toHaveCount(1);
 
-  // Replaced and put back.
-  await page.getByLabel('Replace the second frame').setInputFiles([files[3]!]);
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f3.png');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(0);
-  await page.getByLabel('Replace the second frame').setInputFiles([files[1]!]);
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(1);
+    // Swapped and swapped back.
+    await page.locator('#swap').click();
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f0.png');
+    await done(page);
+    await expect(strokes(page)).toHaveCount(0);
+    await page.locator('#swap').click();
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+    await done(page);
+    await expect(strokes(page)).toHaveCount(1);
 
-  // Swapped and swapped back.
-  await page.locator('#swap').click();
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f0.png');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(0);
-  await page.locator('#swap').click();
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(1);
+    // Replaced by a sample and opened again.
+    await page.getByRole('button', { name: 'Parallax' }).click();
+    await expect(page.locator('[data-slot=first] .slot-name')).toContainText('400 × 300');
+    await done(page);
+    await pair();
+    await expect(strokes(page)).toHaveCount(1);
 
-  // Replaced by a sample and opened again.
-  await withSamples(page);
-  await page.getByRole('button', { name: 'Parallax' }).click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('400 × 300');
-  await done(page);
-  await pair();
-  await expect(strokes(page)).toHaveCount(1);
+    // Opened as frames of a clip.
+    await upload(page, files);
+    await expect(page.locator('#clip-name')).toContainText('4 frames');
+    await done(page);
+    await expect(strokes(page)).toHaveCount(1);
+    expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+    await undoAll(page);
+  });
 
-  // Opened as frames of a clip.
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText('4 frames');
-  await done(page);
-  await expect(strokes(page)).toHaveCount(1);
-  expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+  await test.step('a number of motions that is chosen', async () => {
+    await chooseMotions(page, 1);
+    await done(page);
+    await motionsChosen(page, 1);
+    await expect(page.locator('#motions > li')).toHaveCount(1);
+    await step(page, 1, 'f2.png');
+    await motionsChosen(page, 'Automatic');
+    expect(await page.locator('#motions > li').count()).toBeGreaterThan(1);
+    await step(page, -1, 'f1.png');
+    await motionsChosen(page, 1);
+    await expect(page.locator('#motions > li')).toHaveCount(1);
+  });
 });
 
-test('corrections survive the camera', async ({ page, context }) => {
-  await context.grantPermissions(['camera']);
-  await withoutStorage(page);
-  await open(page);
-  await brush(page, 1);
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live/);
-  await expect(strokes(page)).toHaveCount(0);
-  expect(await warns(page)).toBe(true);
-  await page.getByRole('button', { name: 'Stop camera' }).click();
+test('fewer motions than requested are mentioned, and the list of masks reports a failure', async ({ page }) => {
+  await openEmpty(page);
+  await upload(page, await frames(2));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
   await done(page);
-  await page.getByRole('button', { name: 'Two cars' }).click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('first.png');
+  await page.evaluate(() => (location.hash = '#quality=fast&masks=motions&motions=10'));
   await done(page);
-  await expect(strokes(page)).toHaveCount(1);
-  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+  const count = await page.locator('#motions > li').count();
+  expect(count).toBeLessThan(10);
+  await expect(page.locator('#status')).toHaveText(/\. Of the 10 motions requested, only (one|\d) could be told apart\.$/);
+  await chooseMotions(page, 2);
+  await done(page);
+  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d.]+\sm?s, as requested\.$/);
+
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
+  await upload(page, await frames(2));
+  await done(page);
+  await expect(page.locator('#motions-empty')).toBeHidden();
 });
 
 test('corrections are scaled to another working size', async ({ page }) => {
-  await openClip(page, await frames(3, 700, 420), { kind: 'motions' });
+  await openClip(page, await frames(3, 660, 396), { kind: 'motions' });
   await brush(page, 1);
   await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
@@ -295,41 +371,8 @@ test('corrections are scaled to another working size', async ({ page }) => {
   expect([...along(await labelsOnCanvas(page), 640, 384, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
 });
 
-test('strokes and names follow their masks to a result with other settings', async ({ page }) => {
-  await open(page);
-  const rows = page.locator('#motions > li');
-  const count = await rows.count();
-  await rows.nth(2).locator('.motion-name').fill('Car');
-  await rows.nth(2).locator('.motion-name').press('Enter');
-  await brush(page, 1);
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await done(page);
-  const painted = await labelsOnCanvas(page);
-
-  await openAdvanced(page);
-  await page.getByLabel('Leave unexplained pixels unlabelled').check();
-  await done(page);
-  await expect(strokes(page)).toHaveCount(1);
-  await expect(page.locator('#status')).toHaveText(/Your stroke is applied\.$/);
-  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
-  expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
-
-  // With one motion the stroke has no effect. With the first settings everything is as before.
-  await chooseMotions(page, 1);
-  await done(page);
-  await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
-  await expect(page.locator('#status')).toHaveText(/Your stroke has no effect: its mask is not in this result\.$/);
-  await chooseMotions(page, 'Automatic');
-  await page.getByLabel('Leave unexplained pixels unlabelled').uncheck();
-  await done(page);
-  await expect(rows).toHaveCount(count);
-  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
-  await expect(rows.nth(2).locator('.motion-name')).toHaveValue('Car');
-  await page.locator('#undo').click();
-  await expect(page.locator('#undo')).toBeDisabled();
-});
-
-test('leaving the page asks first only with unsaved corrections', async ({ page }) => {
+test('where nothing is kept, leaving the page asks first only with unsaved corrections, which survive the camera', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
   await withoutStorage(page);
   await openClip(page, await frames(3), { kind: 'motions' });
   await page.locator('#look [name=outlines]').uncheck();
@@ -354,124 +397,105 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
   await openExport(page);
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
   expect(await warns(page)).toBe(false);
-});
 
-test('an exported file includes strokes that are still being applied, and a name that is being typed survives', async ({ page }) => {
-  await open(page);
-  await openExport(page);
-  await expect(page.locator('.export-buttons button').first()).toBeEnabled();
-  await page.keyboard.press('Escape');
+  await done(page); // the pair that its address names
   await brush(page, 1);
-  const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
-  const { data } = await decodeImage(await readFile(await download.path()));
-  const p = Math.floor(0.2 * 432) * 768 + Math.floor(0.75 * 768);
-  expect([...data.subarray(4 * p, 4 * p + 3)]).toEqual([...davisPalette()[1]!]);
-
-  // A name that is being typed survives a new result.
-  await drag(page, [0.7, 0.3], [0.8, 0.3]);
-  const name = page.locator('#motions > li').nth(1).locator('.motion-name');
-  await name.focus();
-  await page.keyboard.press('Control+a');
-  await page.keyboard.type('Van', { delay: 5 });
-  await done(page);
-  await page.keyboard.type(' 2');
-  await page.keyboard.press('Enter');
-  await expect(name).toHaveValue('Van 2');
-  await expect(page.locator('#motions > li').nth(1).getByRole('checkbox')).toHaveAccessibleName('Show Van 2');
-  await page.locator('#undo').click();
-  await page.locator('#undo').click();
-
-  // A stroke without effect is rejected with a message.
-  await chooseMotions(page, 1);
-  await done(page);
-  await page.locator('#tools [value=eraser]').check();
-  await page.locator('#motions > li').first().locator('.motion-words').click();
   await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live/);
   await expect(strokes(page)).toHaveCount(0);
+  expect(await warns(page)).toBe(true);
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await done(page);
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('first.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
 });
 
-test('a stroke has the colour of its mask, also of a merged one', async ({ page }) => {
-  await open(page, 'groups');
-  const rows = page.locator('#motions > li');
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await mergeWith(rows.nth(1), 0);
-  await rows.nth(0).locator('.motion-words').click();
-  await page.locator('#tools [value=brush]').check();
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
+test('masks of two cars, corrected', async ({ page }) => {
+  await page.goto(PAIR); // as well as it can: with quality fast each group is one motion
   await done(page);
-  const colour = `rgb(${PALETTE[0]!.join(' ')})`;
-  await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
-  await page.locator('#tools [value=eraser]').check();
-  await drag(page, [0.7, 0.3], [0.8, 0.3]);
-  await done(page);
-  await expect(strokes(page).last()).toHaveAttribute('stroke', 'rgb(20 20 20)');
-  await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
-});
 
-test('the status describes the last action', async ({ page }) => {
-  await page.goto(PAIR);
-  await done(page);
-  const status = page.locator('#status');
-  const rows = page.locator('#motions > li');
-  const groups = await rows.count();
-  await page.locator('#look [name=colouring][value=motions]').check();
-  const motions = await rows.count();
-  expect(motions).toBeGreaterThan(groups);
-  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d.]+\\sm?s\\.$`));
-  await page.locator('#look [name=colouring][value=groups]').check();
-  await expect(status).toHaveText(new RegExp(`^${groups - 1 === 1 ? 'One object' : `${groups - 1} objects`} found in [\\d.]+\\sm?s\\.$`));
+  await test.step('the status describes the last action', async () => {
+    const status = page.locator('#status');
+    const rows = page.locator('#motions > li');
+    const groups = await rows.count();
+    await page.locator('#look [name=colouring][value=motions]').check();
+    const motions = await rows.count();
+    expect(motions).toBeGreaterThan(groups);
+    await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d.]+\\sm?s\\.$`));
+    await page.locator('#look [name=colouring][value=groups]').check();
+    await expect(status).toHaveText(new RegExp(`^${groups - 1 === 1 ? 'One object' : `${groups - 1} objects`} found in [\\d.]+\\sm?s\\.$`));
 
-  await brush(page, 1);
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(status).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
-  await page.locator('#undo').click();
-  await expect(status).toHaveText('Undone.');
-  await page.locator('#redo').click();
-  await expect(status).toHaveText('Redone.');
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await mergeWith(rows.nth(1), 2);
-  await expect(status).toHaveText('Merged.');
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
-  await expect(status).toHaveText('Ungrouped.');
-});
+    await brush(page, 1);
+    await drag(page, [0.7, 0.2], [0.8, 0.2]);
+    await expect(status).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
+    await page.locator('#undo').click();
+    await expect(status).toHaveText('Undone.');
+    await page.locator('#redo').click();
+    await expect(status).toHaveText('Redone.');
+    await rows.nth(1).getByText('More', { exact: true }).click();
+    await mergeWith(rows.nth(1), 2);
+    await expect(status).toHaveText('Merged.');
+    await rows.nth(1).getByText('More', { exact: true }).click();
+    await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
+    await expect(status).toHaveText('Ungrouped.');
+    await undoAll(page);
+    await page.getByLabel('Fast').check();
+    await done(page);
+  });
 
-test('the status mentions fewer motions than requested', async ({ page }) => {
-  await openEmpty(page);
-  await upload(page, (await frames(2)));
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
-  await done(page);
-  await page.evaluate(() => (location.hash = '#quality=fast&masks=motions&motions=10'));
-  await done(page);
-  const count = await page.locator('#motions > li').count();
-  expect(count).toBeLessThan(10);
-  await expect(page.locator('#status')).toHaveText(/\. Of the 10 motions requested, only (one|\d) could be told apart\.$/);
-  await chooseMotions(page, 2);
-  await done(page);
-  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d.]+\sm?s, as requested\.$/);
-});
+  await test.step('a stroke has the colour of its mask, also of a merged one', async () => {
+    const rows = page.locator('#motions > li');
+    await rows.nth(1).getByText('More', { exact: true }).click();
+    await mergeWith(rows.nth(1), 0);
+    await rows.nth(0).locator('.motion-words').click();
+    await page.locator('#tools [value=brush]').check();
+    await drag(page, [0.7, 0.2], [0.8, 0.2]);
+    await done(page);
+    const colour = `rgb(${PALETTE[0]!.join(' ')})`;
+    await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
+    await page.locator('#tools [value=eraser]').check();
+    await drag(page, [0.7, 0.3], [0.8, 0.3]);
+    await done(page);
+    await expect(strokes(page).last()).toHaveAttribute('stroke', 'rgb(20 20 20)');
+    await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
+    await undoAll(page);
+  });
 
-test('a number of motions chosen for a pair applies to that pair', async ({ page }) => {
-  await openClip(page, await frames(3), { kind: 'motions' });
-  await chooseMotions(page, 1);
-  await done(page);
-  await motionsChosen(page, 1);
-  await expect(page.locator('#motions > li')).toHaveCount(1);
-  await step(page, 1, 'f2.png');
-  await motionsChosen(page, 'Automatic');
-  expect(await page.locator('#motions > li').count()).toBeGreaterThan(1);
-  await step(page, -1, 'f1.png');
-  await motionsChosen(page, 1);
-  await expect(page.locator('#motions > li')).toHaveCount(1);
-});
+  await test.step('strokes and names follow their masks to a result with other settings', async () => {
+    await page.locator('#look [name=colouring][value=motions]').check();
+    const rows = page.locator('#motions > li');
+    const count = await rows.count();
+    await rows.nth(2).locator('.motion-name').fill('Car');
+    await rows.nth(2).locator('.motion-name').press('Enter');
+    await brush(page, 1);
+    await drag(page, [0.7, 0.2], [0.8, 0.2]);
+    await done(page);
+    const painted = await labelsOnCanvas(page);
 
-test('the list of masks reports a failure', async ({ page }) => {
-  await openEmpty(page);
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
-  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
-  await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
-  await upload(page, await frames(2));
-  await done(page);
-  await expect(page.locator('#motions-empty')).toBeHidden();
+    await openAdvanced(page);
+    await page.getByLabel('Leave unexplained pixels unlabelled').check();
+    await done(page);
+    await expect(strokes(page)).toHaveCount(1);
+    await expect(page.locator('#status')).toHaveText(/Your stroke is applied\.$/);
+    expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+    expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
+
+    // With one motion the stroke has no effect. With the first settings everything is as before.
+    await chooseMotions(page, 1);
+    await done(page);
+    await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
+    await expect(page.locator('#status')).toHaveText(/Your stroke has no effect: its mask is not in this result\.$/);
+    await chooseMotions(page, 'Automatic');
+    await page.getByLabel('Leave unexplained pixels unlabelled').uncheck();
+    await done(page);
+    await expect(rows).toHaveCount(count);
+    expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+    await expect(rows.nth(2).locator('.motion-name')).toHaveValue('Car');
+    await page.locator('#undo').click();
+    await expect(page.locator('#undo')).toBeDisabled();
+  });
 });

@@ -80,23 +80,23 @@ test('the same clip at its own size', { tag: '@soak' }, async ({ page }) => {
 });
 
 /** Decoding files with this name waits until `release` is called. Called before the page is opened. */
-async function held(page: Page, file: string): Promise<{ release(): Promise<void> }> {
+async function held(page: Page, file: string): Promise<() => Promise<void>> {
   await page.addInitScript((file) => {
     const decode = window.createImageBitmap;
     const released = new Promise<void>((release) => Object.assign(window, { release }));
-    window.createImageBitmap = (async (source: ImageBitmapSource, ...rest: []) => {
+    window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
       if (source instanceof File && source.name === file) await released;
       return decode(source, ...rest);
-    }) as typeof window.createImageBitmap;
+    };
   }, file);
-  return { release: () => page.evaluate(() => (window as unknown as { release(): void }).release()) };
+  return () => page.evaluate(() => (window as unknown as { release(): void }).release());
 }
 
 test('whoever touches the page or opens something first is not shown the clip; nothing of projects is loaded', async ({ page }) => {
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));
   await withSmallSampleClip(page);
-  const { release } = await held(page, 'slow.png');
+  const release = await held(page, 'slow.png');
   await page.goto('./');
   await page.locator('#clip-progress').waitFor();
   await page.keyboard.press('v');
