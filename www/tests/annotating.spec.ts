@@ -51,7 +51,7 @@ const CASES: readonly { name: string; truths: Uint8Array[]; most: number; action
 ];
 
 for (const { name, truths, most, actions, good } of CASES) {
-  test(name, async ({ page }) => {
+  test(name, { tag: '@soak' }, async ({ page }) => {
     const expert = await annotatedPage(page, './', 'quality=fast');
     const { path, id, found } = await annotate(expert, await clipFrames(COUNT, WIDTH, HEIGHT), truths, { width: WIDTH, most });
     expect(expert.log.filter((line: unknown) => typeof line === 'string')).toEqual(actions);

@@ -9,7 +9,7 @@ const NEAR = 1.5;
 
 /** Opens and segments a clip before any pair was painted, and takes the brush. */
 async function clipWithBrush(page: Page): Promise<void> {
-  await openSegmented(page, await clipFrames(4));
+  await openSegmented(page, await clipFrames(3, 120, 84));
   await page.locator('#tools [value=brush]').locator('..').click();
   await expect(page.locator('#tools [value=brush]')).toBeChecked();
   await page.locator('.layers').scrollIntoViewIfNeeded();

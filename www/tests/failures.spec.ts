@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, done, expect, labelsOnCanvas, open, openEmpty, sample, square, test, upload } from './support.js';
+import { done, expect, labelsOnCanvas, openEmpty, square, test, upload } from './support.js';
 
 /** The page still segments. */
 async function expectToWork(page: Page): Promise<void> {
@@ -13,34 +13,17 @@ async function expectToWork(page: Page): Promise<void> {
   expect((await labelsOnCanvas(page)).length).toBe(96 * 64);
 }
 
-test('a broken file is reported, and the open pair stays', async ({ page }) => {
-  await open(page);
-  const whole = await sample('first');
-  const broken = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('this is not an image') };
-  await upload(page, [broken, whole]);
-  await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image that this browser can read.');
-  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
-  expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
-  await expectToWork(page);
-});
+/** The phases that the run has from now on. */
+async function phases(page: Page): Promise<() => Promise<string[]>> {
+  await page.locator('#run').evaluate((run) => {
+    const phases: string[] = [];
+    Object.assign(window, { phases });
+    new MutationObserver(() => phases.push(run.dataset.phase!)).observe(run, { attributes: true, attributeFilter: ['data-phase'] });
+  });
+  return () => page.evaluate(() => (window as unknown as { phases: string[] }).phases);
+}
 
-test('frames that differ in size, or are too small, are rejected with the message of the package', async ({ page }) => {
-  await openEmpty(page);
-  await expectToWork(page);
-  await expect(page.locator('#motions > li')).not.toHaveCount(0);
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
-  await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
-  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
-  await expect(page.locator('#motions > li')).toHaveCount(0);
-  await expectToWork(page);
-  const dot = await square('dot.png', 1, 1, 0, 0);
-  await upload(page, [dot, { ...dot, name: 'dot2.png' }]);
-  await expect(page.locator('#notice-code')).toHaveText('frame-size-unsupported');
-  await expectToWork(page);
-});
-
-test('a request is cancelled at once and can be repeated', async ({ page, context }) => {
+test('a request is cancelled at once and can be repeated; what cannot be read or segmented is rejected', async ({ page, context }) => {
   // The worker's file is held back, so that the request is certain to be running.
   let release = (): void => undefined;
   const held = new Promise<void>((resolve) => (release = resolve));
@@ -48,18 +31,45 @@ test('a request is cancelled at once and can be repeated', async ({ page, contex
     await held;
     await route.continue().catch(() => undefined); // the worker may have been ended
   });
-  await page.goto(PAIR);
+  await openEmpty(page);
+  const [a, b] = [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)];
+  await upload(page, [a, b]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 96 × 64');
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.getByRole('button', { name: 'Cancel' }).click();
   await expect(page.locator('#status')).toHaveText('Cancelled.');
   await expect(page.locator('#motions > li')).toHaveCount(0);
+  const had = await phases(page);
   release();
-  await page.waitForTimeout(1000); // long enough for a result, if the request were still running
-  await expect(page.locator('#status')).toHaveText('Cancelled.');
   await page.getByRole('button', { name: 'Segment again' }).click();
   await done(page);
-  expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
+  expect((await labelsOnCanvas(page)).length).toBe(96 * 64);
+  await expectToWork(page); // whatever was still to come has come
+  expect((await had()).filter((phase) => phase === 'done')).toHaveLength(2);
+
+  await test.step('a broken file is reported, and the open pair stays', async () => {
+    await upload(page, [{ name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('this is not an image') }, a]);
+    await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image that this browser can read.');
+    await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 96 × 64');
+    await expect(page.locator('#motions > li')).not.toHaveCount(0);
+    await expectToWork(page);
+  });
+
+  await test.step('frames that differ in size, or are too small, are rejected with the message of the package', async () => {
+    await upload(page, [a, await square('b.png', 64, 96, 0, 0)]);
+    await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
+    await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+    await expect(page.locator('#motions > li')).toHaveCount(0);
+    await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
+    await expectToWork(page);
+    await expect(page.locator('#motions-empty')).toBeHidden();
+    const dot = await square('dot.png', 1, 1, 0, 0);
+    await upload(page, [dot, { ...dot, name: 'dot2.png' }]);
+    await expect(page.locator('#notice-code')).toHaveText('frame-size-unsupported');
+    await expectToWork(page);
+  });
 });
 
 test('a missing sample is reported, and files can still be opened', async ({ page, context }) => {
