@@ -9,6 +9,13 @@ import { axe, clipFrames, done, expect, goTo, open, openExport, openSegmented, t
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
+/** Leaves the page, and comes back with a pair. */
+async function visit(page: Page): Promise<void> {
+  await page.goto('about:blank');
+  await page.goto(PARALLAX);
+  await done(page);
+}
+
 async function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
   const input = page.locator(`${list} .motion-name`).nth(row);
   await input.fill(name);
@@ -69,7 +76,7 @@ function places(page: Page): Promise<number[]> {
 
 test('the next visit shows the work, and one click opens it with its frames', async ({ page }) => {
   const files = await clipFrames(5);
-  await open(page, 'groups');
+  await visit(page);
   const before = await places(page);
   await expect(page.locator('#continue')).toBeHidden();
   await openSegmented(page, files);
@@ -77,8 +84,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
   await written(page, 'f00-f04.png');
   await expect.poll(() => copies(page)).toBe(1);
 
-  await page.reload();
-  await open(page, 'groups');
+  await visit(page);
   const work = page.getByRole('region', { name: 'Continue your work' }).getByRole('button');
   await expect(work).toHaveText(/^f00-f04\.png5 frames, \d\d:\d\d$/);
   expect(await places(page)).toEqual(before);
@@ -132,20 +138,18 @@ test('the next visit shows the work, and one click opens it with its frames', as
   await goTo(page, 3);
   await expect(page.locator('#notice-code')).toHaveText('');
   page.on('dialog', (dialog) => void dialog.accept());
-  await page.reload();
-  await open(page, 'groups');
+  await visit(page);
   await expect.poll(() => copies(page)).toBe(0);
   await expect(page.locator('#continue')).toBeHidden();
 });
 
 test('files that were not written before the page was closed count for nothing', async ({ page }) => {
-  const files = await clipFrames(4);
+  const files = await clipFrames(4, 120, 84);
   await openSegmented(page, files);
   await rename(page, '#objects', 1, 'Disc');
   await written(page, 'f00-f03.png');
   await expect.poll(() => copies(page)).toBe(1);
-  await page.goto('about:blank');
-  await open(page, 'groups');
+  await visit(page);
   await page.evaluate(async () => {
     const root = await navigator.storage.getDirectory();
     const [projects, frames] = await Promise.all(['projects', 'frames'].map((name) => root.getDirectoryHandle(name)));
@@ -153,8 +157,7 @@ test('files that were not written before the page was closed count for nothing',
     await projects!.getFileHandle('other.veronese', { create: true });
   });
   expect(await copies(page)).toBe(0);
-  await page.reload();
-  await open(page, 'groups');
+  await visit(page);
   const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
   await chooser.setFiles(files);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
@@ -165,7 +168,7 @@ test('files that were not written before the page was closed count for nothing',
 });
 
 test('of several the newest comes first, and a sample needs no copy, also with its frames swapped', async ({ page }) => {
-  await openSegmented(page, await clipFrames(4));
+  await openSegmented(page, await clipFrames(4, 120, 84));
   await rename(page, '#objects', 1, 'Disc');
   await written(page, 'f00-f03.png');
   await expect.poll(() => copies(page)).toBe(1);
@@ -191,23 +194,22 @@ test('of several the newest comes first, and a sample needs no copy, also with i
 });
 
 test('frames that are too large to copy are asked for', async ({ page }) => {
-  await page.addInitScript(() => (StorageManager.prototype.estimate = () => Promise.resolve({ quota: 1000, usage: 0 })));
-  const files = await clipFrames(4);
+  await page.addInitScript(() => void (isSecureContext && (StorageManager.prototype.estimate = () => Promise.resolve({ quota: 1000, usage: 0 })))); // about:blank has none
+  const files = await clipFrames(4, 120, 84);
   await openSegmented(page, files);
   await rename(page, '#objects', 1, 'Disc');
   await written(page, 'f00-f03.png');
   await expect(page.locator('#saving button')).toHaveText(/^Saved without its frames, \d\d:\d\d/);
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText('Your work is kept in this browser. Open the same frames again to continue.');
-  await page.reload();
-  await open(page, 'groups');
+  await visit(page);
   const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
   await chooser.setFiles(files);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
 });
 
 test('copies of frames give way to work when the disk is full', async ({ page, context, baseURL }) => {
-  await openSegmented(page, await clipFrames(4));
+  await openSegmented(page, await clipFrames(4, 120, 84));
   await rename(page, '#objects', 1, 'Disc');
   await written(page, 'f00-f03.png');
   await expect.poll(() => copies(page)).toBe(1);
@@ -222,7 +224,7 @@ test('copies of frames give way to work when the disk is full', async ({ page, c
 });
 
 test('the page tells when work is saved, says so once, and saves it as a file', async ({ page }) => {
-  await open(page, 'groups');
+  await visit(page);
   const before = await places(page);
   await expect(page.locator('#saving button')).toBeHidden();
   const told = page.locator('#saving [role=status]');
@@ -231,7 +233,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
     Object.assign(window, { said });
     new MutationObserver(() => said.push(status.textContent)).observe(status, { childList: true, characterData: true, subtree: true });
   });
-  await upload(page, await clipFrames(4));
+  await upload(page, await clipFrames(4, 120, 84));
   await done(page);
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done');
@@ -248,7 +250,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
 
 test('work that the browser refuses to keep is said to be not saved', async ({ page }) => {
   await withoutStorage(page);
-  await openSegmented(page, await clipFrames(4));
+  await openSegmented(page, await clipFrames(4, 120, 84));
   await rename(page, '#objects', 1, 'Disc');
   const saving = page.locator('#saving button');
   await expect(saving).toHaveText(/^Not saved: the browser refused/);

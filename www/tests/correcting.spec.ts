@@ -17,107 +17,115 @@ async function stroke(page: Page, from: readonly [number, number], to: readonly 
   await done(page);
 }
 
-test('strokes of brush and eraser, with the pointer or the keyboard, change a mask, and undo removes them', async ({ page }) => {
-  await open(page, 'groups');
-  const found = await labelsOnCanvas(page);
-  // With the keyboard, from the centre.
-  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
-  await page.keyboard.press('p');
-  await page.locator('.layers').focus();
-  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('Space');
-  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('Space');
-  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
+/** Takes everything back. */
+async function undoAll(page: Page): Promise<void> {
+  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
   await done(page);
-  const drawn = await labelsOnCanvas(page);
-  // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
-  for (let x = 384 + 160; x <= 384 + 208; x++) expect(drawn[216 * 768 + x]).toBe(1);
-  expect(differences(drawn, found)).toBeGreaterThan(0);
-  await page.locator('#undo').click();
-  await expect(page.locator('#undo')).toBeDisabled();
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+}
 
-  // With the pointer.
-  const at = (x: number, y: number): number => Math.floor(y * 432) * 768 + Math.floor(x * 768);
-  const ground = at(0.75, 0.5);
-  expect(found[ground]).toBe(0);
-
-  await page.keyboard.press('p');
-  await expect(page.locator('#tools [value=brush]')).toBeChecked();
-  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
-  await stroke(page, [0.7, 0.5], [0.8, 0.5]);
-  const painted = await labelsOnCanvas(page);
-  for (let x = 0.7; x <= 0.8; x += 0.01) expect(painted[at(x, 0.5)]).toBe(1);
-  // Far away almost nothing has changed.
-  expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
-
-  await page.locator('#undo').click();
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await page.keyboard.press('Control+Shift+z');
-  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
-  await page.keyboard.press('Control+z');
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await expect(page.locator('#undo')).toBeDisabled();
-
-  // The eraser removes pixels.
-  const inside = Math.floor(0.35 * 432) * 768 + Math.floor(0.22 * 768);
-  const mask = found[inside]!;
-  expect(mask).toBeGreaterThan(0);
-  await page.locator('#tools [value=eraser]').check();
-  await page.locator(`#motions > li[data-mask="${mask}"] .motion-words`).click();
-  await stroke(page, [0.2, 0.35], [0.25, 0.35]);
-  const erased = await labelsOnCanvas(page);
-  for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
-  await page.locator('#undo').click();
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-});
-
-test('masks are merged and ungrouped, and a stroke with a merged mask allows all of its motions', async ({ page }) => {
+test('masks of two cars, corrected with brush, eraser and the list', async ({ page }) => {
   await open(page, 'groups');
-  const found = await labelsOnCanvas(page);
-  const rows = page.locator('#motions > li');
-  const count = await rows.count();
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await mergeWith(rows.nth(1), 2);
-  await expect(rows).toHaveCount(count - 1);
-  expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
-  await page.locator('#undo').click();
-  await expect(rows).toHaveCount(count);
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await page.locator('#redo').click();
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
-  expect(await rows.count()).toBeGreaterThan(count - 1);
 
-  await page.locator('#undo').click();
-  await expect(rows).toHaveCount(count - 1);
-  const merged = await labelsOnCanvas(page);
-  await page.keyboard.press('p');
-  await rows.nth(1).locator('.motion-words').click();
-  // These pixels are in the mask already, so the stroke adds nothing.
-  await stroke(page, [0.2, 0.4], [0.24, 0.4]);
-  const painted = await labelsOnCanvas(page);
-  expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
-});
+  await test.step('strokes of brush and eraser, with the pointer or the keyboard, change a mask, and undo removes them', async () => {
+    const found = await labelsOnCanvas(page);
+    // With the keyboard, from the centre.
+    await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+    await page.keyboard.press('p');
+    await page.locator('.layers').focus();
+    for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('Space');
+    for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('Space');
+    await expect(page.locator('#status')).toHaveText(/^Masks updated/);
+    await done(page);
+    const drawn = await labelsOnCanvas(page);
+    // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
+    for (let x = 384 + 160; x <= 384 + 208; x++) expect(drawn[216 * 768 + x]).toBe(1);
+    expect(differences(drawn, found)).toBeGreaterThan(0);
+    await page.locator('#undo').click();
+    await expect(page.locator('#undo')).toBeDisabled();
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
 
-test('choosing a mask to merge with does not merge, and a merged mask is selected', async ({ page }) => {
-  await open(page, 'groups');
-  const rows = page.locator('#motions > li');
-  const count = await rows.count();
-  expect(count).toBeGreaterThan(2);
-  await page.locator('#tools [value=brush]').check();
-  await rows.nth(2).getByText('More', { exact: true }).click();
-  const choice = rows.nth(2).locator('[data-action=merge-with]');
-  await expect(rows.nth(2).getByRole('button', { name: 'Merge' })).toBeDisabled();
-  await choice.focus();
-  for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
-  await expect(choice).toHaveValue('1');
-  await expect(rows).toHaveCount(count);
-  await page.keyboard.press('Tab');
-  await page.keyboard.press('Enter');
-  await expect(rows).toHaveCount(count - 1);
-  await expect(page.locator('#motions .selected')).toHaveAttribute('data-mask', '1');
-  await expect(page.locator('#motions .selected summary')).toBeFocused();
-  await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
+    // With the pointer.
+    const at = (x: number, y: number): number => Math.floor(y * 432) * 768 + Math.floor(x * 768);
+    const ground = at(0.75, 0.5);
+    expect(found[ground]).toBe(0);
+
+    await page.keyboard.press('p');
+    await expect(page.locator('#tools [value=brush]')).toBeChecked();
+    await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+    await stroke(page, [0.7, 0.5], [0.8, 0.5]);
+    const painted = await labelsOnCanvas(page);
+    for (let x = 0.7; x <= 0.8; x += 0.01) expect(painted[at(x, 0.5)]).toBe(1);
+    // Far away almost nothing has changed.
+    expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
+
+    await page.locator('#undo').click();
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+    await page.keyboard.press('Control+Shift+z');
+    expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+    await page.keyboard.press('Control+z');
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+    await expect(page.locator('#undo')).toBeDisabled();
+
+    // The eraser removes pixels.
+    const inside = Math.floor(0.35 * 432) * 768 + Math.floor(0.22 * 768);
+    const mask = found[inside]!;
+    expect(mask).toBeGreaterThan(0);
+    await page.locator('#tools [value=eraser]').check();
+    await page.locator(`#motions > li[data-mask="${mask}"] .motion-words`).click();
+    await stroke(page, [0.2, 0.35], [0.25, 0.35]);
+    const erased = await labelsOnCanvas(page);
+    for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
+    await page.locator('#undo').click();
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  });
+
+  await test.step('masks are merged and ungrouped, and a stroke with a merged mask allows all of its motions', async () => {
+    const found = await labelsOnCanvas(page);
+    const rows = page.locator('#motions > li');
+    const count = await rows.count();
+    await rows.nth(1).getByText('More', { exact: true }).click();
+    await mergeWith(rows.nth(1), 2);
+    await expect(rows).toHaveCount(count - 1);
+    expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
+    await page.locator('#undo').click();
+    await expect(rows).toHaveCount(count);
+    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+    await page.locator('#redo').click();
+    await rows.nth(1).getByText('More', { exact: true }).click();
+    await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
+    expect(await rows.count()).toBeGreaterThan(count - 1);
+
+    await page.locator('#undo').click();
+    await expect(rows).toHaveCount(count - 1);
+    const merged = await labelsOnCanvas(page);
+    await page.keyboard.press('p');
+    await rows.nth(1).locator('.motion-words').click();
+    // These pixels are in the mask already, so the stroke adds nothing.
+    await stroke(page, [0.2, 0.4], [0.24, 0.4]);
+    const painted = await labelsOnCanvas(page);
+    expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
+    await undoAll(page);
+  });
+
+  await test.step('choosing a mask to merge with does not merge, and a merged mask is selected', async () => {
+    const rows = page.locator('#motions > li');
+    const count = await rows.count();
+    expect(count).toBeGreaterThan(2);
+    await page.locator('#tools [value=brush]').check();
+    await rows.nth(2).getByText('More', { exact: true }).click();
+    const choice = rows.nth(2).locator('[data-action=merge-with]');
+    await expect(rows.nth(2).getByRole('button', { name: 'Merge' })).toBeDisabled();
+    await choice.focus();
+    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
+    await expect(choice).toHaveValue('1');
+    await expect(rows).toHaveCount(count);
+    await page.keyboard.press('Tab');
+    await page.keyboard.press('Enter');
+    await expect(rows).toHaveCount(count - 1);
+    await expect(page.locator('#motions .selected')).toHaveAttribute('data-mask', '1');
+    await expect(page.locator('#motions .selected summary')).toBeFocused();
+    await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
+  });
 });

@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, open, openExport, openSegmented, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openEmpty, openExport, openSegmented, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -164,93 +164,140 @@ test('what is drawn exactly is what is kept, exported and left alone by what is 
   expect(differences(await exported(page, 'f04.png'), after)).toBe(0);
 });
 
-test('a polygon is filled pixel for pixel, by pointer and by keyboard, and what is not closed can be taken back', async ({ page }) => {
+test('the onion skin shows the frames beside; polygons are filled pixel for pixel', async ({ page }) => {
   await openSegmented(page, await clipFrames(6));
-  await goTo(page, 2);
-  const before = await labelsOnCanvas(page);
-  const corners: Place[] = [[0.41, 0.13], [0.62, 0.21], [0.55, 0.43], [0.5, 0.24]];
-  let set: Place[] = [];
-  const inside = (p: number): boolean => isInside(p, set);
-  const filled = (label: number): Uint8Array => before.map((was, p) => (inside(p) ? label : was));
-  await page.keyboard.press('1');
-  await exact(page).check();
-  await page.keyboard.press('w');
-  await expect(page.getByRole('radio', { name: 'Polygon' })).toBeChecked();
-  set = await press(page, ...corners);
-  await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){4}$/);
-  expect(differences(await labelsOnCanvas(page), before)).toBe(0);
-  expect(await axe(page)).toEqual([]);
-  await press(page, corners[0]!);
-  await expect(status(page)).toHaveText('Corrected: the masks of one frame have changed.');
-  await expect(page.locator('.corners')).toHaveAttribute('d', '');
-  expect(differences(await labelsOnCanvas(page), filled(1))).toBe(0);
 
-  // With Shift a part of it is removed; a second press at the last corner closes as well.
-  const part: Place[] = [[0.45, 0.1], [0.58, 0.12], [0.52, 0.45]];
-  const cut = await press(page, ...part);
-  await page.keyboard.down('Shift');
-  await press(page, part[2]!);
-  await page.keyboard.up('Shift');
-  expect(differences(await labelsOnCanvas(page), filled(1).map((label, p) => (label === 1 && isInside(p, cut) ? 0 : label)))).toBe(0);
-  await page.keyboard.press('Control+z');
-  await page.keyboard.press('Control+z');
-  expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+  await test.step('the onion skin shows the objects of the frames beside, but not while the clip plays', async () => {
+    const [second, fourth, first] = await masksOf(page, [1, 3, 0]);
+    await goTo(page, 2);
+    const skin = page.getByRole('checkbox', { name: 'Onion skin' });
+    await expect(skin).not.toBeChecked();
+    await page.keyboard.press('u');
+    await expect(skin).toBeChecked();
+    await expect.poll(() => outlined(page, 'before')).toEqual(boxesIn(second!));
+    await expect.poll(() => outlined(page, 'after')).toEqual(boxesIn(fourth!));
+    await page.getByLabel('Show Object 2').uncheck();
+    await expect(page.locator('#onion path')).toHaveCount(2);
+    await page.getByLabel('Show Object 2').check();
+    await page.keyboard.press('.');
+    await page.keyboard.press('.');
+    await expect.poll(() => outlined(page, 'before')).toEqual(boxesIn(fourth!));
+    await goTo(page, 0);
+    await expect.poll(() => outlined(page, 'after')).toEqual(boxesIn(second!));
+    expect(await outlined(page, 'before')).toEqual([]);
+    expect(differences(await labelsOnCanvas(page), first!)).toBe(0);
 
-  // By keyboard alone: from where the pointer was, in steps of the brush's radius. Backspace is about the corners, not about the selected object.
-  await page.mouse.move(0, 0);
-  await page.locator('.layers').focus();
-  const at = (await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Number(circle.getAttribute(name))))) as [number, number];
-  const walked: Place[] = [at];
-  const step = async (key: string, times: number): Promise<void> => {
-    for (let k = 0; k < times; k++) await page.keyboard.press(key);
-    const [x, y] = walked.at(-1)!;
-    const far = (key === 'ArrowLeft' || key === 'ArrowUp' ? -8 : 8) * times;
-    walked.push(key === 'ArrowLeft' || key === 'ArrowRight' ? [x + far, y] : [x, y + far]);
-  };
-  await page.keyboard.press('Space');
-  await step('ArrowRight', 4);
-  await page.keyboard.press('Space');
-  await page.keyboard.press('Enter'); // two corners are no polygon
-  await step('ArrowUp', 1);
-  await page.keyboard.press('Space');
-  await page.keyboard.press('Backspace');
-  await step('ArrowDown', 3);
-  await page.keyboard.press('Space');
-  await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){3}$/);
-  await page.keyboard.press('Enter');
-  await expect(page.locator('.corners')).toHaveAttribute('d', '');
-  const [first, second, , third] = walked as [Place, Place, Place, Place];
-  // No centre is on a side: the pointer was between pixels.
-  expect(differences(await labelsOnCanvas(page), before.map((was, p) => (isInside(p, [first, second, third]) ? 1 : was)))).toBe(0);
-  await expect(page.locator('#objects > li')).toHaveCount(3);
+    // Lines while it plays would be of frames that have passed.
+    await page.evaluate(() => {
+      const seen: number[] = [];
+      Object.assign(window, { seen });
+      const play = document.querySelector('#play')!;
+      const look = (): void => {
+        if (play.getAttribute('aria-label') === 'Pause') seen.push(document.querySelectorAll('#onion path').length);
+        requestAnimationFrame(look);
+      };
+      play.addEventListener('click', () => setTimeout(look, 50));
+    });
+    await page.locator('#play').click();
+    await expect(page.locator('#caption')).toHaveText('Frame 5');
+    await expect.poll(() => outlined(page, 'before')).not.toEqual([]);
+    const seen = await page.evaluate(() => (window as unknown as { seen: number[] }).seen);
+    expect(seen.length).toBeGreaterThan(0);
+    expect(seen.every((count) => count === 0)).toBe(true);
+    await skin.uncheck();
+    await expect(page.locator('#onion path')).toHaveCount(0);
+  });
 
-  // Given up, wherever the focus is.
-  const now = await labelsOnCanvas(page);
-  await press(page, ...corners);
-  await page.locator('#tools [name=radius]').focus();
-  await page.keyboard.press('Backspace');
-  await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){3}$/);
-  await page.keyboard.press('Escape');
-  await expect(page.locator('.corners')).toHaveAttribute('d', '');
-  await expect(page.locator('#objects > li')).toHaveCount(3);
-  await press(page, ...corners);
-  await page.keyboard.press('v');
-  await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
-  expect(differences(await labelsOnCanvas(page), now)).toBe(0);
+  await test.step('a polygon is filled pixel for pixel, by pointer and by keyboard, and what is not closed can be taken back', async () => {
+    await goTo(page, 2);
+    const before = await labelsOnCanvas(page);
+    const corners: Place[] = [[0.41, 0.13], [0.62, 0.21], [0.55, 0.43], [0.5, 0.24]];
+    let set: Place[] = [];
+    const inside = (p: number): boolean => isInside(p, set);
+    const filled = (label: number): Uint8Array => before.map((was, p) => (inside(p) ? label : was));
+    await page.keyboard.press('1');
+    await exact(page).check();
+    await page.keyboard.press('w');
+    await expect(page.getByRole('radio', { name: 'Polygon' })).toBeChecked();
+    set = await press(page, ...corners);
+    await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){4}$/);
+    expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+    expect(await axe(page)).toEqual([]);
+    await press(page, corners[0]!);
+    await expect(status(page)).toHaveText('Corrected: the masks of one frame have changed.');
+    await expect(page.locator('.corners')).toHaveAttribute('d', '');
+    expect(differences(await labelsOnCanvas(page), filled(1))).toBe(0);
 
-  // Otherwise what is around and other frames follow, as with the brush.
-  await exact(page).uncheck();
-  await page.keyboard.press('Control+z');
-  await page.keyboard.press('w');
-  await press(page, ...corners, corners[0]!);
-  await expect(status(page)).toHaveText(/^Corrected: the masks of \d+ frames have changed\.$/);
-  expect((await labelsOnCanvas(page)).every((label, p) => !inside(p) || label === 1)).toBe(true);
+    // With Shift a part of it is removed; a second press at the last corner closes as well.
+    const part: Place[] = [[0.45, 0.1], [0.58, 0.12], [0.52, 0.45]];
+    const cut = await press(page, ...part);
+    await page.keyboard.down('Shift');
+    await press(page, part[2]!);
+    await page.keyboard.up('Shift');
+    expect(differences(await labelsOnCanvas(page), filled(1).map((label, p) => (label === 1 && isInside(p, cut) ? 0 : label)))).toBe(0);
+    await page.keyboard.press('Control+z');
+    await page.keyboard.press('Control+z');
+    expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+
+    // By keyboard alone: from where the pointer was, in steps of the brush's radius. Backspace is about the corners, not about the selected object.
+    await page.mouse.move(0, 0);
+    await page.locator('.layers').focus();
+    const at = (await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Number(circle.getAttribute(name))))) as [number, number];
+    const walked: Place[] = [at];
+    const step = async (key: string, times: number): Promise<void> => {
+      for (let k = 0; k < times; k++) await page.keyboard.press(key);
+      const [x, y] = walked.at(-1)!;
+      const far = (key === 'ArrowLeft' || key === 'ArrowUp' ? -8 : 8) * times;
+      walked.push(key === 'ArrowLeft' || key === 'ArrowRight' ? [x + far, y] : [x, y + far]);
+    };
+    await page.keyboard.press('Space');
+    await step('ArrowRight', 4);
+    await page.keyboard.press('Space');
+    await page.keyboard.press('Enter'); // two corners are no polygon
+    await step('ArrowUp', 1);
+    await page.keyboard.press('Space');
+    await page.keyboard.press('Backspace');
+    await step('ArrowDown', 3);
+    await page.keyboard.press('Space');
+    await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){3}$/);
+    await page.keyboard.press('Enter');
+    await expect(page.locator('.corners')).toHaveAttribute('d', '');
+    const [first, second, , third] = walked as [Place, Place, Place, Place];
+    // No centre is on a side: the pointer was between pixels.
+    expect(differences(await labelsOnCanvas(page), before.map((was, p) => (isInside(p, [first, second, third]) ? 1 : was)))).toBe(0);
+    await expect(page.locator('#objects > li')).toHaveCount(3);
+
+    // Given up, wherever the focus is.
+    const now = await labelsOnCanvas(page);
+    await press(page, ...corners);
+    await page.locator('#tools [name=radius]').focus();
+    await page.keyboard.press('Backspace');
+    await expect(page.locator('.corners')).toHaveAttribute('d', /^(M[^M]+){3}$/);
+    await page.keyboard.press('Escape');
+    await expect(page.locator('.corners')).toHaveAttribute('d', '');
+    await expect(page.locator('#objects > li')).toHaveCount(3);
+    await press(page, ...corners);
+    await page.keyboard.press('v');
+    await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
+    expect(differences(await labelsOnCanvas(page), now)).toBe(0);
+
+    // Otherwise what is around and other frames follow, as with the brush.
+    await exact(page).uncheck();
+    await page.keyboard.press('Control+z');
+    await page.keyboard.press('w');
+    await press(page, ...corners, corners[0]!);
+    await expect(status(page)).toHaveText(/^Corrected: the masks of \d+ frames have changed\.$/);
+    expect((await labelsOnCanvas(page)).every((label, p) => !inside(p) || label === 1)).toBe(true);
+  });
 });
 
 test('on the masks of a pair, too, what is drawn exactly is what is kept', async ({ page }) => {
-  const [width, height] = [768, 432];
+  const [width, height] = [160, 96];
   const line = [[0.7, 0.2], [0.8, 0.25]] as const;
-  await open(page);
+  await openEmpty(page);
+  await upload(page, await Promise.all([0, 1].map((k) => square(`f${k}.png`, width, height, 3 * k, k))));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+  await done(page);
   const found = await labelsOnCanvas(page);
   await page.locator('#motions > li').nth(1).locator('.motion-words').click();
   await page.keyboard.press('p');
@@ -314,47 +361,6 @@ function boxesIn(labels: Uint8Array): number[][] {
   return [...boxes.values()];
 }
 
-test('the onion skin shows the objects of the frames beside, but not while the clip plays', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
-  const [second, fourth, first] = await masksOf(page, [1, 3, 0]);
-  await goTo(page, 2);
-  const skin = page.getByRole('checkbox', { name: 'Onion skin' });
-  await expect(skin).not.toBeChecked();
-  await page.keyboard.press('u');
-  await expect(skin).toBeChecked();
-  await expect.poll(() => outlined(page, 'before')).toEqual(boxesIn(second!));
-  await expect.poll(() => outlined(page, 'after')).toEqual(boxesIn(fourth!));
-  await page.getByLabel('Show Object 2').uncheck();
-  await expect(page.locator('#onion path')).toHaveCount(2);
-  await page.getByLabel('Show Object 2').check();
-  await page.keyboard.press('.');
-  await page.keyboard.press('.');
-  await expect.poll(() => outlined(page, 'before')).toEqual(boxesIn(fourth!));
-  await goTo(page, 0);
-  await expect.poll(() => outlined(page, 'after')).toEqual(boxesIn(second!));
-  expect(await outlined(page, 'before')).toEqual([]);
-  expect(differences(await labelsOnCanvas(page), first!)).toBe(0);
-
-  // Lines while it plays would be of frames that have passed.
-  await page.evaluate(() => {
-    const seen: number[] = [];
-    Object.assign(window, { seen });
-    const play = document.querySelector('#play')!;
-    const look = (): void => {
-      if (play.getAttribute('aria-label') === 'Pause') seen.push(document.querySelectorAll('#onion path').length);
-      requestAnimationFrame(look);
-    };
-    play.addEventListener('click', () => setTimeout(look, 50));
-  });
-  await page.locator('#play').click();
-  await expect(page.locator('#caption')).toHaveText('Frame 5');
-  await expect.poll(() => outlined(page, 'before')).not.toEqual([]);
-  const seen = await page.evaluate(() => (window as unknown as { seen: number[] }).seen);
-  expect(seen.length).toBeGreaterThan(0);
-  expect(seen.every((count) => count === 0)).toBe(true);
-  await skin.uncheck();
-  await expect(page.locator('#onion path')).toHaveCount(0);
-});
 
 test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });

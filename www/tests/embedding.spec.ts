@@ -27,7 +27,7 @@ async function labels(page: Page): Promise<Uint8Array> {
   return new Uint8Array(Buffer.from(base64, 'base64'));
 }
 
-test('the host receives the masks of the package', async ({ page }) => {
+test('the host receives the masks of the package; attributes, events, methods and colours', async ({ page }) => {
   await openHost(page, 'Two cars, pair');
   const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality: 'fast' });
   const groups = groupLabels(expected);
@@ -38,93 +38,7 @@ test('the host receives the masks of the package', async ({ page }) => {
   await expect(page.locator('#annotations li').first()).toContainText(`${pixels.toLocaleString('en-GB')} pixels`);
   await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeVisible();
   await expect(page.locator('#timeline')).toBeHidden();
-});
 
-test('a clip is stepped, named and saved', async ({ page }) => {
-  await openHost(page);
-  const expected = await clipInNode((await smallSampleClip()).slice(16, 49));
-  expect(differences(await labels(page), expected[0]!)).toBe(0);
-  await page.getByRole('button', { name: 'Next frame' }).click();
-  await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
-  expect(differences(await labels(page), expected[1]!)).toBe(0);
-  const lane = page.locator('#lanes > div').nth(1);
-  const box = (await lane.boundingBox())!;
-  await lane.click({ position: { x: box.width - 2, y: 10 } });
-  await expect(page.locator('#position')).toHaveText('Frame 33 of 33');
-  await expect(page.getByRole('option', { name: 'Object 2', selected: true })).toBeAttached();
-  await expect(page.getByRole('button', { name: 'Choose object 2' })).toHaveAttribute('aria-pressed', 'true');
-
-  await page.getByRole('textbox', { name: 'Name of object 2' }).fill('red car');
-  await expect(lane).toHaveText('red car');
-  await page.getByRole('button', { name: 'Save' }).click();
-  const saved = page.getByRole('dialog', { name: 'Saved by the form' });
-  await expect(saved.getByRole('listitem')).toHaveCount(35);
-  await expect(saved.getByRole('listitem').last()).toHaveText('object-2red car');
-  const waiting = page.waitForEvent('download');
-  await saved.getByRole('link', { name: '00002.png' }).click();
-  const download = await waiting;
-  expect(download.suggestedFilename()).toBe('00002.png');
-  const { data } = await decodeImage(await readFile(await download.path()));
-  const palette = davisPalette().map((colour) => [...colour, 255]);
-  const colours = new Uint8Array(data.length);
-  expected[2]!.forEach((label, p) => colours.set(palette[label]!, 4 * p));
-  expect(differences(data, colours)).toBe(0);
-  await saved.getByRole('button', { name: 'Close' }).click();
-
-  await page.getByRole('button', { name: 'Reset' }).click();
-  await expect(page.locator('#position')).toHaveText('Frame 1 of 33');
-  await expect(page.getByRole('textbox', { name: 'Name of object 2' })).toHaveValue('');
-  await expect(page.getByRole('listbox', { name: 'Objects' }).getByRole('option', { selected: true })).toHaveCount(0);
-});
-
-test('nothing is saved before the masks are there, and a clip can be cancelled', async ({ page }) => {
-  await withSmallSampleClip(page);
-  await page.goto('./embed.html');
-  const cancel = page.getByRole('button', { name: 'Cancel' });
-  await cancel.waitFor();
-  await page.getByRole('button', { name: 'Save' }).click();
-  await expect(page.getByRole('dialog')).toBeHidden();
-  expect(await page.locator('veronese-segmenter').evaluate((element) => (element as HTMLInputElement).validationMessage)).toBe('The masks are not ready yet.');
-  await cancel.click();
-  await expect(page.locator('#host-status')).toHaveText('Cancelled.');
-  await expect(cancel).toBeHidden();
-});
-
-test('frames and videos are opened from files', async ({ page }) => {
-  await openHost(page, 'Parallax, pair');
-  await page.getByLabel('Open a video, or frames as images').setInputFiles((await clipFrames(3, 96, 64)).reverse());
-  await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/);
-  await page.getByLabel('Open a video, or frames as images').setInputFiles(await video(page, 4, 'webm', 'vp8'));
-  await expect(page.locator('#host-status')).toHaveText(/in 4 frames\.$/);
-  await page.getByLabel('Open a video, or frames as images').setInputFiles({ name: 'notes.mp4', mimeType: 'video/mp4', buffer: Buffer.from('text') });
-  await expect(page.locator('#host-status')).toHaveText('No masks: the clip is not a video that this browser can read.');
-});
-
-test('axe finds nothing serious, light and dark; nothing scrolls at 1280 × 720, nor sideways on a phone', async ({ page }) => {
-  await page.setViewportSize({ width: 1280, height: 720 });
-  await page.emulateMedia({ reducedMotion: 'reduce' });
-  await openHost(page);
-  const overflow = (): Promise<number[]> =>
-    page.evaluate(() => {
-      const { scrollWidth, scrollHeight, clientWidth, clientHeight } = document.documentElement;
-      return [scrollWidth - clientWidth, scrollHeight - clientHeight];
-    });
-  expect(await overflow()).toEqual([0, 0]);
-  await page.getByRole('button', { name: 'Choose object 1' }).click();
-  for (const colorScheme of ['light', 'dark'] as const) {
-    await page.emulateMedia({ colorScheme });
-    expect(await axe(page)).toEqual([]);
-    await page.getByRole('button', { name: 'Save' }).click();
-    await expect(page.getByRole('dialog')).toBeVisible();
-    expect(await axe(page)).toEqual([]);
-    await page.getByRole('dialog').getByRole('button', { name: 'Close' }).click();
-  }
-  await page.setViewportSize({ width: 390, height: 844 });
-  expect((await overflow())[0]).toBe(0);
-});
-
-test('attributes, events, methods and colours', async ({ page }) => {
-  await openHost(page, 'Two cars, pair');
   await page.locator('#motions').selectOption('2');
   await expect
     .poll(() => page.locator('veronese-segmenter').evaluate((element) => (element as HTMLElement & { result: { count: number } }).result.count))
@@ -179,9 +93,55 @@ test('attributes, events, methods and colours', async ({ page }) => {
   await expect(page.locator('#host-status')).toHaveText('No masks: the first frame is not an image that this browser can read.');
 });
 
-test('frames are copied, and invalid ones rejected', async ({ page }) => {
+test('a clip is stepped, named and saved', async ({ page }) => {
+  await openHost(page);
+  const expected = await clipInNode((await smallSampleClip()).slice(16, 49));
+  expect(differences(await labels(page), expected[0]!)).toBe(0);
+  await page.getByRole('button', { name: 'Next frame' }).click();
+  await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
+  expect(differences(await labels(page), expected[1]!)).toBe(0);
+  const lane = page.locator('#lanes > div').nth(1);
+  const box = (await lane.boundingBox())!;
+  await lane.click({ position: { x: box.width - 2, y: 10 } });
+  await expect(page.locator('#position')).toHaveText('Frame 33 of 33');
+  await expect(page.getByRole('option', { name: 'Object 2', selected: true })).toBeAttached();
+  await expect(page.getByRole('button', { name: 'Choose object 2' })).toHaveAttribute('aria-pressed', 'true');
+
+  await page.getByRole('textbox', { name: 'Name of object 2' }).fill('red car');
+  await expect(lane).toHaveText('red car');
+  await page.getByRole('button', { name: 'Save' }).click();
+  const saved = page.getByRole('dialog', { name: 'Saved by the form' });
+  await expect(saved.getByRole('listitem')).toHaveCount(35);
+  await expect(saved.getByRole('listitem').last()).toHaveText('object-2red car');
+  const waiting = page.waitForEvent('download');
+  await saved.getByRole('link', { name: '00002.png' }).click();
+  const download = await waiting;
+  expect(download.suggestedFilename()).toBe('00002.png');
+  const { data } = await decodeImage(await readFile(await download.path()));
+  const palette = davisPalette().map((colour) => [...colour, 255]);
+  const colours = new Uint8Array(data.length);
+  expected[2]!.forEach((label, p) => colours.set(palette[label]!, 4 * p));
+  expect(differences(data, colours)).toBe(0);
+  await saved.getByRole('button', { name: 'Close' }).click();
+
+  await page.getByRole('button', { name: 'Reset' }).click();
+  await expect(page.locator('#position')).toHaveText('Frame 1 of 33');
+  await expect(page.getByRole('textbox', { name: 'Name of object 2' })).toHaveValue('');
+  await expect(page.getByRole('listbox', { name: 'Objects' }).getByRole('option', { selected: true })).toHaveCount(0);
+});
+
+test('nothing is saved before the masks are there, and a clip can be cancelled; frames are copied, and invalid ones rejected', async ({ page }) => {
   await withSmallSampleClip(page);
   await page.goto('./embed.html');
+  const cancel = page.getByRole('button', { name: 'Cancel' });
+  await cancel.waitFor();
+  await page.getByRole('button', { name: 'Save' }).click();
+  await expect(page.getByRole('dialog')).toBeHidden();
+  expect(await page.locator('veronese-segmenter').evaluate((element) => (element as HTMLInputElement).validationMessage)).toBe('The masks are not ready yet.');
+  await cancel.click();
+  await expect(page.locator('#host-status')).toHaveText('Cancelled.');
+  await expect(cancel).toBeHidden();
+
   const told = await page.evaluate(async () => {
     type Frames = HTMLElement & { setFrames(first: unknown, second: unknown): Promise<{ labels: Uint8Array }>; segment(): Promise<{ labels: Uint8Array }> };
     const element = document.createElement('veronese-segmenter') as Frames;
@@ -227,4 +187,37 @@ test('frames are copied, and invalid ones rejected', async ({ page }) => {
   const input = Array<string>(7).fill('invalid-input');
   expect(told.codes).toEqual([...input, 'unreadable-image', 'unreadable-image', 'invalid-option', 'invalid-option']);
   expect(told.after).toBe(96 * 64);
+});
+
+test('frames and videos are opened from files', async ({ page }) => {
+  await openHost(page, 'Parallax, pair');
+  await page.getByLabel('Open a video, or frames as images').setInputFiles((await clipFrames(3, 96, 64)).reverse());
+  await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/);
+  await page.getByLabel('Open a video, or frames as images').setInputFiles(await video(page, 4, 'webm', 'vp8'));
+  await expect(page.locator('#host-status')).toHaveText(/in 4 frames\.$/);
+  await page.getByLabel('Open a video, or frames as images').setInputFiles({ name: 'notes.mp4', mimeType: 'video/mp4', buffer: Buffer.from('text') });
+  await expect(page.locator('#host-status')).toHaveText('No masks: the clip is not a video that this browser can read.');
+});
+
+test('axe finds nothing serious, light and dark; nothing scrolls at 1280 × 720, nor sideways on a phone', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await openHost(page);
+  const overflow = (): Promise<number[]> =>
+    page.evaluate(() => {
+      const { scrollWidth, scrollHeight, clientWidth, clientHeight } = document.documentElement;
+      return [scrollWidth - clientWidth, scrollHeight - clientHeight];
+    });
+  expect(await overflow()).toEqual([0, 0]);
+  await page.getByRole('button', { name: 'Choose object 1' }).click();
+  for (const colorScheme of ['light', 'dark'] as const) {
+    await page.emulateMedia({ colorScheme });
+    expect(await axe(page)).toEqual([]);
+    await page.getByRole('button', { name: 'Save' }).click();
+    await expect(page.getByRole('dialog')).toBeVisible();
+    expect(await axe(page)).toEqual([]);
+    await page.getByRole('dialog').getByRole('button', { name: 'Close' }).click();
+  }
+  await page.setViewportSize({ width: 390, height: 844 });
+  expect((await overflow())[0]).toBe(0);
 });

@@ -33,31 +33,6 @@ async function reds(bytes: Uint8Array): Promise<Uint8Array> {
   return Uint8Array.from({ length: data.length / 4 }, (_, p) => data[4 * p]!);
 }
 
-test('all masks are exported as one archive, the selected mask and the overlay as PNG', async ({ page }) => {
-  await open(page, 'groups');
-  const expected = await segmentedInNode(await sample('first'), await sample('second'));
-  const groups = groupLabels(expected);
-  const { name, bytes } = await saved(page, 'All masks');
-  expect(name).toBe('masks.zip');
-  const files = unzipSync(bytes);
-  const numbers = [...new Set(groups)];
-  expect(Object.keys(files).sort()).toEqual([...numbers.map((k) => `mask-${k}.png`), 'labels.png', 'result.json'].sort());
-  for (const k of numbers) {
-    expect(differences(await reds(files[`mask-${k}.png`]!), groups.map((group) => (group === k ? 255 : 0)))).toBe(0);
-  }
-  expect(JSON.parse(new TextDecoder().decode(files['result.json']))).toMatchObject({ count: expected.count, width: 768 });
-
-  await page.keyboard.press('Escape');
-  await page.locator('#motions > li').nth(2).locator('.motion-words').click();
-  const mask = await savedAs(page, 'Selected mask');
-  expect(mask.name).toBe('mask.png');
-  expect(differences(await reds(mask.bytes), groups.map((group) => (group === 2 ? 255 : 0)))).toBe(0);
-
-  await page.getByLabel('Opacity').fill('0');
-  await page.getByLabel('Outlines').uncheck();
-  const overlay = await decodeImage((await savedAs(page, 'Overlay')).bytes);
-  expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
-});
 
 test('frames larger than the working size are scaled down, and their masks exported at full size', async ({ page }) => {
   await openEmpty(page);
@@ -162,15 +137,16 @@ test('a copied link opens with the same settings and the current sample', async 
   await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
   const first = await page.evaluate(() => navigator.clipboard.readText());
   expect(new URL(first).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&masks=motions');
-  const other = await context.newPage();
-  await other.goto(first);
-  await done(other);
-  await motionsChosen(other, 2);
-  await expect(other.getByLabel('Fast')).toBeChecked();
-  await expect(other.locator('#motions > li')).toHaveCount(2);
-  await expect(other.locator('#look [value=motions]')).toBeChecked();
+  await page.goto('about:blank');
+  await page.goto(first);
+  await done(page);
+  await motionsChosen(page, 2);
+  await expect(page.getByLabel('Fast')).toBeChecked();
+  await expect(page.locator('#motions > li')).toHaveCount(2);
+  await expect(page.locator('#look [value=motions]')).toBeChecked();
 
-  await page.keyboard.press('Escape');
+  await chooseMotions(page, 'Automatic');
+  await done(page);
   const copied = async (): Promise<string> => {
     await page.evaluate(() => navigator.clipboard.writeText(''));
     await openExport(page);
@@ -185,17 +161,17 @@ test('a copied link opens with the same settings and the current sample', async 
   await done(page);
   const link = await copied();
   expect(new URL(link).hash).toBe('#sample=parallax&swapped=true&quality=fast&masks=motions');
-  await other.goto('about:blank');
-  await other.goto(link);
-  await done(other);
-  await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
+  await page.goto('about:blank');
+  await page.goto(link);
+  await done(page);
+  await expect(page.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
 
   // Also in a page that is open.
-  await other.evaluate(() => (location.hash = '#sample=intel-two-cars&motions=2&masks=groups'));
-  await expect(other.locator('.slot-name')).toHaveText(['first.png, 768 × 432', 'second.png, 768 × 432']);
-  await done(other);
-  await expect(other.locator('#look [value=groups]')).toBeChecked();
-  await motionsChosen(other, 2);
+  await page.evaluate(() => (location.hash = '#sample=intel-two-cars&motions=2&masks=groups'));
+  await expect(page.locator('.slot-name')).toHaveText(['first.png, 768 × 432', 'second.png, 768 × 432']);
+  await done(page);
+  await expect(page.locator('#look [value=groups]')).toBeChecked();
+  await motionsChosen(page, 2);
 
   // With a replaced frame the pair is no longer a sample.
   await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
@@ -254,65 +230,90 @@ function planeFromColumns(counts: readonly number[], width: number, height: numb
   return plane;
 }
 
-test('formats of annotation tools have the masks under their names', async ({ page }) => {
+test('masks are exported as files of their own and in the formats of annotation tools, under their names', async ({ page }) => {
   await open(page, 'groups');
-  const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
-  const row = page.locator('#motions > li').nth(1);
-  await row.locator('.motion-name').fill('White car');
-  await row.locator('.motion-name').press('Enter');
-  const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
-  const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
-
-  const coco = (await json('COCO, RLE')) as {
-    categories: { id: number; name: string }[];
-    annotations: { category_id: number; area: number; segmentation: { counts: string; size: number[] } }[];
-  };
-  const category = coco.categories.find(({ name }) => name === 'White car')!;
-  const annotation = coco.annotations.find((one) => one.category_id === category.id)!;
-  expect(annotation.segmentation.size).toEqual([432, 768]);
-  expect(differences(planeFromColumns(countsOf(annotation.segmentation.counts), 768, 432), mask(1))).toBe(0);
-
-  const polygons = (await json('COCO, polygons')) as { annotations: { segmentation: number[][] }[] };
-  expect(polygons.annotations).toHaveLength(coco.annotations.length);
-  for (const { segmentation } of polygons.annotations) {
-    expect(segmentation[0]!.length).toBeGreaterThan(20);
-    expect(segmentation.flat().length / 2).toBeLessThan(200);
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  const groups = groupLabels(expected);
+  const { name, bytes } = await saved(page, 'All masks');
+  expect(name).toBe('masks.zip');
+  const files = unzipSync(bytes);
+  const numbers = [...new Set(groups)];
+  expect(Object.keys(files).sort()).toEqual([...numbers.map((k) => `mask-${k}.png`), 'labels.png', 'result.json'].sort());
+  for (const k of numbers) {
+    expect(differences(await reds(files[`mask-${k}.png`]!), groups.map((group) => (group === k ? 255 : 0)))).toBe(0);
   }
+  expect(JSON.parse(new TextDecoder().decode(files['result.json']))).toMatchObject({ count: expected.count, width: 768 });
 
-  // The background is an annotation only where it is asked for.
-  const background = page.getByLabel('Also the background');
-  const ids = async (): Promise<number[]> => ((await json('COCO, RLE')) as { categories: { id: number }[] }).categories.map(({ id }) => id - 1);
-  const objects = [...new Set(groups)].filter((group) => group > 0).sort((a, b) => a - b);
-  expect(await ids()).toEqual(objects);
-  await background.check();
-  expect(await ids()).toEqual([0, ...objects]);
-  await background.uncheck();
-  await page.getByLabel('File format').selectOption({ label: 'Overlay' });
-  await expect(background).toBeHidden();
+  await page.keyboard.press('Escape');
+  await page.locator('#motions > li').nth(2).locator('.motion-words').click();
+  const mask = await savedAs(page, 'Selected mask');
+  expect(mask.name).toBe('mask.png');
+  expect(differences(await reds(mask.bytes), groups.map((group) => (group === 2 ? 255 : 0)))).toBe(0);
 
-  const cvat = (await savedAs(page, 'CVAT')).bytes.toString();
-  const shape = /<mask label="White car"[^>]*rle="([^"]*)"[^>]*>/.exec(cvat)!;
-  const side = (name: string): number => Number(new RegExp(`${name}="(\\d+)"`).exec(shape[0])![1]);
-  const [left, top, width, height] = ['left', 'top', 'width', 'height'].map(side) as [number, number, number, number];
-  const plane = new Uint8Array(768 * 432);
-  let at = 0;
-  shape[1]!.split(',').forEach((run, k) => {
-    for (let i = 0; i < Number(run); i++, at++) {
-      if (k % 2 === 1) plane[(top + Math.floor(at / width)) * 768 + left + (at % width)] = 255;
+  await page.getByLabel('Opacity').fill('0');
+  await page.getByLabel('Outlines').uncheck();
+  const overlay = await decodeImage((await savedAs(page, 'Overlay')).bytes);
+  expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
+  await page.getByLabel('Outlines').check();
+
+  await test.step('formats of annotation tools have the masks under their names', async () => {
+    const row = page.locator('#motions > li').nth(1);
+    await row.locator('.motion-name').fill('White car');
+    await row.locator('.motion-name').press('Enter');
+    const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
+    const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
+
+    const coco = (await json('COCO, RLE')) as {
+      categories: { id: number; name: string }[];
+      annotations: { category_id: number; area: number; segmentation: { counts: string; size: number[] } }[];
+    };
+    const category = coco.categories.find(({ name }) => name === 'White car')!;
+    const annotation = coco.annotations.find((one) => one.category_id === category.id)!;
+    expect(annotation.segmentation.size).toEqual([432, 768]);
+    expect(differences(planeFromColumns(countsOf(annotation.segmentation.counts), 768, 432), mask(1))).toBe(0);
+
+    const polygons = (await json('COCO, polygons')) as { annotations: { segmentation: number[][] }[] };
+    expect(polygons.annotations).toHaveLength(coco.annotations.length);
+    for (const { segmentation } of polygons.annotations) {
+      expect(segmentation[0]!.length).toBeGreaterThan(20);
+      expect(segmentation.flat().length / 2).toBeLessThan(200);
     }
+
+    // The background is an annotation only where it is asked for.
+    const background = page.getByLabel('Also the background');
+    const ids = async (): Promise<number[]> => ((await json('COCO, RLE')) as { categories: { id: number }[] }).categories.map(({ id }) => id - 1);
+    const objects = [...new Set(groups)].filter((group) => group > 0).sort((a, b) => a - b);
+    expect(await ids()).toEqual(objects);
+    await background.check();
+    expect(await ids()).toEqual([0, ...objects]);
+    await background.uncheck();
+    await page.getByLabel('File format').selectOption({ label: 'Overlay' });
+    await expect(background).toBeHidden();
+
+    const cvat = (await savedAs(page, 'CVAT')).bytes.toString();
+    const shape = /<mask label="White car"[^>]*rle="([^"]*)"[^>]*>/.exec(cvat)!;
+    const side = (name: string): number => Number(new RegExp(`${name}="(\\d+)"`).exec(shape[0])![1]);
+    const [left, top, width, height] = ['left', 'top', 'width', 'height'].map(side) as [number, number, number, number];
+    const plane = new Uint8Array(768 * 432);
+    let at = 0;
+    shape[1]!.split(',').forEach((run, k) => {
+      for (let i = 0; i < Number(run); i++, at++) {
+        if (k % 2 === 1) plane[(top + Math.floor(at / width)) * 768 + left + (at % width)] = 255;
+      }
+    });
+    expect(at).toBeLessThanOrEqual(width * height);
+    expect(differences(plane, mask(1))).toBe(0);
+
+    const [task] = (await json('Label Studio')) as [{ predictions: { result: { value: { brushlabels: string[]; rle: number[] } }[] }[] }];
+    expect(task.predictions[0]!.result.map(({ value }) => value.brushlabels[0])).toContain('White car');
+    const labelme = (await json('LabelMe')) as { shapes: { label: string }[]; imageWidth: number };
+    expect(labelme.shapes.map(({ label }) => label)).toContain('White car');
+    expect(labelme.imageWidth).toBe(768);
+
+    const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+    const lines = new TextDecoder().decode(yolo['labels/first.txt']).trim().split('\n');
+    expect(lines.length).toBe(objects.length);
+    for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
+    expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
   });
-  expect(at).toBeLessThanOrEqual(width * height);
-  expect(differences(plane, mask(1))).toBe(0);
-
-  const [task] = (await json('Label Studio')) as [{ predictions: { result: { value: { brushlabels: string[]; rle: number[] } }[] }[] }];
-  expect(task.predictions[0]!.result.map(({ value }) => value.brushlabels[0])).toContain('White car');
-  const labelme = (await json('LabelMe')) as { shapes: { label: string }[]; imageWidth: number };
-  expect(labelme.shapes.map(({ label }) => label)).toContain('White car');
-  expect(labelme.imageWidth).toBe(768);
-
-  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
-  const lines = new TextDecoder().decode(yolo['labels/first.txt']).trim().split('\n');
-  expect(lines.length).toBe(objects.length);
-  for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
-  expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
 });

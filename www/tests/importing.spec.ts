@@ -34,7 +34,7 @@ function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
   });
 }
 
-test('a file of annotations corrects the frames that it is of, in one step that can be undone', async ({ page }) => {
+test('a file of annotations corrects the frames that it is of, in one step that can be undone; masks that are dropped are no frames', async ({ page }) => {
   const found = await openSix(page);
   // Objects 1 and 2 are gone in frames 2 and 3; there is a third one, and a frame that the clip does not have.
   const nothing = new Uint8Array(SIZE.width * SIZE.height);
@@ -64,6 +64,32 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
   }
   await expect(page.locator('#undo')).toBeDisabled();
+
+  await test.step('masks that are dropped on the clip are no frames, and frames are', async () => {
+    const drop = (files: Upload[]): Promise<void> => dropOn(page, files);
+    const said = withBox(found[1]!, 3, 100);
+    await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
+    await corrected(page);
+    await goTo(page, 1);
+    expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+
+    // What cannot be taken says why, and changes nothing.
+    const notice = page.locator('#notice-sentence');
+    await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
+    await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 200 × 140.');
+    await drop([json('f01.json', encodeLabelMe(said, SIZE.width, SIZE.height, { image: 'other.png' }))]);
+    await expect(notice).toHaveText('No frame with masks here is called other.');
+    await drop([json('f01.json', { shapes: [] })]);
+    await expect(notice).toHaveText(/^'f01\.json' is not an annotation in a format that is read/);
+    await drop([{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('1 2') }, { name: 'b.csv', mimeType: 'text/csv', buffer: Buffer.from('') }]);
+    await expect(notice).toHaveText('“b.csv” is not an image that this browser can read.');
+    expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+
+    await drop((await clipFrames(4)).slice(0, 3));
+    await expect(page.locator('#clip-name')).toContainText('3 frames');
+    await drop([json('f01.json', {})]);
+    await expect(notice).toHaveText('Segment the clip first.');
+  });
 });
 
 test('the frames of a video are known by their numbers', async ({ page }) => {
@@ -78,31 +104,4 @@ test('the frames of a video are known by their numbers', async ({ page }) => {
   await goTo(page, 4);
   expect(differences(await labelsOnCanvas(page), said)).toBe(0);
   await expect(page.locator('#notice')).toBeHidden();
-});
-
-test('masks that are dropped on the clip are no frames, and frames are', async ({ page }) => {
-  const found = await openSix(page);
-  const drop = (files: Upload[]): Promise<void> => dropOn(page, files);
-  const said = withBox(found[1]!, 3, 100);
-  await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
-  await corrected(page);
-  await goTo(page, 1);
-  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
-
-  // What cannot be taken says why, and changes nothing.
-  const notice = page.locator('#notice-sentence');
-  await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
-  await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 200 × 140.');
-  await drop([json('f01.json', encodeLabelMe(said, SIZE.width, SIZE.height, { image: 'other.png' }))]);
-  await expect(notice).toHaveText('No frame with masks here is called other.');
-  await drop([json('f01.json', { shapes: [] })]);
-  await expect(notice).toHaveText(/^'f01\.json' is not an annotation in a format that is read/);
-  await drop([{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('1 2') }, { name: 'b.csv', mimeType: 'text/csv', buffer: Buffer.from('') }]);
-  await expect(notice).toHaveText('“b.csv” is not an image that this browser can read.');
-  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
-
-  await drop((await clipFrames(4)).slice(0, 3));
-  await expect(page.locator('#clip-name')).toContainText('3 frames');
-  await drop([json('f01.json', {})]);
-  await expect(notice).toHaveText('Segment the clip first.');
 });

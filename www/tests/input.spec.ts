@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, axe, done, expect, labelsOnCanvas, open, openEmpty, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
+import { type Upload, axe, done, expect, labelsOnCanvas, open, openEmpty, segmentedInNode, differences, square, test, motionsChosen, withSmallSampleClip } from './support.js';
 
 /** Drops or pastes files. */
 async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
@@ -28,14 +28,6 @@ async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise
   );
 }
 
-test('two files are dropped together', async ({ page }) => {
-  await openEmpty(page);
-  const [a, b] = [await square('a.png', 80, 60, 0, 0), await square('b.png', 80, 60, 2, 1)];
-  await give(page, 'drop', [b, a]);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
-  await done(page);
-  expect(differences(await labelsOnCanvas(page), (await segmentedInNode(a, b)).labels)).toBe(0);
-});
 
 /** Drops files and folders from the disk. */
 async function dropPaths(page: Page, paths: string[]): Promise<void> {
@@ -169,8 +161,14 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
   });
 });
 
-test('two files are pasted one after the other, and one is replaced', async ({ page }) => {
-  await open(page);
+test('two files are dropped together, or pasted one after the other, and one is replaced; the page fits a screen 360 pixels wide', async ({ page }) => {
+  await openEmpty(page);
+  const [a, b] = [await square('a.png', 80, 60, 0, 0), await square('b.png', 80, 60, 2, 1)];
+  await give(page, 'drop', [b, a]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+  await done(page);
+  expect(differences(await labelsOnCanvas(page), (await segmentedInNode(a, b)).labels)).toBe(0);
+
   await give(page, 'paste', [await square('z.png', 80, 60, 0, 0)]);
   await expect(page.locator('#status')).toHaveText('Now add the second frame.');
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('none yet');
@@ -181,6 +179,9 @@ test('two files are pasted one after the other, and one is replaced', async ({ p
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('z.png, 80 × 60');
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 80 × 60');
   await done(page);
+
+  await page.setViewportSize({ width: 360, height: 740 });
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(360);
 });
 
 /** Presses Tab until the element has focus. */
@@ -229,15 +230,10 @@ test('the page works in any folder', async ({ page, context, baseURL }) => {
     const url = route.request().url().replace('/some/folder/', '/');
     await route.fulfill({ response: await route.fetch({ url }) });
   });
+  await withSmallSampleClip(page);
   const asked: string[] = [];
   page.on('request', (request) => asked.push(new URL(request.url()).pathname));
   await page.goto(`${baseURL}some/folder/#quality=fast`);
   await done(page);
   expect(asked.filter((path) => !path.startsWith('/some/folder/'))).toEqual([]);
-});
-
-test('the page fits a screen 360 pixels wide', async ({ page }) => {
-  await page.setViewportSize({ width: 360, height: 740 });
-  await open(page);
-  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(360);
 });

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
-import { type Locator, type Page, expect } from '@playwright/test';
+import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
 import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
@@ -48,6 +48,7 @@ export const test = unwatched.extend<{ page: Page }>({
       });
     });
     await use(page);
+    await withSamples(page);
     page.removeAllListeners();
     expect(complaints).toEqual([]);
   },
@@ -70,15 +71,22 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
 
 /** Opens the page without frames, for tests that bring their own: those of samples never arrive. */
 export async function openEmpty(page: Page, kind: 'motions' | 'groups' = 'motions', quality: 'fast' | 'best' = 'fast'): Promise<void> {
-  await page.route(FRAMES_OF_SAMPLES, () => undefined);
+  if (!withoutSamples.has(page)) {
+    // Not by a route: with routes the browser caches nothing, and compiles all code anew in every page.
+    const devtools = await page.context().newCDPSession(page);
+    await devtools.send('Fetch.enable', { patterns: ['first.*', 'second.*', 'frames/*'].map((frame) => ({ urlPattern: `*/samples/*/${frame}` })) });
+    withoutSamples.set(page, devtools);
+  }
   await page.goto(`${PAIR}&quality=${quality}&masks=${kind}`);
 }
 
-const FRAMES_OF_SAMPLES = /\/samples\/.*\/(first|second|\d\d)\.\w+$/;
+/** The pages whose samples never arrive, with what stops them. */
+const withoutSamples = new WeakMap<Page, CDPSession>();
 
 /** After {@link openEmpty}: samples can be opened again. */
 export async function withSamples(page: Page): Promise<void> {
-  await page.unroute(FRAMES_OF_SAMPLES);
+  await withoutSamples.get(page)?.detach();
+  withoutSamples.delete(page);
 }
 
 /** The page is on a machine with so many processors, of which it leaves one alone. Called before it is opened. */
