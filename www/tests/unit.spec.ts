@@ -21,12 +21,15 @@ import { suggestionsOf } from '../src/result/junctions.js';
 import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
+import type { Frames } from '../src/session/frames.js';
+import type { PairSegmenting } from '../src/session/pair/segmenting.js';
+import { Playing } from '../src/session/playing.js';
 import { exactly } from '../src/state/exact.js';
 import { withSaid } from '../src/state/said.js';
 import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
-import { INITIAL, type Result } from '../src/state/state.js';
-import { type TrackedFrame, type Version, untracked } from '../src/state/tracked.js';
+import { INITIAL, type Result, Store } from '../src/state/state.js';
+import { type Tracked, type TrackedFrame, type Version, isUnsavedClip, untracked, versionOf } from '../src/state/tracked.js';
 import { cornersOf, setCorner, takeBack } from '../src/views/polygon.js';
 import { differences } from './support.js';
 
@@ -314,6 +317,34 @@ function masks(...labels: number[]): TrackedFrame {
   const objects = [...new Set(labels)].filter((id) => id > 0 && id < 255).map((id) => ({ id, pixels: 1, bbox: [0, 0, 6, 1] as [number, number, number, number], confidence: 1, matrix: null }));
   return { runs: packed(Uint8Array.from(labels), 6, 1), objects, background: null };
 }
+
+test('a correction is unsaved until it is kept, and so is that it was undone', () => {
+  const found: Tracked = { ...untracked({ count: 1 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0)] };
+  expect(isUnsavedClip(found)).toBe(false); // it can be found again
+  const corrected: Tracked = { ...found, frames: [masks(1, 1, 0, 0, 0, 0)], past: [versionOf(found)] };
+  expect(isUnsavedClip(corrected)).toBe(true);
+  const kept: Tracked = { ...corrected, saved: { ...corrected.saved, frames: corrected.frames } };
+  expect(isUnsavedClip(kept)).toBe(false);
+  const undone: Tracked = { ...kept, ...versionOf(found), past: [], future: [versionOf(kept)] };
+  expect(isUnsavedClip(undone)).toBe(true);
+  expect(isUnsavedClip({ ...undone, saved: { ...undone.saved, frames: undone.frames } })).toBe(false);
+});
+
+test('a clip stops playing when something else is being opened, which its next frame would take the place of', async () => {
+  const store = new Store();
+  const clip = { count: 5, times: null } as unknown as Clip;
+  const went: number[] = [];
+  const at = (first: number): void => store.set({ timeline: { clip, first, second: first + 1 } });
+  const goTo = async (index: number): Promise<void> => {
+    went.push(index);
+    at(index);
+    if (index === 2) store.set({ opening: true });
+  };
+  at(0);
+  await new Playing(store, { goTo } as Frames, { rest: () => undefined } as PairSegmenting).toggle();
+  expect(went).toEqual([1, 2]);
+  expect(store.get().playing).toBe(false);
+});
 
 test('an object keeps its number when its frames are segmented again', () => {
   const none = untracked({ count: 4 } as Clip);

@@ -156,8 +156,9 @@ export function drawnIn({ painted, exact }: Pick<Version, 'painted' | 'exact'>):
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, saved, past, run, ...others }: Tracked): boolean {
-  const corrected = past.length > 0 || isCorrecting(run);
+export function isUnsavedClip({ frames, saved, past, future, run, ...others }: Tracked): boolean {
+  // What is undone is a correction as well: the next visit would have it still.
+  const corrected = past.length > 0 || future.length > 0 || isCorrecting(run);
   const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => others[part] !== saved[part]);
   return noted || (frames !== saved.frames && corrected);
 }
