@@ -5,29 +5,39 @@ import { readFile } from 'node:fs/promises';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openEmpty, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
+import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, openEmpty, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
 
-test('the sample pair is segmented', async ({ page }) => {
-  await page.goto(PAIR);
+for (const quality of ['fast', 'best'] as const) {
+  test(`the sample pair is segmented as in Node, ${quality}`, { tag: quality === 'best' ? '@soak' : [] }, async ({ page }) => {
+    await page.goto(`${PAIR}&quality=${quality}`);
+    await done(page);
+    await page.locator('#look [value=motions]').check();
+    const rows = page.locator('#motions > li');
+    expect(await rows.count()).toBeGreaterThanOrEqual(MOTIONS_IN_SAMPLE);
+    await expect(page.locator('#status')).toHaveText(/found in [\d.]+\sm?s\.$/);
+    await expect(rows.first().locator('.motion-words')).toHaveText(/Stands still|px|turns|grows|shrinks|stretches/i);
+    await expect(page.locator('footer')).toContainText('Intel IoT DevKit sample-videos, car-detection.mp4, CC BY 4.0');
+
+    const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality });
+    expect(await rows.count()).toBe(expected.count);
+    expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+  });
+}
+
+test('frames, masks and files of two uploaded files are those of Node, and are shown as is asked, swapped and with other settings too', async ({ page }) => {
+  await openEmpty(page);
+  // Numbers in names are compared by value. The odd size catches a wrong row length.
+  const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
+  await upload(page, [second, first]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
   await done(page);
-  await page.locator('#look [value=motions]').check();
-  const rows = page.locator('#motions > li');
-  expect(await rows.count()).toBeGreaterThanOrEqual(MOTIONS_IN_SAMPLE);
-  await expect(page.locator('#status')).toHaveText(/found in [\d.]+\sm?s\.$/);
-  await expect(rows.first().locator('.motion-words')).toHaveText(/Stands still|px|turns|grows|shrinks|stretches/i);
-  await expect(page.locator('footer')).toContainText('Intel IoT DevKit sample-videos, car-detection.mp4, CC BY 4.0');
-
-  const expected = await segmentedInNode(await sample('first'), await sample('second'), {});
-  expect(await rows.count()).toBe(expected.count);
+  const expected = await segmentedInNode(first, second);
   expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
 
-test('frames, masks and their files are those of Node, and are shown as is asked', async ({ page }) => {
-  await open(page);
-  const first = await decodeImage((await sample('first')).buffer);
+  const frame9 = await decodeImage(first.buffer);
   const shown = await pixelsOf(page, '#frame');
-  expect([shown.width, shown.height]).toEqual([first.width, first.height]);
-  expect(differences(shown.data, first.data)).toBe(0);
+  expect([shown.width, shown.height]).toEqual([frame9.width, frame9.height]);
+  expect(differences(shown.data, frame9.data)).toBe(0);
 
   // Visibility, solo, opacity and outlines change the picture.
   const all = await labelsOnCanvas(page);
@@ -63,19 +73,19 @@ test('frames, masks and their files are those of Node, and are shown as is asked
   const { data } = await decodeImage(file);
   const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
   const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
-  expect(differences(labels, (await segmentedInNode(await sample('first'), await sample('second'))).labels)).toBe(0);
+  expect(differences(labels, expected.labels)).toBe(0);
   await page.keyboard.press('Escape');
 
   // The second frame is shown by a switch and while a key is held.
-  const second = await decodeImage((await sample('second')).buffer);
-  const shows = async (frame: typeof first): Promise<number> => differences((await pixelsOf(page, '#frame')).data, frame.data);
+  const frame10 = await decodeImage(second.buffer);
+  const shows = async (frame: typeof frame9): Promise<number> => differences((await pixelsOf(page, '#frame')).data, frame.data);
 
   await page.keyboard.down('b');
-  expect(await shows(second)).toBe(0);
+  expect(await shows(frame10)).toBe(0);
   await page.keyboard.up('b');
-  expect(await shows(first)).toBe(0);
+  expect(await shows(frame9)).toBe(0);
   await page.locator('#look [value=second]').check();
-  expect(await shows(second)).toBe(0);
+  expect(await shows(frame10)).toBe(0);
 
   // Stabilising alternates between the first frame and the second warped back.
   await page.getByRole('button', { name: 'Stabilise on Background' }).click();
@@ -84,33 +94,19 @@ test('frames, masks and their files are those of Node, and are shown as is asked
 
   // Swapping the frames segments them in the other order.
   await page.locator('#swap').click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 768 × 432');
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame10.png, 161 × 97');
   await done(page);
-  const expected = await segmentedInNode(await sample('second'), await sample('first'));
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
+  expect(differences(await labelsOnCanvas(page), (await segmentedInNode(second, first)).labels)).toBe(0);
 
-test('two uploaded files give the same masks as in Node', async ({ page }) => {
-  await openEmpty(page);
-  // Numbers in names are compared by value. The odd size catches a wrong row length.
-  const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
-  await upload(page, [second, first]);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
-  await done(page);
-  const expected = await segmentedInNode(first, second);
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
-
-test('settings reach the package, and the latest request wins', async ({ page }) => {
-  await open(page);
+  // Settings reach the package, and the latest request wins.
   await chooseMotions(page, 2);
   await page.getByLabel('Best').check();
   await done(page);
   await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
-  const report: unknown = JSON.parse(await readFile(await download.path(), 'utf8'));
-  expect(report).toMatchObject({ version: 1, width: 768, height: 432, settings: { motions: 2, quality: 'best', markUnknown: false } });
+  const [json] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
+  const report: unknown = JSON.parse(await readFile(await json.path(), 'utf8'));
+  expect(report).toMatchObject({ version: 1, width: 161, height: 97, settings: { motions: 2, quality: 'best', markUnknown: false } });
   expect(report).not.toHaveProperty('labels');
-  const expected = await segmentedInNode(await sample('first'), await sample('second'), { motions: 2, quality: 'best' });
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+  const two = await segmentedInNode(second, first, { motions: 2, quality: 'best' });
+  expect(differences(await labelsOnCanvas(page), two.labels)).toBe(0);
 });

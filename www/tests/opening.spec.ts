@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { PAIR, type Upload, done, expect, open, openEmpty, square, test, upload, withSamples } from './support.js';
+import { PAIR, type Upload, clipFrames, done, expect, openEmpty, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -20,7 +20,7 @@ async function expectToStep(page: Page, first: number): Promise<void> {
   await done(page);
 }
 
-test('the worker starts and warms up while the first frames are on their way', async ({ page, context }) => {
+test('the worker starts and warms up while the first frames are on their way; a broken file does not lose strokes that are being applied', async ({ page, context }) => {
   let release = (): void => undefined;
   const held = new Promise<void>((resolve) => (release = resolve));
   await context.route('**/samples/**', async (route) => {
@@ -32,75 +32,7 @@ test('the worker starts and warms up while the first frames are on their way', a
   await worker;
   release();
   await done(page);
-});
 
-test('a replaced frame is not listed as a frame of the clip', async ({ page }) => {
-  await openEmpty(page);
-  await openClip(page, 8);
-  await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
-  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
-  await done(page);
-  await expect(page.locator('#clip-first-at')).toHaveText('#0, 0.000 s');
-  await expect(page.locator('#clip-second-at')).toHaveText('another file');
-  // The remaining frame steps, the other stays.
-  await page.getByRole('button', { name: 'Step both forward' }).click();
-  await expect(page.locator('#clip-first-at')).toHaveText('#1, 0.033 s');
-  await done(page);
-  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
-  // After a swap the clip is in the other row.
-  await page.getByRole('button', { name: 'Swap the two frames' }).click();
-  await expect(page.locator('#clip-first-at')).toHaveText('another file');
-  await expect(page.locator('#clip-second-at')).toHaveText('#1, 0.033 s');
-  await done(page);
-  // Stepping the other row takes a frame of the clip again.
-  await page.getByRole('button', { name: 'First frame: step forward' }).click();
-  await expect(page.locator('#clip-first-at')).toHaveText('#2, 0.067 s');
-  await done(page);
-  // Once neither frame is of the clip, the timeline is hidden.
-  for (const slot of ['first', 'second']) {
-    await page.getByLabel(`Replace the ${slot} frame`).setInputFiles(await square(`${slot}.png`, 192, 128, 2, 0));
-    await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toHaveText(`${slot}.png, 192 × 128`);
-  }
-  await expect(page.locator('#timeline')).toBeHidden();
-});
-
-test('an unreadable frame leaves the timeline where it was', async ({ page }) => {
-  await openEmpty(page);
-  await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
-  await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
-  await done(page);
-  await page.getByRole('button', { name: 'Second frame: step forward' }).click();
-  await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');
-  await expect(page.locator('#clip-second-at')).toHaveText('#1');
-  await expect(page.locator('[name=clip-second]')).toHaveValue('1');
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
-});
-
-test('a broken file does not switch the camera off, and the camera replaces a clip once it is on', async ({ page, context }) => {
-  await context.grantPermissions(['camera']);
-  await openEmpty(page);
-  await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: /);
-  await upload(page, [BROKEN]);
-  await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image');
-  await expect(page.locator('#status')).toHaveText(/^Live: /);
-  await expect(page.getByRole('button', { name: 'Stop camera' })).toBeVisible();
-  // A readable one does.
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)]);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 96 × 64');
-  await done(page);
-  await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
-
-  // The camera replaces a clip once it is on.
-  await openClip(page, 4);
-  await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: /);
-  await expect(page.locator('#timeline')).toBeHidden();
-  await page.getByRole('button', { name: 'Stop camera' }).click();
-});
-
-test('a broken file does not lose strokes that are being applied', async ({ page }) => {
-  await open(page);
   await page.locator('#tools [value=brush]').check();
   const box = (await page.locator('.layers').boundingBox())!;
   await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
@@ -122,9 +54,34 @@ test('a broken file does not lose strokes that are being applied', async ({ page
   await expect(page.locator('#strokes .stroke:not(.now)')).toHaveCount(1);
 });
 
+test('a broken file does not switch the camera off, and the camera replaces a clip once it is on', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await openEmpty(page);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live: /);
+  await upload(page, [BROKEN]);
+  await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image');
+  await expect(page.locator('#status')).toHaveText(/^Live: /);
+  await expect(page.getByRole('button', { name: 'Stop camera' })).toBeVisible();
+  // A readable one does.
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 96 × 64');
+  await done(page);
+  await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
+
+  // The camera replaces a clip once it is on.
+  await upload(page, await clipFrames(3, 100, 70));
+  await expect(page.locator('#clip-name')).toContainText('3 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live: /);
+  await expect(page.locator('#timeline')).toBeHidden();
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+});
+
 test('a step can be cancelled, and a stroke drawn meanwhile; a sample that cannot be read leaves the clip open, one image does not', async ({ page, context }) => {
   await openEmpty(page);
-  await openClip(page, 8);
+  await openClip(page, 5);
   // In one task, so that no frame can be loaded between the two keys.
   await page.evaluate(() => {
     for (const key of ['.', 'Escape']) document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
@@ -178,4 +135,44 @@ test('a step can be cancelled, and a stroke drawn meanwhile; a sample that canno
   await expect(page.locator('#timeline')).toBeHidden();
   await page.keyboard.press('.'); // there is no clip to step through
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('alone.png, 96 × 64');
+
+  await test.step('a replaced frame is not listed as a frame of the clip', async () => {
+    await openClip(page, 5);
+    await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
+    await done(page);
+    await expect(page.locator('#clip-first-at')).toHaveText('#0, 0.000 s');
+    await expect(page.locator('#clip-second-at')).toHaveText('another file');
+    // The remaining frame steps, the other stays.
+    await page.getByRole('button', { name: 'Step both forward' }).click();
+    await expect(page.locator('#clip-first-at')).toHaveText('#1, 0.033 s');
+    await done(page);
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
+    // After a swap the clip is in the other row.
+    await page.getByRole('button', { name: 'Swap the two frames' }).click();
+    await expect(page.locator('#clip-first-at')).toHaveText('another file');
+    await expect(page.locator('#clip-second-at')).toHaveText('#1, 0.033 s');
+    await done(page);
+    // Stepping the other row takes a frame of the clip again.
+    await page.getByRole('button', { name: 'First frame: step forward' }).click();
+    await expect(page.locator('#clip-first-at')).toHaveText('#2, 0.067 s');
+    await done(page);
+    // Once neither frame is of the clip, the timeline is hidden.
+    for (const slot of ['first', 'second']) {
+      await page.getByLabel(`Replace the ${slot} frame`).setInputFiles(await square(`${slot}.png`, 192, 128, 2, 0));
+      await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toHaveText(`${slot}.png, 192 × 128`);
+    }
+    await expect(page.locator('#timeline')).toBeHidden();
+  });
+
+  await test.step('an unreadable frame leaves the timeline where it was', async () => {
+    await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
+    await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
+    await done(page);
+    await page.getByRole('button', { name: 'Second frame: step forward' }).click();
+    await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');
+    await expect(page.locator('#clip-second-at')).toHaveText('#1');
+    await expect(page.locator('[name=clip-second]')).toHaveValue('1');
+    await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  });
 });

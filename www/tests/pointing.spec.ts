@@ -4,7 +4,7 @@ import { type Page } from '@playwright/test';
 
 import { type Place, axe, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
 
-const [WIDTH, HEIGHT, RADIUS] = [200, 140, 0.16 * 140];
+const [WIDTH, HEIGHT, RADIUS] = [120, 84, 0.16 * 84];
 
 /** Where the disc of `clipFrames` is in a frame. */
 const isDisc = (p: number, frame: number): boolean =>
@@ -22,98 +22,102 @@ function overlap(labels: Uint8Array, own: number, frame: number): number {
 }
 
 const tool = (page: Page) => page.getByRole('radio', { name: 'Box: a new object' });
-/** Around the disc in frame 3, from corner to corner, and its middle. */
-const AROUND = [[0.13, 0.18], [0.39, 0.58]] as const;
-const MIDDLE: Place = [0.26, 0.38];
+/** The corners of a box around the disc in frame 3, and its middle, in pixels. */
+const [LEFT, TOP, RIGHT, BOTTOM] = [20, 17, 52, 50];
+const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
+const AROUND = [at(LEFT, TOP), at(RIGHT, BOTTOM)] as const;
+const MIDDLE = at(36, 33);
 
-test('a box makes a new object in its frame and in the others, and undo takes it back', async ({ page }) => {
-  await openSegmented(page, await clipFrames(8));
+test('a box, a press and the keyboard make a new object in all frames, and undo takes it back', async ({ page }) => {
+  await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
   await goTo(page, 3);
   const before = await labelsOnCanvas(page);
+  const own = Math.max(...before) + 1;
   const objects = page.locator('#objects > li');
   const count = await objects.count();
+  const status = page.locator('#clip-status');
   await page.locator('.layers').focus();
   await page.keyboard.press('x');
   await expect(tool(page)).toBeChecked();
   await expect(page.locator('#tool-help')).toContainText('it becomes a new object');
   await drag(page, ...AROUND);
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  const own = Math.max(...before) + 1;
+  await expect(status).toHaveText(/^Corrected/);
   const after = await labelsOnCanvas(page);
   expect(overlap(after, own, 3)).toBeGreaterThan(0.85);
-  const inside = (p: number): boolean => p % WIDTH >= 25 && p % WIDTH <= 79 && p >= 24 * WIDTH && p < 83 * WIDTH;
+  const inside = (p: number): boolean => {
+    const [x, y] = [p % WIDTH, Math.floor(p / WIDTH)];
+    return x >= LEFT - 1 && x <= RIGHT + 1 && y >= TOP - 1 && y <= BOTTOM + 1;
+  };
   expect(after.every((label, p) => label !== own || inside(p))).toBe(true);
-  await goTo(page, 6);
-  expect(overlap(await labelsOnCanvas(page), own, 6)).toBeGreaterThan(0.8);
+  await goTo(page, 5);
+  expect(overlap(await labelsOnCanvas(page), own, 5)).toBeGreaterThan(0.8);
   await page.getByRole('button', { name: 'Undo' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await expect(status).toHaveText(/^Undone/);
   await goTo(page, 3);
   expect(differences(await labelsOnCanvas(page), before)).toBe(0);
   await page.getByRole('button', { name: 'Redo' }).click();
   expect(differences(await labelsOnCanvas(page), after)).toBe(0);
   expect(await objects.count()).toBeGreaterThanOrEqual(count);
   expect(await axe(page)).toEqual([]);
-});
 
-test('a press, and the keyboard, point to an object as well', async ({ page }) => {
-  await openSegmented(page, await clipFrames(8));
-  await goTo(page, 3);
-  const before = await labelsOnCanvas(page);
-  const own = Math.max(...before) + 1;
-  await tool(page).check();
-  await drag(page, MIDDLE, MIDDLE);
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
-  await page.keyboard.press('Control+z');
-  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await test.step('a press points to an object as well', async () => {
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await expect(status).toHaveText(/^Undone/);
+    await drag(page, MIDDLE, MIDDLE);
+    await expect(status).toHaveText(/^Corrected/);
+    expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+    await page.keyboard.press('Control+z');
+    await expect(status).toHaveText(/^Undone/);
+  });
 
-  // From the middle of the picture to a corner of the box, then to the other.
-  await page.locator('.layers').focus();
-  const step = async (key: string, times: number): Promise<void> => {
-    for (let k = 0; k < times; k++) await page.keyboard.press(`Shift+${key}`);
-  };
-  await page.mouse.move(0, 0);
-  const at = await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Math.round(Number(circle.getAttribute(name)))));
-  await step('ArrowLeft', at[0]! - 26);
-  await step('ArrowUp', at[1]! - 25);
-  await page.keyboard.press('Space');
-  await step('ArrowRight', 52);
-  await step('ArrowDown', 57);
-  await page.keyboard.press('Space');
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.85);
+  await test.step('so does the keyboard: to a corner of the box, then to the other', async () => {
+    await page.locator('.layers').focus();
+    // By 8 pixels, and with Shift by one.
+    const step = async (key: string, by: number): Promise<void> => {
+      for (let k = 0; k < Math.floor(by / 8); k++) await page.keyboard.press(key);
+      for (let k = 0; k < by % 8; k++) await page.keyboard.press(`Shift+${key}`);
+    };
+    await page.mouse.move(0, 0);
+    const from = await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Math.round(Number(circle.getAttribute(name)))));
+    await step('ArrowLeft', from[0]! - LEFT);
+    await step('ArrowUp', from[1]! - TOP);
+    await page.keyboard.press('Space');
+    await step('ArrowRight', RIGHT - LEFT);
+    await step('ArrowDown', BOTTOM - TOP);
+    await page.keyboard.press('Space');
+    await expect(status).toHaveText(/^Corrected/);
+    expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.85);
 
-  // A box that is given up is none.
-  const now = await labelsOnCanvas(page);
-  await page.keyboard.press('Space');
-  await step('ArrowLeft', 20);
-  await page.keyboard.press('Escape');
-  await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
-  expect(differences(await labelsOnCanvas(page), now)).toBe(0);
-});
+    // A box that is given up is none.
+    const now = await labelsOnCanvas(page);
+    await page.keyboard.press('Space');
+    await step('ArrowLeft', 20);
+    await page.keyboard.press('Escape');
+    await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
+    expect(differences(await labelsOnCanvas(page), now)).toBe(0);
+    await page.keyboard.press('Control+z');
+    await expect(status).toHaveText(/^Undone/);
+  });
 
-test('objects one after another keep what they have, and a pair has no box', async ({ page }) => {
-  await openSegmented(page, await clipFrames(8));
-  await goTo(page, 3);
-  const own = Math.max(...(await labelsOnCanvas(page))) + 1;
-  await tool(page).check();
-  // Both in one go: the second waits for the first.
-  await drag(page, ...AROUND);
-  await drag(page, [0.5, 0.05], [0.7, 0.3]);
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  const labels = await labelsOnCanvas(page);
-  expect(overlap(labels, own, 3)).toBeGreaterThan(0.85);
-  expect(labels).toContain(own + 1);
-  await page.locator('#kinds [value=groups]').check();
-  await expect(tool(page)).toBeHidden();
-  await expect(page.locator('#tools [value=look]')).toBeChecked();
+  await test.step('objects one after another keep what they have, and a pair has no box', async () => {
+    // Both in one go: the second waits for the first.
+    await drag(page, ...AROUND);
+    await drag(page, [0.5, 0.05], [0.7, 0.3]);
+    await expect(status).toHaveText(/^Corrected/);
+    const labels = await labelsOnCanvas(page);
+    expect(overlap(labels, own, 3)).toBeGreaterThan(0.85);
+    expect(labels).toContain(own + 1);
+    await page.locator('#kinds [value=groups]').check();
+    await expect(tool(page)).toBeHidden();
+    await expect(page.locator('#tools [value=look]')).toBeChecked();
+  });
 });
 
 test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
   test('the tools are large enough, and a finger draws a box; two fingers draw none', async ({ page }) => {
-    await openSegmented(page, await clipFrames(8));
+    await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
     await goTo(page, 3);
     for (const label of await page.locator('#tools fieldset label').all()) {
       const { width, height } = (await label.boundingBox())!;
@@ -123,20 +127,20 @@ test.describe('on a phone', () => {
     await tool(page).check();
     await page.locator('.layers').scrollIntoViewIfNeeded();
     const box = (await page.locator('.layers').boundingBox())!;
-    const at = ([x, y]: Place, id = 0): { x: number; y: number; id: number } => ({ x: box.x + x * box.width, y: box.y + y * box.height, id });
+    const finger = ([x, y]: Place, id = 0): { x: number; y: number; id: number } => ({ x: box.x + x * box.width, y: box.y + y * box.height, id });
     const cdp = await page.context().newCDPSession(page);
     const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', ...touchPoints: { x: number; y: number; id: number }[]): Promise<unknown> =>
       cdp.send('Input.dispatchTouchEvent', { type, touchPoints });
-    await touch('touchStart', at(AROUND[0]));
-    await touch('touchMove', at(MIDDLE));
-    await touch('touchStart', at(MIDDLE), at([0.8, 0.8], 1));
+    await touch('touchStart', finger(AROUND[0]));
+    await touch('touchMove', finger(MIDDLE));
+    await touch('touchStart', finger(MIDDLE), finger([0.8, 0.8], 1));
     await touch('touchEnd');
     await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
     await expect(page.locator('#clip-status')).not.toHaveText(/^Corrected/);
     await page.locator('#zoom-fit').dispatchEvent('click');
-    await touch('touchStart', at(AROUND[0]));
-    await touch('touchMove', at(MIDDLE));
-    await touch('touchMove', at(AROUND[1]));
+    await touch('touchStart', finger(AROUND[0]));
+    await touch('touchMove', finger(MIDDLE));
+    await touch('touchMove', finger(AROUND[1]));
     await touch('touchEnd');
     await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
     expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);

@@ -5,8 +5,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, segmentClip, square, test, upload, withoutStorage, withProcessors } from './support.js';
+import { type Upload, cancelWhen, clipFrames, clipInNode, clipPhase, differences, done, drag, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, reopen, segmentClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -47,6 +46,14 @@ async function namesInBrowser(page: Page): Promise<unknown> {
   return project === undefined ? undefined : (JSON.parse(project) as { clip: { names: unknown } }).clip.names;
 }
 
+/** Hides the page, which keeps at once what is to be kept. */
+async function hide(page: Page): Promise<void> {
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+}
+
 async function rename(page: Page, row: number, name: string): Promise<void> {
   const input = page.locator('#objects .motion-name').nth(row);
   await input.fill(name);
@@ -60,10 +67,12 @@ async function savedProject(page: Page): Promise<Upload> {
   return { name: download.suggestedFilename(), mimeType: '', buffer: await readFile(await download.path()) };
 }
 
-/** A segmented clip of six frames with a name and a correction. */
+/** Frames for a test that is not about how well they are segmented. */
+const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count, 100, 70);
+
+/** A segmented clip with a name and a correction. */
 async function correctedClip(page: Page, files: Upload[]): Promise<void> {
-  await openClip(page, files);
-  await segmentClip(page);
+  await openSegmented(page, files);
   await rename(page, 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
@@ -73,9 +82,10 @@ async function correctedClip(page: Page, files: Upload[]): Promise<void> {
 /** Whether it is the clip of {@link correctedClip}, continued without being segmented again. */
 async function isContinued(page: Page, files: readonly Upload[]): Promise<void> {
   const found = await clipInNode(files, { quality: 'fast', edits: { delete: [1] } });
-  await expect(page.locator('#clip-status')).toHaveText('Continued: one object in 6 frames.');
+  const last = files.length - 1;
+  await expect(page.locator('#clip-status')).toHaveText(`Continued: one object in ${files.length} frames.`);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  for (const index of [0, 5]) {
+  for (const index of [0, last]) {
     await goTo(page, index);
     expect(differences(await numbersOnCanvas(page), found[index]!)).toBe(0);
   }
@@ -88,14 +98,13 @@ async function forgetAll(page: Page): Promise<void> {
 }
 
 test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
-  const files = await clipFrames(6);
+  const files = await smallFrames(4);
   await correctedClip(page, files);
-  await goTo(page, 3);
+  await goTo(page, 2);
   await page.getByLabel('Show Box').uncheck();
   await expect.poll(() => fileInBrowser(page)).toContain('"hidden":[2]');
-  await page.reload();
-  await openClip(page, files);
-  await expect(page.locator('#caption')).toHaveText('Frame 3');
+  await reopen(page, files);
+  await expect(page.locator('#caption')).toHaveText('Frame 2');
   await expect(page.getByLabel('Show Box')).not.toBeChecked();
   await page.getByLabel('Show Box').check();
   await isContinued(page, files);
@@ -111,9 +120,8 @@ test('a corrected clip is there after a reload, and can be corrected further', a
 });
 
 test('classes are those of the project, and their list is there for the next clip', async ({ page }) => {
-  const files = await clipFrames(4);
-  await openClip(page, files);
-  await segmentClip(page);
+  const files = await smallFrames(3);
+  await openSegmented(page, files);
   const own = page.getByLabel(/^Class of .* 1$/);
   await page.keyboard.press('1');
   await own.fill('ball');
@@ -127,9 +135,8 @@ test('classes are those of the project, and their list is there for the next cli
 
   // Another clip, without the project.
   await forgetAll(page);
-  await page.reload();
-  await openClip(page, files);
-  await segmentClip(page);
+  await reloadEmpty(page);
+  await openSegmented(page, files);
   const offered = page.locator('#class-names option');
   await expect(offered).toHaveText(['person', 'ball']);
   await expect(own).toHaveValue('');
@@ -143,95 +150,39 @@ test('classes are those of the project, and their list is there for the next cli
   await expect(offered).toHaveText(['person', 'ball', 'tree']);
 });
 
-test('the settings are those of the project', async ({ page }) => {
-  const files = await clipFrames(5);
-  await openClip(page, files);
-  const unlabelled = page.getByLabel('Leave unexplained pixels unlabelled');
-  await openAdvanced(page);
-  await unlabelled.check();
-  await done(page);
-  await segmentClip(page);
-  await kept(page);
-  await page.goto('about:blank');
-  await openClip(page, files);
-  await expect(unlabelled).toBeChecked();
-});
-
-test('a run that was cancelled continues after a reload', async ({ page }) => {
-  await withProcessors(page, 2);
-  await openEmpty(page, 'groups');
-  const clip = await video(page, 12, 'webm', 'vp8');
-  await openClip(page, [clip], { count: 12 });
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-detail')).toContainText('left');
-  await page.locator('#clip-cancel').click();
-  await clipPhase(page, 'cancelled');
-  const told = (await page.locator('#clip-status').textContent())!;
-  await kept(page);
-  await page.reload();
-  await openClip(page, [clip], { count: 12 });
-  await clipPhase(page, 'cancelled');
-  await expect(page.locator('#clip-status')).toHaveText(told);
-  const before = Number(/(\d+) of 12/.exec(told)?.[1]);
-  await page.getByRole('button', { name: 'Continue' }).click();
-  expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(before);
-  // What is named meanwhile is kept at once when the page is hidden.
-  await rename(page, 1, 'Early');
-  await page.evaluate(() => {
-    Object.defineProperty(document, 'visibilityState', { value: 'hidden' });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
-  await expect.poll(() => namesInBrowser(page)).toEqual({ 'objects-1': 'Early' });
-  expect(await page.locator('#clip-run').getAttribute('data-phase')).toBe('working');
-  await clipPhase(page, 'done');
-});
-
-test('a project is saved as a file and opened in another browser, with its frames or before them', async ({ page, browser, baseURL }) => {
-  const files = await clipFrames(6);
+test('a project is saved as a file and opened where nothing is left of it, over its frames or before them', async ({ page }) => {
+  const files = await smallFrames(4);
   await correctedClip(page, files);
   const project = await savedProject(page);
-  expect(project.name).toBe('f00-f05.veronese');
+  expect(project.name).toBe('f00-f03.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
-  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 2, name: 'f00-f05.png', frames: 6 });
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 2, name: 'f00-f03.png', frames: 4 });
 
-  const elsewhere = await browser.newContext({ baseURL: baseURL! });
-  const other = await elsewhere.newPage();
-  await openEmpty(other, 'groups');
-  await upload(other, [project, ...files]);
-  await expect(other.locator('#clip-name')).toContainText('6 frames');
-  await isContinued(other, files);
-  await elsewhere.close();
-
-  // In this one nothing may be left of it.
   await openExport(page);
   await page.getByText('One project in this browser').click();
-  await page.getByRole('button', { name: 'Forget the project of f00-f05.png' }).click();
-  await expect(page.locator('#notice')).toContainText('The project of “f00-f05.png” is forgotten.');
+  await page.getByRole('button', { name: 'Forget the project of f00-f03.png' }).click();
+  await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is forgotten.');
   await expect(page.locator('#projects')).toBeHidden();
-  await page.reload();
-  await openClip(page, files);
+  await reopen(page, files);
   await expect(page.locator('#kind-objects')).toBeHidden();
   // Over the open clip.
   await upload(page, [project]);
   await isContinued(page, files);
-  await page.reload();
-  await openEmpty(page, 'groups');
+  await forgetAll(page);
+  await reloadEmpty(page);
   await upload(page, [project]);
-  await expect(page.locator('#notice')).toContainText('The project of “f00-f05.png” is open. Now open its frames');
+  await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is open. Now open its frames');
   await upload(page, files);
   await isContinued(page, files);
 });
 
-test('a project whose state is of an older version is segmented again and corrected as before', async ({ page }) => {
-  const files = await clipFrames(6);
+test('a project whose state is of an older version is segmented again and corrected as before; cancelled, it keeps its masks', async ({ page }) => {
+  const files = await smallFrames(4);
   await correctedClip(page, files);
-  await goTo(page, 3);
+  await goTo(page, 2);
   await page.getByRole('button', { name: 'New object' }).click();
-  const box = (await page.locator('.layers').boundingBox())!;
-  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 0.32 * box.width, box.y + 0.46 * box.height, { steps: 4 });
-  await page.mouse.up();
+  await page.locator('#tools [name=radius]').fill('4');
+  await drag(page, [0.22, 0.34], [0.32, 0.44]); // over the disc
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
   const corrected = await numbersOnCanvas(page);
   expect(new Set(corrected)).toContain(3);
@@ -239,17 +190,33 @@ test('a project whose state is of an older version is segmented again and correc
   const unpacked = gunzipSync(project.buffer).toString('latin1');
   expect(unpacked).toContain('VERCLIP4');
   const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
+  const again = '2 objects in 4 frames, corrected as before.';
+
+  // Over the open clip, cancelled: it takes corrections when the segmentation is done.
+  await cancelWhen(page);
+  await upload(page, [old]);
+  await clipPhase(page, 'cancelled');
+  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(again);
+  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
+  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeEnabled();
+
+  // With its frames, where nothing is left of it.
+  await kept(page);
   await forgetAll(page);
-  await page.reload();
+  await reloadEmpty(page);
   await upload(page, [old, ...files]);
-  await expect(page.locator('#caption')).toHaveText('Frame 3');
+  await expect(page.locator('#caption')).toHaveText('Frame 2');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
   expect(differences(await numbersOnCanvas(page), corrected)).toBe(0); // at once, and when it is segmented
-  await expect(page.locator('#clip-status')).toHaveText('2 objects in 6 frames, corrected as before.');
+  await expect(page.locator('#clip-status')).toHaveText(again);
   await expect(page.locator('#notice')).toBeHidden();
   expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  expect(await leaves(page)).toBe(true);
+  await expect.poll(() => leaves(page)).toBe(true);
 
   // Corrections go on from there, and what is kept now is of this version.
   await page.locator('#objects > li').nth(1).locator('summary').click();
@@ -260,46 +227,19 @@ test('a project whose state is of an older version is segmented again and correc
   expect(await fileInBrowser(page)).not.toContain('VERCLIP3');
 });
 
-test('a project of an older version whose segmentation is cancelled keeps its masks, and takes corrections when that is done', async ({ page }) => {
-  await withProcessors(page, 2);
-  const files = await clipFrames(24);
-  await correctedClip(page, files);
-  const project = await savedProject(page);
-  const unpacked = gunzipSync(project.buffer).toString('latin1');
-  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
-  const masks = await numbersOnCanvas(page);
-  await upload(page, [old]);
-  await expect(page.locator('#clip-detail')).toContainText('of 24 frames');
-  await page.locator('#clip-cancel').click();
-  await clipPhase(page, 'cancelled');
-  expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
-  await page.locator('#objects > li').nth(1).locator('summary').click();
-  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
-  await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.locator('#clip-status')).toHaveText('One object in 24 frames, corrected as before.');
-  expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
-  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeEnabled();
-});
-
 test('strokes and names of a pair are there after a reload', async ({ page }) => {
-  const pair = [await square('one.png', 200, 140, 0, 0), await square('two.png', 200, 140, 4, 1)];
+  const pair = [await square('one.png', 100, 70, 0, 0), await square('two.png', 100, 70, 4, 1)];
   await openEmpty(page, 'groups');
   await upload(page, pair);
   await done(page);
   await page.locator('#motions .motion-name').nth(1).fill('Square');
   await page.locator('#motions .motion-name').nth(1).press('Enter');
   await page.locator('#tools [value=brush]').check();
-  const box = (await page.locator('.layers').boundingBox())!;
-  await page.mouse.move(box.x + 0.1 * box.width, box.y + 0.2 * box.height);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.25 * box.height, { steps: 5 });
-  await page.mouse.up();
+  await drag(page, [0.1, 0.2], [0.2, 0.25]);
   await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke/);
   const painted = await labelsOnCanvas(page);
   await kept(page);
-  await page.reload();
-  await openEmpty(page, 'groups');
-  await upload(page, pair);
+  await reopen(page, pair);
   await expect(page.locator('#motions .motion-name').nth(1)).toHaveValue('Square');
   await done(page);
   await expect.poll(async () => differences(await labelsOnCanvas(page), painted)).toBe(0);
@@ -313,11 +253,10 @@ for (const [lack, remove] of [
 ] as const) {
   test(`projects are in a database if the browser ${lack}`, async ({ page }) => {
     await page.addInitScript(remove);
-    const files = await clipFrames(6);
+    const files = await smallFrames(3);
     await correctedClip(page, files);
     await kept(page);
-    await page.reload();
-    await openClip(page, files);
+    await reopen(page, files);
     await isContinued(page, files);
     await openExport(page);
     await page.getByText('One project in this browser').click();
@@ -326,9 +265,13 @@ for (const [lack, remove] of [
   });
 }
 
-test('a full disk loses nothing, and the next change is kept again', async ({ page, context, baseURL }) => {
-  const files = await clipFrames(6);
+test('a full disk loses nothing, and the next change is kept again, with the settings', async ({ page, context, baseURL }) => {
+  const files = await smallFrames(4);
   await openClip(page, files);
+  const unlabelled = page.getByLabel('Leave unexplained pixels unlabelled');
+  await openAdvanced(page);
+  await unlabelled.check();
+  await done(page);
   await segmentClip(page);
   await kept(page);
   const session = await context.newCDPSession(page);
@@ -347,17 +290,17 @@ test('a full disk loses nothing, and the next change is kept again', async ({ pa
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin });
   await rename(page, 2, 'Box');
   await kept(page);
-  await page.reload();
+  await page.goto('about:blank'); // a reload would keep what the form says
   await openClip(page, files);
+  await expect(unlabelled).toBeChecked();
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Ball');
   await expect(page.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
 });
 
 test('a browser that keeps nothing says so, and asks before the work is left', async ({ page }) => {
   await withoutStorage(page);
-  const files = await clipFrames(5);
-  await openClip(page, files);
-  await segmentClip(page);
+  const files = await smallFrames(3);
+  await openSegmented(page, files);
   await rename(page, 1, 'Ball');
   await expect(page.locator('#notice-code')).toHaveText('storage-refused');
   expect(await leaves(page)).toBe(false);
@@ -365,17 +308,16 @@ test('a browser that keeps nothing says so, and asks before the work is left', a
   expect(await leaves(page)).toBe(true);
 });
 
-test('a second tab on a clip says that its work is not kept, and overwrites nothing', async ({ page, context }) => {
-  const files = await clipFrames(5);
-  await openClip(page, files);
-  await segmentClip(page);
-  await kept(page);
+test('a second tab on a clip says that its work is not kept, and overwrites nothing', async ({ page: second, context }) => {
+  const first = await context.newPage();
+  const files = await smallFrames(3);
+  await openSegmented(first, files);
+  await kept(first);
 
-  const second = await context.newPage();
   await openClip(second, files);
-  await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
+  await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 3 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
-  await expect(second.locator('#notice-sentence')).toContainText('“f00-f04.png” is open in another tab');
+  await expect(second.locator('#notice-sentence')).toContainText('“f00-f02.png” is open in another tab');
   await rename(second, 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);
@@ -383,29 +325,27 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   await second.keyboard.press('Escape');
 
   // The first tab keeps its own work as before, and that stays when it is gone.
-  await rename(page, 2, 'Box');
-  await kept(page);
-  await page.close();
+  await rename(first, 2, 'Box');
+  await kept(first);
+  await first.close();
   await rename(second, 2, 'Square');
   await second.locator('#notice-close').click();
-  await second.waitForTimeout(1500); // longer than changes wait for each other
+  await hide(second);
   expect(await namesInBrowser(second)).toEqual({ 'objects-2': 'Box' });
   expect(await leaves(second)).toBe(false);
 
   // The only tab left goes on from there.
   second.on('dialog', (dialog) => void dialog.accept());
-  await second.reload();
-  await openClip(second, files);
+  await reopen(second, files);
   await expect(second.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
   await rename(second, 1, 'Ball');
   await kept(second);
   expect(await namesInBrowser(second)).toEqual({ 'objects-1': 'Ball', 'objects-2': 'Box' });
 });
 
-test('damaged and foreign projects are refused with a reason, and change nothing', async ({ page }) => {
-  const files = await clipFrames(5);
-  await openClip(page, files);
-  await segmentClip(page);
+test('damaged and foreign projects are refused with a reason and change nothing; one of the first version is opened, and takes corrections', async ({ page }) => {
+  const files = await smallFrames(5);
+  await openSegmented(page, files);
   const project = await savedProject(page);
   const lines = gunzipSync(project.buffer).toString('latin1').split('\n');
   const remade = (change: (lines: string[]) => string[]): Buffer => gzipSync(Buffer.from(change([...lines]).join('\n'), 'latin1'));
@@ -420,7 +360,7 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
     [remade(([header, ...rest]) => [header!.replace('data:image/jpeg;', 'data:text/html;'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
-    [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[200,140,', '[200,141,'), ...rest]), 'damaged-project'],
+    [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[100,70,', '[100,71,'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace(/\{"image":\d+\}/, '{"image":999}'), ...rest]), 'damaged-project'],
   ];
   for (const [buffer, code] of cases) {
@@ -430,21 +370,15 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     await page.locator('#notice-close').click();
   }
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
-});
 
-test('a project of the first version is opened, and takes corrections', async ({ page }) => {
-  const files = await clipFrames(5);
-  await openClip(page, files);
-  await segmentClip(page);
-  const { name, mimeType, buffer } = await savedProject(page);
-  const [header, content, ...rest] = gunzipSync(buffer).toString('latin1').split('\n') as [string, string, ...string[]];
-  const project = JSON.parse(content) as { clip: Record<string, unknown> };
-  const { spans, found: _, became: __, ...clip } = project.clip;
+  const [header, content, ...rest] = lines as [string, string, ...string[]];
+  const parsed = JSON.parse(content) as { clip: Record<string, unknown> };
+  const { spans, found: _, became: __, ...clip } = parsed.clip;
   const [{ state }] = spans as [{ state: unknown }];
-  const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...project, clip: { ...clip, state } }), ...rest].join('\n');
+  const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...parsed, clip: { ...clip, state } }), ...rest].join('\n');
   await forgetAll(page);
-  await page.reload();
-  await upload(page, [{ name, mimeType, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
+  await reloadEmpty(page);
+  await upload(page, [{ ...project, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();

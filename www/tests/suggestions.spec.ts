@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { encodeColourPng } from 'veronese/codecs';
-import { type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, openEmpty, screen, segmentedInNode, test, upload } from './support.js';
+import { type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, openEmpty, segmentedInNode, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [320, 240];
 
@@ -64,47 +64,39 @@ test('two parts of a thing are joined by a suggestion, with undo; it uses the na
   await expect(suggestions).toHaveCount(0);
   await page.locator('#look [value=groups]').check({ force: true });
   await expect(suggestions).toHaveCount(1);
-});
 
-test('a suggestion is answered with the keyboard, and read out', async ({ page }) => {
-  await openParts(page);
-  const suggestions = page.locator('#suggestions');
-  await expect(suggestions).toHaveAttribute('aria-live', 'polite');
-  await suggestions.getByRole('button', { name: 'Join' }).focus();
-  await page.keyboard.press('Tab');
-  await expect(suggestions.getByRole('button', { name: 'Dismiss: Object 2 may belong to Object 1' })).toBeFocused();
-  const before = await placeOfList(page);
-  await page.keyboard.press('Enter');
-  await expect(suggestions.locator('li')).toHaveCount(0);
-  expect(await placeOfList(page)).toBe(before);
-  await expect(page.locator('#motions > li')).toHaveCount(3);
-  // The focus is not lost with the button.
-  await expect(page.locator('#motions-title')).toBeFocused();
-  // Dismissed is dismissed, also after other corrections.
-  const row = page.locator('#motions > li').nth(1);
-  await row.getByText('More', { exact: true }).click();
-  await mergeWith(row, 0);
-  await page.locator('#undo').click();
-  await expect(page.locator('#motions > li')).toHaveCount(3);
-  await expect(suggestions.locator('li')).toHaveCount(0);
-});
-
-test('a suggestion is a line that axe finds nothing wrong with, on all screens, light and dark', async ({ page }) => {
-  await page.emulateMedia({ reducedMotion: 'reduce' });
-  await openParts(page);
-  const suggestion = page.locator('#suggestions > li').first();
-  for (const [width, height] of [[1280, 860], [390, 844]] as const) {
-    await page.setViewportSize({ width, height });
-    for (const colorScheme of ['light', 'dark'] as const) {
+  await test.step('it is a line that axe finds nothing wrong with, wide and narrow, light and dark', async () => {
+    await page.emulateMedia({ reducedMotion: 'reduce' });
+    const suggestion = suggestions.first();
+    for (const [width, height, colorScheme] of [[1280, 860, 'light'], [390, 844, 'dark']] as const) {
+      await page.setViewportSize({ width, height });
       await page.emulateMedia({ colorScheme });
       await suggestion.scrollIntoViewIfNeeded();
-      await page.screenshot({ path: screen(`suggestion-${width}-${colorScheme}`) });
       expect(await axe(page)).toEqual([]);
       expect((await suggestion.boundingBox())!.height).toBeLessThan(70);
       expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
     }
-  }
-  const before = await placeOfList(page);
-  await suggestion.getByRole('button', { name: 'Dismiss' }).click();
-  expect(await placeOfList(page)).toBe(before);
+  });
+
+  await test.step('it is answered with the keyboard, and read out', async () => {
+    const asked = page.locator('#suggestions');
+    await expect(asked).toHaveAttribute('aria-live', 'polite');
+    await asked.getByRole('button', { name: 'Join' }).focus();
+    await page.keyboard.press('Tab');
+    await expect(asked.getByRole('button', { name: 'Dismiss: Object 2 may belong to Robot' })).toBeFocused();
+    const before = await placeOfList(page);
+    await page.keyboard.press('Enter');
+    await expect(asked.locator('li')).toHaveCount(0);
+    expect(await placeOfList(page)).toBe(before);
+    await expect(page.locator('#motions > li')).toHaveCount(3);
+    // The focus is not lost with the button.
+    await expect(page.locator('#motions-title')).toBeFocused();
+    // Dismissed is dismissed, also after other corrections.
+    const row = page.locator('#motions > li').nth(1);
+    await row.getByText('More', { exact: true }).click();
+    await mergeWith(row, 0);
+    await page.locator('#undo').click();
+    await expect(page.locator('#motions > li')).toHaveCount(3);
+    await expect(asked.locator('li')).toHaveCount(0);
+  });
 });

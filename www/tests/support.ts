@@ -103,6 +103,21 @@ export async function openClip(page: Page, files: Upload[], { count = files.leng
   await withSamples(page);
 }
 
+/** Leaves the page and comes back, without frames: those of samples never arrive. */
+export async function reloadEmpty(page: Page): Promise<void> {
+  await page.route(FRAMES_OF_SAMPLES, () => undefined);
+  await page.reload();
+}
+
+/** Leaves the page, comes back and opens the same frames again. */
+export async function reopen(page: Page, files: Upload[], count = files.length): Promise<void> {
+  await reloadEmpty(page);
+  await upload(page, files);
+  if (count > 2) await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
+  await done(page);
+  await withSamples(page);
+}
+
 /** Segments the open clip. */
 export async function segmentClip(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'Segment the clip' }).click();
@@ -186,6 +201,18 @@ export async function withSmallSampleClip(page: Page): Promise<void> {
 export async function openSampleClip(page: Page, settings = 'quality=fast'): Promise<void> {
   await page.goto(`./#${settings}`);
   await clipDone(page);
+}
+
+/** Cancels the next run on the clip as soon as it says how far it is, or this of it, however fast it goes on. */
+export async function cancelWhen(page: Page, said = /./): Promise<void> {
+  await page.locator('#clip-detail').evaluate((detail, source) => {
+    const observer = new MutationObserver(() => {
+      if (!new RegExp(source).test(detail.textContent!)) return;
+      observer.disconnect();
+      document.querySelector<HTMLButtonElement>('#clip-cancel')!.click();
+    });
+    observer.observe(detail, { childList: true, characterData: true, subtree: true });
+  }, said.source);
 }
 
 /** Waits until the clip is segmented. */
@@ -409,15 +436,15 @@ const clipFrame = once(async (k: number, width: number, height: number): Promise
   return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
 });
 
-/** The serious and critical violations that axe finds. */
-export async function axe(page: Page): Promise<string[]> {
+/** The serious and critical violations that axe finds, of some rules or of all. */
+export async function axe(page: Page, rules?: string[]): Promise<string[]> {
   const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
   await page.evaluate(source);
-  return page.evaluate(async () => {
-    const { axe } = window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
-    const { violations } = await axe.run();
+  return page.evaluate(async (rules) => {
+    const { axe } = window as unknown as { axe: { run(options: { runOnly?: string[] }): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
+    const { violations } = await axe.run(rules ? { runOnly: rules } : {});
     return violations
       .filter(({ impact }) => impact === 'serious' || impact === 'critical')
       .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
-  });
+  }, rules);
 }
