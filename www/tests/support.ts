@@ -207,7 +207,7 @@ export async function openSampleClip(page: Page, settings = 'quality=fast'): Pro
 export async function cancelWhen(page: Page, said = /./): Promise<void> {
   await page.locator('#clip-detail').evaluate((detail, source) => {
     const observer = new MutationObserver(() => {
-      if (!new RegExp(source).test(detail.textContent!)) return;
+      if (!new RegExp(source).test(detail.textContent)) return;
       observer.disconnect();
       document.querySelector<HTMLButtonElement>('#clip-cancel')!.click();
     });
