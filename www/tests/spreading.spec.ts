@@ -13,6 +13,7 @@ async function masksOf(page: Page, index: number): Promise<Uint8Array> {
 async function selectNew(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'New object' }).click();
   await expect(page.locator('#tools [value=brush]')).toBeChecked();
+  await expect(page.locator('#strokes .brush')).toBeAttached(); // it is loaded when it is chosen
 }
 
 /** Presses keys, in one task, when the correction that comes has changed its first frame. */
