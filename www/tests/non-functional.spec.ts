@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { PAIR, square, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, test, unwatched, upload } from './support.js';
+import { PAIR, square, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, test, unwatched, upload, withSamples } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
@@ -47,6 +47,7 @@ test('axe finds nothing serious, light and dark, and single-key shortcuts can be
 
 unwatched('inline scripts are blocked', async ({ page }) => {
   await openEmpty(page);
+  await withSamples(page); // which only watched tests do by themselves
   const refused = await page.evaluate(
     () =>
       new Promise<string>((resolve) => {

@@ -71,13 +71,16 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
 
 /** Opens the page without frames, for tests that bring their own: those of samples never arrive. */
 export async function openEmpty(page: Page, kind: 'motions' | 'groups' = 'motions', quality: 'fast' | 'best' = 'fast'): Promise<void> {
-  if (!withoutSamples.has(page)) {
-    // Not by a route: with routes the browser caches nothing, and compiles all code anew in every page.
-    const devtools = await page.context().newCDPSession(page);
-    await devtools.send('Fetch.enable', { patterns: ['first.*', 'second.*', 'frames/*'].map((frame) => ({ urlPattern: `*/samples/*/${frame}` })) });
-    withoutSamples.set(page, devtools);
-  }
+  await holdSamples(page);
   await page.goto(`${PAIR}&quality=${quality}&masks=${kind}`);
+}
+
+async function holdSamples(page: Page): Promise<void> {
+  if (withoutSamples.has(page)) return;
+  // Not by a route: with routes the browser caches nothing, and compiles all code anew in every page.
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send('Fetch.enable', { patterns: ['first.*', 'second.*', 'frames/*'].map((frame) => ({ urlPattern: `*/samples/*/${frame}` })) });
+  withoutSamples.set(page, devtools);
 }
 
 /** The pages whose samples never arrive, with what stops them. */
@@ -105,7 +108,7 @@ export async function openClip(page: Page, files: Upload[], { count = files.leng
 
 /** Leaves the page and comes back, without frames: those of samples never arrive. */
 export async function reloadEmpty(page: Page): Promise<void> {
-  await page.route(FRAMES_OF_SAMPLES, () => undefined);
+  await holdSamples(page);
   await page.reload();
 }
 
