@@ -277,6 +277,7 @@ test('what is said of a pair is there when its frames are shown again', async ({
     const files = await frames(4);
     const pair = async (): Promise<void> => {
       await upload(page, files.slice(0, 2));
+      await expect(page.locator('#timeline')).toBeHidden();
       await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
       await done(page);
     };

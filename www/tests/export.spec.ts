@@ -176,7 +176,7 @@ test('a copied link opens with the same settings and the current sample', async 
   // With a replaced frame the pair is no longer a sample.
   await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
-  expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
+  expect(new URL(await copied()).hash).toBe('#motions=2&quality=fast');
 });
 
 test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {

@@ -4,10 +4,13 @@ import { type Page } from '@playwright/test';
 
 import { done, expect, labelsOnCanvas, openEmpty, square, test, upload } from './support.js';
 
+let opened = 0;
+
 /** The page still segments. */
 async function expectToWork(page: Page): Promise<void> {
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)]);
-  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 96 × 64');
+  const name = `works-${++opened}.png`; // not one that is on screen already
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square(name, 96, 64, 2, 0)]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText(`${name}, 96 × 64`);
   await done(page);
   await expect(page.getByRole('alert')).toBeHidden();
   expect((await labelsOnCanvas(page)).length).toBe(96 * 64);
