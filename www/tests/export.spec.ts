@@ -166,17 +166,17 @@ test('a copied link opens with the same settings and the current sample', async 
   await done(page);
   await expect(page.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
 
+  // With a replaced frame the pair is no longer a sample.
+  await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
+  expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
+
   // Also in a page that is open.
   await page.evaluate(() => (location.hash = '#sample=intel-two-cars&motions=2&masks=groups'));
   await expect(page.locator('.slot-name')).toHaveText(['first.png, 768 × 432', 'second.png, 768 × 432']);
   await done(page);
   await expect(page.locator('#look [value=groups]')).toBeChecked();
   await motionsChosen(page, 2);
-
-  // With a replaced frame the pair is no longer a sample.
-  await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
-  expect(new URL(await copied()).hash).toBe('#motions=2&quality=fast');
 });
 
 test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {
