@@ -78,7 +78,8 @@ async function undone({ context, page }: Kept, origin: string): Promise<void> {
   await page.evaluate(() => sessionStorage.clear()).catch(() => undefined); // about:blank has none
   // Its workers end with it. A question whether to leave is answered with yes where nobody listens.
   await page.goto('about:blank');
-  await Promise.all([context.unrouteAll(), page.unrouteAll(), context.clearPermissions(), context.setOffline(false)]);
+  // Requests that were on their way end with the page, whatever their routes still do.
+  await Promise.all([context.unrouteAll({ behavior: 'ignoreErrors' }), page.unrouteAll({ behavior: 'ignoreErrors' }), context.clearPermissions(), context.setOffline(false)]);
   await page.emulateMedia({ media: null, colorScheme: null, reducedMotion: null, forcedColors: null, contrast: null });
   await page.mouse.move(-1, -1);
   const devtools = await context.newCDPSession(page);
