@@ -1,4 +1,36 @@
 #!/usr/bin/env node
+import { writeSync } from 'node:fs';
 import { main } from '../dist/cli.js';
 
-await main(process.argv.slice(2));
+const EXIT = { SIGINT: 130, SIGTERM: 143 };
+
+const stopping = new AbortController();
+for (const [signal, code] of Object.entries(EXIT)) {
+  process.on(signal, () => {
+    stopping.abort();
+    process.exit(code);
+  });
+}
+
+const { stdout, stderr } = process;
+// Every thread adds listeners of its own.
+stdout.setMaxListeners(0);
+stderr.setMaxListeners(0);
+
+function say(text) {
+  try {
+    writeSync(2, text);
+  } catch {
+    // Nobody listens: the exit code says it.
+  }
+}
+
+process.exitCode = await main(process.argv.slice(2), {
+  // Looked at only by who reads it: opening it has effects.
+  get stdin() {
+    return process.stdin;
+  },
+  stdout,
+  stderr: { isTTY: stderr.isTTY === true, write: say },
+  signal: stopping.signal,
+});

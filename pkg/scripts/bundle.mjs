@@ -20,7 +20,7 @@ const ENTRIES = sources({
   'element-class': 'element/element-class',
   'formats/index': 'formats/index',
 });
-const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
+const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work' });
 /**
  * Become part of the package: a browser that loads it unbundled finds no package by its name. parse-xml is taken from its sources, because
  * what it publishes are no modules; of fflate what browsers get, which Node runs too.

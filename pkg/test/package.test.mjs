@@ -32,7 +32,7 @@ describe('npm pack', () => {
     const targets = (entry) => (typeof entry === 'string' ? [entry] : Object.values(entry).flatMap(targets));
     const wanted = [...targets(manifest.exports), ...targets(manifest.bin), manifest.types];
     for (const path of wanted) assert.ok(names.includes(path.replace(/^\.\//, '')), path);
-    for (const path of ['README.md', 'dist/worker.js', 'dist/worker-node.js', 'dist/cli-work.js', 'dist/cli-batch-work.js']) {
+    for (const path of ['README.md', 'dist/worker.js', 'dist/worker-node.js', 'dist/cli-work.js']) {
       assert.ok(names.includes(path), path);
     }
     assert.ok(names.includes('wasm/codecs/veronese_codecs_bg.wasm'));

@@ -176,13 +176,6 @@ export type ConvertCommand = Extract<Command, { name: 'convert' }>;
 export type CorrectionsCommand = Extract<Command, { name: 'corrections' }>;
 export type ClipCommand = Extract<Command, { name: 'clip' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
-export type WorkCommand = PairCommand | PointsCommand;
-
-/** The files that a command reads, in the order in which their contents are passed on. */
-export function filesOf(command: WorkCommand): string[] {
-  if (command.name === 'points') return [command.file];
-  return [command.first, command.second];
-}
 
 const OPTIONS = {
   help: { type: 'boolean', short: 'h' },

@@ -1,20 +1,18 @@
 // `batch` and `video`: every pair of consecutive frames, by several threads, one line of JSON for each pair in their order.
 
 import { basename, extname, join } from 'node:path';
-import { Worker } from 'node:worker_threads';
 import { VeroneseError, veroneseError } from '../common/errors.js';
-import { core } from '../entries/codecs.js';
 import { inOrder } from '../calls/ordered.js';
-import { WorkerPool } from '../pool/pool.js';
-import { spawnWith } from '../pool/threads.js';
 import type { SequenceCommand } from './arguments.js';
-import type { BatchResult, BatchTask } from './batch-work.js';
 import { checkFolder } from './files.js';
 import { findFrames, type Frame, readList } from './frames.js';
+import type { Io } from './io.js';
 import { jsonLine } from './pair.js';
 import { checkPairs, removeLeftovers, writePair } from './store.js';
 import { complain, print, ProgressBar, type Tally } from './terminal.js';
+import { threads } from './threads.js';
 import { videoFrames } from './video.js';
+import type { PairTask, TaskResult } from './work.js';
 
 interface Pair {
   /** Position among all pairs, also those of other shards. */
@@ -23,13 +21,13 @@ interface Pair {
   frames: Frame[];
 }
 
-type Outcome = { pair: Pair; result: BatchResult } | { pair: Pair; error: VeroneseError };
+type Outcome = { pair: Pair; result: TaskResult } | { pair: Pair; error: VeroneseError };
 
 /** Throws `pairs-failed` at the end where some did, or at once what concerns all pairs. */
-export async function batch(command: SequenceCommand): Promise<void> {
+export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   const { out, shard, jobs } = command;
   if (out !== undefined) checkFolder(out);
-  const paths = command.name === 'batch' ? findFrames(command.frames, await readList(command.list)) : undefined;
+  const paths = command.name === 'batch' ? findFrames(command.frames, await readList(command.list, io.stdin)) : undefined;
   if (paths) checkCount(Math.ceil(paths.length / command.every));
   if (out !== undefined) {
     const used = paths?.filter((_, position) => position % command.every === 0);
@@ -39,15 +37,12 @@ export async function batch(command: SequenceCommand): Promise<void> {
     removeLeftovers(out, isMine);
   }
 
-  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' });
+  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' }, io);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
-  const worker = () => new Worker(new URL('./cli-batch-work.js', import.meta.url), { name: 'veronese' });
-  const module = () => core.module();
-  const pool = new WorkerPool<BatchTask, BatchResult>(spawnWith(worker), () => module, jobs);
-  const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard));
+  const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
   const failures: VeroneseError[] = [];
-  const work = (pair: Pair) => perform(pool, pair, command);
+  const work = (pair: Pair) => perform(pair, command);
   try {
     for await (const { pair, ...outcome } of inOrder(pairs, work, { room: 2 * jobs, stop: () => undefined })) {
       const { first, second } = namesOf(pair);
@@ -56,19 +51,21 @@ export async function batch(command: SequenceCommand): Promise<void> {
       if ('result' in outcome) {
         const { done, report } = outcome.result;
         tally[done ? 'done' : 'skipped'] += 1;
-        await print(jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
+        await print(io, jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
       } else {
         const { code, message } = outcome.error;
         tally.failed += 1;
         failures.push(new VeroneseError(code, `pair ${pair.index} (${first}, ${second}): ${message}`));
-        await print(jsonLine({ ...line, status: 'failed', error: { code, message } }));
+        await print(io, jsonLine({ ...line, status: 'failed', error: { code, message } }));
       }
       bar.update(tally);
     }
+  } catch (thrown) {
+    threads(jobs).close();
+    throw thrown;
   } finally {
     bar.clear();
-    pool.close();
-    for (const failure of failures) complain(failure);
+    for (const failure of failures) complain(io, failure);
   }
   if (failures.length === 0) return;
   const all = tally.done + tally.skipped + tally.failed;
@@ -76,11 +73,11 @@ export async function batch(command: SequenceCommand): Promise<void> {
 }
 
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
-async function perform(pool: WorkerPool<BatchTask, BatchResult>, pair: Pair, command: SequenceCommand): Promise<Outcome> {
-  const { options, grouped, overlay, out } = command;
+async function perform(pair: Pair, command: SequenceCommand): Promise<Outcome> {
+  const { options, grouped, overlay, out, jobs } = command;
   try {
-    const folder = out === undefined ? undefined : join(out, pair.name);
-    const result = await pool.run({ frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, folder });
+    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, withImages: out !== undefined };
+    const result = await threads(jobs).run({ ...task, ...(out !== undefined && { folder: join(out, pair.name) }) });
     if (out !== undefined && result.done) await writePair(out, pair.name, result.files);
     return { pair, result: { ...result, files: [] } };
   } catch (thrown) {
@@ -108,7 +105,7 @@ async function* pairsOf(
   checkCount(used);
 }
 
-function contentOf({ name, bytes }: Frame): BatchTask['frames'][number] {
+function contentOf({ name, bytes }: Frame): PairTask['frames'][number] {
   return { name, ...(bytes && { bytes }) };
 }
 

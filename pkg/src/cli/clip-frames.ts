@@ -8,6 +8,7 @@ import type { ClipCommand } from './arguments.js';
 import type { FrameFile } from './clip-store.js';
 import { readInput, sha256 } from './files.js';
 import { findFrames, isVideo, readList } from './frames.js';
+import type { Io } from './io.js';
 import { decoded } from './pair.js';
 import { type Video, videoFrames, VideoReader } from './video.js';
 
@@ -76,10 +77,10 @@ export class ClipFrames {
 }
 
 /** Throws where there are too few frames, or two of one name. */
-export async function clipFrames({ frames: names, list, every, allowDamaged }: ClipCommand): Promise<ClipFrames> {
+export async function clipFrames({ frames: names, list, every, allowDamaged }: ClipCommand, io: Io): Promise<ClipFrames> {
   const [name = ''] = names;
-  if (names.length === 1 && list === undefined && isVideo(name)) return framesOfVideo({ file: name, every, allowDamaged });
-  const paths = findFrames(names, await readList(list)).filter((_, index) => index % every === 0);
+  if (names.length === 1 && list === undefined && isVideo(name)) return framesOfVideo({ file: name, every, allowDamaged }, io);
+  const paths = findFrames(names, await readList(list, io.stdin)).filter((_, index) => index % every === 0);
   checkStems(paths);
   const files: Seen[] = [];
   for (const path of paths) {
@@ -108,16 +109,16 @@ function stemOf(path: string): string {
 }
 
 /** A video that breaks off has a last frame that cannot be read. */
-async function framesOfVideo(video: Video): Promise<ClipFrames> {
+async function framesOfVideo(video: Video, io: Io): Promise<ClipFrames> {
   const { file, every } = video;
   const files: Seen[] = [];
   const seen = (number: number) => ({ name: `${basename(file)}#${number}`, stem: String(number).padStart(5, '0'), file: `${basename(file)}#${number}` });
   try {
-    for await (const { bytes } of videoFrames(video)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
+    for await (const { bytes } of videoFrames(video, io)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
   } catch (thrown) {
     if (files.length === 0) throw thrown;
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
-  const reader = new VideoReader({ ...video, quiet: true });
+  const reader = new VideoReader({ ...video, quiet: true }, io);
   return new ClipFrames(files, [file], (index) => reader.read(index), () => reader.close());
 }

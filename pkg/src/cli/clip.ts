@@ -13,24 +13,28 @@ import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
 import { ClipStore, type Record } from './clip-store.js';
 import { checkFolder } from './files.js';
+import type { Io } from './io.js';
 import { Ledger } from './ledger.js';
 import { jsonLine } from './pair.js';
 import { print, ProgressBar, warn } from './terminal.js';
+import { oneForEach } from './threads.js';
+
+const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
 
 /** If a frame is bad, writes the labels of the frames before it and throws. */
-export async function clip(command: ClipCommand): Promise<void> {
+export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const { out, options, every, overlay: wanted } = command;
   checkFolder(out);
-  const frames = await clipFrames(command);
-  const segmenter = new SegmenterPool({ jobs: command.jobs });
-  const progress = new Passes(frames.length);
+  const frames = await clipFrames(command, io);
+  const segmenter = segmenters(command.jobs);
+  const progress = new Passes(frames.length, io);
   try {
     const said = await readCorrections(command, frames);
     const software = `veronese ${version}`;
     const ledger = await Ledger.open(out);
     const store = new ClipStore(ledger, out, { ...options, every, ...said?.hashes, overlay: wanted, software });
     const record = await store.finished(frames.files);
-    if (record) return await report(record);
+    if (record) return await report(record, io);
 
     const kept = new KeptClip(ledger, out, { ...options, markUnknown: undefined, software }, frames.files);
     await kept.check();
@@ -44,17 +48,19 @@ export async function clip(command: ClipCommand): Promise<void> {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted));
       progress.clear();
-      await print(jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
+      await print(io, jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
     const tracks = segmented.tracks();
     if (streams) await kept.clear();
     await store.end(frames.files, frames.size as { width: number; height: number }, tracks);
-    if (tracks.dropped > 0) warn(`${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
-    await print(lastLine(tracks.objects));
+    if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
+    await print(io, lastLine(tracks.objects));
+  } catch (thrown) {
+    segmenter.close();
+    throw thrown;
   } finally {
     progress.clear();
-    segmenter.close();
     await frames.close();
   }
 }
@@ -108,17 +114,19 @@ async function solved(
 /** The progress bar of each pass over the frames. */
 class Passes {
   readonly #count: number;
+  readonly #io: Io;
   #stage: string | undefined;
   #bar: ProgressBar | undefined;
 
-  constructor(count: number) {
+  constructor(count: number, io: Io) {
     this.#count = count;
+    this.#io = io;
   }
 
   readonly listener = ({ frame, stage }: ClipProgress): void => {
     if (stage !== this.#stage) {
       // Corrections come to some frames, and to some of them more than once.
-      this.#bar = new ProgressBar(stage === 'corrections' ? undefined : this.#count, undefined, undefined, 'frames', `${stage}: `);
+      this.#bar = new ProgressBar(stage === 'corrections' ? undefined : this.#count, this.#io.stderr, { unit: 'frames', title: `${stage}: ` });
     }
     this.#stage = stage;
     this.#bar?.update({ done: frame, skipped: 0, failed: 0 });
@@ -138,12 +146,12 @@ async function images(frames: ClipFrames, { index, labels }: ClipFrame, withOver
 }
 
 /** Prints what the run that wrote the record printed. */
-async function report({ frames, objects }: Record): Promise<void> {
+async function report({ frames, objects }: Record, io: Io): Promise<void> {
   for (const [frame, name] of frames.entries()) {
     const seen = objects.filter((object) => object.frames.some((entry) => entry.frame === frame));
-    await print(jsonLine({ frame, name, objects: seen.map(({ id }) => id) }));
+    await print(io, jsonLine({ frame, name, objects: seen.map(({ id }) => id) }));
   }
-  await print(lastLine(objects));
+  await print(io, lastLine(objects));
 }
 
 function lastLine(objects: Record['objects']): string {

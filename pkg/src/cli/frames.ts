@@ -60,10 +60,10 @@ function framesOf(name: string): string[] {
 }
 
 /** The lines of a file, or with `-` of standard input. None if there is no list. */
-export async function readList(list: string | undefined): Promise<string[]> {
+export async function readList(list: string | undefined, stdin: NodeJS.ReadableStream): Promise<string[]> {
   if (list === undefined) return [];
   try {
-    return (await contentOf(list)).split(/\r?\n/).filter((line) => line.trim() !== '');
+    return (await contentOf(list, stdin)).split(/\r?\n/).filter((line) => line.trim() !== '');
   } catch (thrown) {
     const { code, message } = thrown as NodeJS.ErrnoException;
     if (code === 'ENOENT') throw new VeroneseError('file-not-found', `there is no file '${list}'`);
@@ -72,8 +72,8 @@ export async function readList(list: string | undefined): Promise<string[]> {
 }
 
 /** A pipe is read as sockets are: a thread that waits for it would keep the process from ending when it is told to. */
-async function contentOf(list: string): Promise<string> {
-  if (list === '-') return text(process.stdin);
+async function contentOf(list: string, stdin: NodeJS.ReadableStream): Promise<string> {
+  if (list === '-') return text(stdin);
   if (!statSync(list).isFIFO()) return readFile(list, 'utf8');
   return text(new Socket({ fd: openSync(list, constants.O_RDONLY | constants.O_NONBLOCK), readable: true, writable: false }));
 }

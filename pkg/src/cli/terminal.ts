@@ -1,35 +1,31 @@
 // What the program says: results on stdout, errors and progress on stderr.
 
-import { writeSync } from 'node:fs';
 import { VeroneseError, veroneseError } from '../common/errors.js';
+import type { Io, Stderr } from './io.js';
 
-export function print(text: string): Promise<void> {
+export function print({ stdout }: Io, text: string): Promise<void> {
   return new Promise((resolve, reject) => {
     const failed = (error: Error) => {
       reject(new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
     };
-    process.stdout.once('error', failed);
-    process.stdout.write(text, (error) => {
+    stdout.once('error', failed);
+    stdout.write(text, (error) => {
       if (error) return failed(error);
-      process.stdout.off('error', failed);
+      stdout.off('error', failed);
       resolve();
     });
   });
 }
 
 /** One line on stderr, whatever the error's message looks like. */
-export function complain(thrown: unknown): void {
+export function complain({ stderr }: Io, thrown: unknown): void {
   const { code, message } = veroneseError(thrown);
-  try {
-    writeSync(2, `veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
-  } catch {
-    // Nobody listens: the exit code says it.
-  }
+  stderr.write(`veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
 }
 
 /** As {@link complain}, of what does not end the work. */
-export function warn(sentence: string): void {
-  process.stderr.write(`veronese: warning: ${sentence}\n`);
+export function warn({ stderr }: Io, sentence: string): void {
+  stderr.write(`veronese: warning: ${sentence}\n`);
 }
 
 export interface Tally {
@@ -44,7 +40,7 @@ const WIDTH = 24;
 
 /** A line that is drawn over and over, only where a person looks: on a terminal. */
 export class ProgressBar {
-  readonly #stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'>;
+  readonly #stream: Stderr;
   readonly #total: number | undefined;
   readonly #now: () => number;
   readonly #unit: string;
@@ -53,13 +49,7 @@ export class ProgressBar {
   #drawn = -Infinity;
 
   /** `total`: the number of pairs (or of what `unit` says), where it is known. `title`: what is done with them. */
-  constructor(
-    total: number | undefined,
-    stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'> = process.stderr,
-    now = () => performance.now(),
-    unit = 'pairs',
-    title = '',
-  ) {
+  constructor(total: number | undefined, stream: Stderr, { unit = 'pairs', title = '', now = () => performance.now() } = {}) {
     this.#total = total;
     this.#unit = unit;
     this.#title = title;

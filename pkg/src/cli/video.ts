@@ -7,6 +7,7 @@ import { basename } from 'node:path';
 import { promisify } from 'node:util';
 import { VeroneseError } from '../common/errors.js';
 import { checkName, type Frame } from './frames.js';
+import type { Io } from './io.js';
 import { warn } from './terminal.js';
 
 /** Longest side of a frame that is read at all; larger ones than the core takes are its own error. */
@@ -30,7 +31,7 @@ export interface Video {
  * Every K-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are taken.
  * Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`, the last one after all frames if ffmpeg gave them but complained.
  */
-export async function* videoFrames({ file, every, allowDamaged, quiet }: Video): AsyncGenerator<Frame, void, undefined> {
+export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, io: Io): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
   const status = statusOf(file);
   if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
@@ -43,7 +44,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video):
     stdio: ['ignore', 'pipe', 'pipe'],
   });
   const end = () => void ffmpeg.kill('SIGKILL');
-  process.once('exit', end);
+  io.signal.addEventListener('abort', end);
   let said = '';
   ffmpeg.stderr.setEncoding('utf8').on('data', (text: string) => {
     said = (said + text).slice(-KEPT);
@@ -64,9 +65,9 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video):
     if (damage === undefined || (allowDamaged && quiet)) return;
     const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
     if (!allowDamaged) throw new VeroneseError('unreadable-video', `${sentence}; '--allow-damaged' takes them as they are`);
-    warn(sentence);
+    warn(io, sentence);
   } finally {
-    process.off('exit', end);
+    io.signal.removeEventListener('abort', end);
     end();
   }
 }
@@ -77,6 +78,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video):
  */
 export class VideoReader {
   readonly #video: Video;
+  readonly #io: Io;
   #run: AsyncGenerator<Frame, void, undefined> | undefined;
   /** Index of the frame that the run gives next. */
   #next = 0;
@@ -85,8 +87,9 @@ export class VideoReader {
   #queue: Promise<unknown> = Promise.resolve();
   #size = 0;
 
-  constructor(video: Video) {
+  constructor(video: Video, io: Io) {
     this.#video = video;
+    this.#io = io;
   }
 
   /** The content of a frame, by its index among those that are taken; undefined after the last one. */
@@ -109,7 +112,7 @@ export class VideoReader {
     const kept = this.#kept.get(index);
     if (kept) return kept;
     if (index < this.#next) await this.#close();
-    this.#run ??= videoFrames(this.#video);
+    this.#run ??= videoFrames(this.#video, this.#io);
     for (;;) {
       const { value } = await this.#run.next();
       if (!value) {

@@ -1,40 +1,72 @@
-// The command line's work, in a thread of its own so that Ctrl-C is heard at once.
+// The thread of the command line: one piece of work at a time, from files to files; what a batch finished before is only read.
 
-import { parentPort, workerData } from 'node:worker_threads';
-import type { MotionFit } from '../../types/index.js';
-import { type ErrorMessage, errorMessage, VeroneseError } from '../common/errors.js';
+import { parentPort } from 'node:worker_threads';
+import type { Reply, Request } from '../calls/messages.js';
+import { errorMessage, VeroneseError } from '../common/errors.js';
 import { api } from '../entries/codecs.js';
-import { filesOf, type PairCommand, type PointsCommand, type WorkCommand } from './arguments.js';
-import type { OutputFile } from './files.js';
-import { jsonLine, segmentFiles } from './pair.js';
+import type { PointsCommand } from './arguments.js';
+import { type OutputFile, readInput } from './files.js';
+import { type InputFile, type PairSettings, segmentFiles } from './pair.js';
+import { finished, jobOf, recordFiles } from './store.js';
 
-/** The command with the contents of its files, in the order of {@link filesOf}. */
-export type Work = { command: WorkCommand; contents: Uint8Array[] };
+export interface PairTask {
+  kind: 'pair';
+  /** First and second; a frame without bytes is a file to read. */
+  frames: { name: string; bytes?: Uint8Array }[];
+  settings: PairSettings;
+  withImages: boolean;
+  /** In a batch whose results are kept: where the pair's belong. */
+  folder?: string;
+}
 
-export type Outcome = { json: string; files: OutputFile[] } | { error: ErrorMessage };
+export interface PointsTask extends Pick<PointsCommand, 'file' | 'options'> {
+  kind: 'points';
+}
 
-async function run({ command, contents }: Work): Promise<Outcome> {
+export type Task = PairTask | PointsTask;
+
+export interface TaskResult {
+  /** False where the result was there already. */
+  done: boolean;
+  /** What is printed; without times where nothing was done. */
+  report: object;
+  /** To be written. */
+  files: OutputFile[];
+}
+
+parentPort?.on('message', (request: Request<Task>) => void answer(request));
+
+async function answer({ task, module }: Request<Task>): Promise<void> {
+  const post = (reply: Reply<TaskResult>) => parentPort?.postMessage(reply);
   try {
-    return command.name === 'pair' ? await pair(command, contents) : await points(command, contents);
+    if (module) await api.init(module);
+    post({ kind: 'done', result: task.kind === 'pair' ? await pair(task) : await points(task) });
   } catch (thrown) {
-    return { error: errorMessage(thrown) };
+    post({ kind: 'failed', error: errorMessage(thrown) });
   }
 }
 
-async function pair(command: PairCommand, contents: Uint8Array[]): Promise<Outcome> {
-  const inputs = filesOf(command).map((name, index) => ({ name, bytes: contents[index] ?? new Uint8Array() }));
-  const { report, images } = await segmentFiles(inputs, command, command.out !== undefined);
-  const json = jsonLine(report);
-  return { json, files: images.length > 0 ? [...images, { name: 'result.json', bytes: Buffer.from(json) }] : [] };
+async function pair({ frames, settings, withImages, folder }: PairTask): Promise<TaskResult> {
+  const inputs: InputFile[] = [];
+  for (const { name, bytes } of frames) inputs.push({ name, bytes: bytes ?? (await readInput(name)) });
+  if (folder === undefined) {
+    const { report, images } = await segmentFiles(inputs, settings, withImages);
+    return { done: true, report, files: images };
+  }
+  const job = jobOf(inputs, settings);
+  const record = await finished(folder, job);
+  if (record) return { done: false, report: record, files: [] };
+  const { report, images } = await segmentFiles(inputs, settings, withImages);
+  return { done: true, report, files: recordFiles(report, job, inputs, images) };
 }
 
-async function points({ file, options }: PointsCommand, [bytes]: Uint8Array[]): Promise<Outcome> {
-  const { positions, derivatives } = parsedPoints(file, bytes ?? new Uint8Array());
-  const fit: MotionFit = await api.fitMotions(
+async function points({ file, options }: PointsTask): Promise<TaskResult> {
+  const { positions, derivatives } = parsedPoints(file, await readInput(file));
+  const fit = await api.fitMotions(
     { positions: flat(file, 'positions', positions, ['x', 'y']), derivatives: flat(file, 'derivatives', derivatives, ['Ix', 'Iy', 'It']) },
     options,
   );
-  return { json: jsonLine({ ...fit, labels: Array.from(fit.labels) }), files: [] };
+  return { done: true, report: { ...fit, labels: Array.from(fit.labels) }, files: [] };
 }
 
 function parsedPoints(file: string, bytes: Uint8Array): { positions?: unknown; derivatives?: unknown } {
@@ -64,5 +96,3 @@ function flat(file: string, name: string, rows: unknown, entries: readonly strin
   });
   return values;
 }
-
-parentPort?.postMessage(await run(workerData as Work));

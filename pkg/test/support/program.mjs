@@ -1,19 +1,41 @@
-// Runs the program as a user does.
+// Runs the program: as a call, with streams that collect what it writes, or as a user does, in a process of its own.
 
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { Readable, Writable } from 'node:stream';
 import { fileURLToPath } from 'node:url';
+import { main } from '../../dist/cli.js';
 
-const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
+export const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
-/** Starts it; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
-export function veronese(args, { onStart, stdout = 'pipe', env = {}, timeout = 60_000 } = {}) {
+/**
+ * What the program does for these arguments, without a process. `onLine(line)` hears each line of its output. Resolves to exit code, output
+ * and seconds.
+ */
+export async function veronese(args, { stdin = '', onLine } = {}) {
+  const started = performance.now();
+  const text = { stdout: '', stderr: '' };
+  const stdout = new Writable({
+    decodeStrings: false,
+    write(chunk, _, done) {
+      text.stdout += chunk;
+      onLine?.(String(chunk));
+      done();
+    },
+  });
+  const stderr = { isTTY: false, write: (piece) => (text.stderr += piece) };
+  const code = await main(args, { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
+  return { code, ...text, seconds: (performance.now() - started) / 1000 };
+}
+
+/** Starts it in a process; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
+export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pipe', env = {}, timeout = 60_000 } = {}) {
   return new Promise((resolve, reject) => {
     const started = performance.now();
     const child = spawn(process.execPath, [program, ...args], {
-      stdio: ['ignore', stdout, 'pipe'],
+      stdio: [stdin, stdout, 'pipe'],
       env: { ...process.env, ...env },
       timeout,
     });
