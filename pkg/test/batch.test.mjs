@@ -9,7 +9,7 @@ import { byNumbers, findFrames } from '../build/cli/frames.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { pixmaps } from '../build/cli/video.js';
 import { frame, png, ppm } from './support/frames.mjs';
-import { temporaryFolder, veronese } from './support/program.mjs';
+import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
@@ -309,7 +309,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     const expected = tree(folder.path('undisturbed'));
     let there = 0;
     for (const [n, when] of [[1, 'before'], [2, 'after'], [3, 'before']]) {
-      const killed = await veronese(['batch', ...args(frames, out)], signalled(folder, 'SIGKILL', n, when));
+      const killed = await veroneseProcess(['batch', ...args(frames, out)], signalled(folder, 'SIGKILL', n, when));
       assert.equal(killed.signal, 'SIGKILL');
       const left = readdirSync(out).filter((name) => !name.startsWith('.'));
       there += when === 'before' ? n - 1 : n;
@@ -325,7 +325,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
   test('by kill -9 from outside, at a moment nobody chose', async (t) => {
     const { frames, out, path } = clip(t, 8, SIZE);
     await batch(args(frames, path('undisturbed')));
-    await veronese(['batch', ...args(frames, out)], {
+    await veroneseProcess(['batch', ...args(frames, out)], {
       onStart: async (child) => {
         await setTimeout(1000);
         child.kill('SIGKILL');
@@ -339,7 +339,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     const { frames, out, ...folder } = clip(t, 4);
     const ended = spawnSync(process.execPath, ['--eval', '']).pid;
     // This machine's mark is in the name of what the program writes: catch it in the act.
-    const killed = await veronese(['batch', frames, '--out', out, '--jobs', '1'], signalled(folder, 'SIGKILL', 1, 'before'));
+    const killed = await veroneseProcess(['batch', frames, '--out', out, '--jobs', '1'], signalled(folder, 'SIGKILL', 1, 'before'));
     assert.equal(killed.signal, 'SIGKILL');
     const [left] = readdirSync(out);
     const [, host] = /^\.00000\d-f\d\.([0-9a-f]{8})-\d+\.part$/.exec(left);
@@ -349,17 +349,17 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     };
     leave(`.000000-f0.${host}-${ended}.part`);
     leave('.000002-f2.00000000-1.part');
-    leave(`.000002-f2.${host}-${process.pid}.part`); // this very process, which runs
+    leave(`.000002-f2.${host}-${process.ppid}.part`); // of a process that runs
     leave('.000001-f1.00000000-1.part'); // another part of the work
     await batch([frames, '--out', out, '--shard', '1/2']);
     const hidden = readdirSync(out).filter((name) => name.startsWith('.'));
-    assert.deepEqual(hidden, ['.000001-f1.00000000-1.part', `.000002-f2.${host}-${process.pid}.part`]);
+    assert.deepEqual(hidden, ['.000001-f1.00000000-1.part', `.000002-f2.${host}-${process.ppid}.part`]);
   });
 
   for (const [signal, exit] of [['SIGINT', 130], ['SIGTERM', 143]]) {
     test(`by ${signal} leaves whole results only, exit ${exit}`, async (t) => {
       const { frames, out, path, ...folder } = clip(t, 8, SIZE);
-      const run = await veronese(['batch', ...args(frames, out)], signalled(folder, signal, 3, 'after'));
+      const run = await veroneseProcess(['batch', ...args(frames, out)], signalled(folder, signal, 3, 'after'));
       assert.equal(run.code, exit);
       assert.match(run.stderr, /^veronese: error: cancelled: [^\n]+\n$/);
       const names = readdirSync(out);
@@ -417,7 +417,7 @@ describe('frames', () => {
 describe('the progress bar', () => {
   const drawn = (isTTY, total) => {
     let [text, now] = ['', 0];
-    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, () => now);
+    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, { now: () => now });
     for (let done = 1; done <= 4; done++) {
       now += 500;
       bar.update({ done, skipped: 1, failed: 0 });
@@ -538,7 +538,7 @@ describe('veronese video', () => {
 
   test('says what is missing where there is no ffmpeg', async (t) => {
     const file = temporaryFolder(t).file('film.mp4', '');
-    const { code, stderr } = await veronese(['video', file], { env: { PATH: '/nowhere' } });
+    const { code, stderr } = await veroneseProcess(['video', file], { env: { PATH: '/nowhere' } });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
   });

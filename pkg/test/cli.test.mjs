@@ -2,13 +2,13 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, openSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import { decode } from 'fast-png';
 import { davisPalette, fitMotions, groupLabels, segmentPair } from 'veronese';
 import { Output } from '../build/cli/output.js';
 import { overlay } from '../build/calls/labels.js';
 import { bmp, frame, pair, png, points, ppm, ramp } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { largeFrames, markedReading } from './support/stopping.mjs';
 import { checkLabels, checkPair, checkPoints, timeless } from './support/shapes.mjs';
 
 /** A folder with two frames as files. */
@@ -153,21 +153,13 @@ describe('veronese pair', () => {
   for (const [signal, exit] of [['SIGINT', 130], ['SIGTERM', 143]]) {
     test(`${signal} during the work ends it at once with ${exit}, nothing half-written`, { skip: process.platform === 'win32' }, async (t) => {
       const folder = temporaryFolder(t);
-      // Decoding and encoding frames of this size alone takes seconds.
-      const large = folder.file('large.pgm', Buffer.concat([Buffer.from('P5 4096 4096 255\n'), Buffer.alloc(4096 * 4096, 'texture')]));
-      const mark = folder.path('listening');
-      const preload = folder.file('preload.cjs', `
-        const { on } = process;
-        process.on = function (name, listener) {
-          if (name === 'SIGTERM') require('fs').writeFileSync(${JSON.stringify(mark)}, '');
-          return on.call(process, name, listener);
-        };`);
+      const [large, other] = largeFrames(folder);
+      const { env, seen } = markedReading(folder, other);
       let signalled;
-      const run = await veronese(['pair', large, large, '--out', folder.path('out'), '--overlay'], {
-        env: { NODE_OPTIONS: `--require "${preload}"` },
+      const run = await veroneseProcess(['pair', large, other, '--out', folder.path('out'), '--overlay'], {
+        env,
         onStart: async (child) => {
-          while (!existsSync(mark) && child.exitCode === null) await setTimeout(10);
-          await setTimeout(300);
+          await seen(child);
           signalled = performance.now();
           child.kill(signal);
         },
@@ -304,7 +296,7 @@ describe('veronese pair refuses', () => {
 
   test('a full disk behind stdout', { skip: !existsSync('/dev/full') }, async (t) => {
     const { first, second } = frames(t);
-    const { code, stderr } = await veronese(['pair', first, second], { stdout: openSync('/dev/full', 'w') });
+    const { code, stderr } = await veroneseProcess(['pair', first, second], { stdout: openSync('/dev/full', 'w') });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: write-failed: [^\n]+\n$/);
   });

@@ -8,7 +8,7 @@ import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette, segmentClip, version } from 'veronese';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 64, height: 48 };
@@ -163,7 +163,7 @@ describe('veronese clip', () => {
       const args = [frames, '--look-ahead', '0'];
       await run([...args, '--out', path('whole')]);
       const onStart = (child) => child.stdout.once('data', () => child.kill(signal));
-      const { code } = await veronese(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
+      const { code } = await veroneseProcess(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
       assert.equal(code, exit);
       assert.ok(existsSync(join(out, 'labels', 'f0.png')));
       assert.equal(existsSync(join(out, 'tracks.json')), false);
@@ -230,7 +230,7 @@ describe('veronese clip VIDEO', () => {
 
   test('says what is missing where there is no ffmpeg', async (t) => {
     const { out, file } = clip(t);
-    const { code, stderr } = await veronese(['clip', file('clip.mp4', 'no film'), '--out', out], { env: { PATH: '' } });
+    const { code, stderr } = await veroneseProcess(['clip', file('clip.mp4', 'no film'), '--out', out], { env: { PATH: '' } });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
   });

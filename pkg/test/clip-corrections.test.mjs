@@ -15,7 +15,7 @@ import { KeptClip } from '../build/cli/clip-kept.js';
 import { Ledger } from '../build/cli/ledger.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { frame, png } from './support/frames.mjs';
-import { temporaryFolder, veronese } from './support/program.mjs';
+import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 96, height: 72 };
@@ -316,7 +316,7 @@ describe('veronese clip --masks', () => {
 
 test('the progress bar says what is done with the frames', () => {
   let text = '';
-  const bar = new ProgressBar(undefined, { isTTY: true, write: (piece) => (text += piece) }, () => 0, 'frames', 'labels: ');
+  const bar = new ProgressBar(undefined, { isTTY: true, write: (piece) => (text += piece) }, { unit: 'frames', title: 'labels: ' });
   bar.update({ done: 3, skipped: 0, failed: 0 });
   assert.match(text, /labels: 3 frames$/);
 });
@@ -333,7 +333,7 @@ describe('an interrupted clip', () => {
       });
       child.on('close', () => watching.close());
     };
-    return veronese(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
+    return veroneseProcess(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
   }
 
   const skip = process.platform === 'win32';

@@ -10,7 +10,7 @@ import { decodeVeronese, encodeCocoVideo, encodeCvatVideo, encodeDavis } from 'v
 import { openClip } from '../build/cli/clip-folder.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'supervisely', 'web-annotation', 'veronese', 'masks'];
 const TRACKS = ['youtube-vis', 'cvat-video', 'cvat-mots', 'mots', 'mot', 'label-studio-video'];
@@ -256,7 +256,7 @@ describe('a clip', () => {
     const noise = Uint8Array.from({ length: 512 * 512 }, (_, at) => Math.imul(at, 0x9e3779b1) >>> 31);
     clipFolder(clip, { frames: Array(12).fill(noise), width: 512, height: 512 });
     const before = files(clip);
-    const { code, stdout } = await veronese(['convert', clip, '--to', 'labelme-polygon,coco'], {
+    const { code, stdout } = await veroneseProcess(['convert', clip, '--to', 'labelme-polygon,coco'], {
       onStart: (child) => {
         const look = setInterval(() => {
           const part = readdirSync(clip).find((name) => name.endsWith('.part'));

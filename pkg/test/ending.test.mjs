@@ -1,19 +1,14 @@
 // Every command ends: on SIGTERM whatever it waits for, and where its output folder cannot be made.
 
 import assert from 'node:assert/strict';
-import { spawn, spawnSync } from 'node:child_process';
-import { chmodSync, existsSync, mkdirSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { open } from 'node:fs/promises';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
-import { fileURLToPath } from 'node:url';
 import { clipFolder } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { temporaryFolder, veronese } from './support/program.mjs';
-
-const program = fileURLToPath(new URL('../bin/veronese.js', import.meta.url));
-/** A machine may be busy. */
-const GENEROUS = 20_000;
+import { program, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { largeFrames, markedReading, there } from './support/stopping.mjs';
 
 function frames(t) {
   const folder = temporaryFolder(t);
@@ -22,77 +17,57 @@ function frames(t) {
   return { ...folder, frames: folder.path('frames'), one: (k) => folder.path('frames', `f${k}.png`) };
 }
 
-/**
- * Starts it, sends SIGTERM when it is under way, and returns how it ended. On a busy machine a program may not have come so far that it
- * listens: then it is started again and given longer.
- */
-async function terminated(args, { env = {}, stdin = 'ignore' } = {}) {
-  let end;
-  for (const patience of [1500, 6000, GENEROUS]) {
-    const child = spawn(process.execPath, [program, ...args], { stdio: [stdin, 'pipe', 'pipe'], env: { ...process.env, ...env } });
-    let stderr = '';
-    child.stderr.setEncoding('utf8').on('data', (text) => (stderr += text));
-    const ended = new Promise((resolve) => child.once('exit', (code, signal) => resolve({ code, signal })));
-    await setTimeout(patience);
-    assert.equal(child.exitCode, null, `it is still at work: ${stderr}`);
-    child.kill('SIGTERM');
-    end = { ...(await Promise.race([ended, setTimeout(GENEROUS, { code: 'it does not end' }, { ref: false })])), stderr };
-    child.kill('SIGKILL');
-    if (end.signal !== 'SIGTERM') break;
-  }
-  return end;
-}
-
 describe('SIGTERM', { skip: process.platform === 'win32' }, () => {
-  const ends = async (args, options) => {
-    const { code, stderr } = await terminated(args, options);
+  /** `underWay(child)` waits until it is at work, or waits itself. */
+  async function ends(args, underWay, options) {
+    const { code, stderr } = await veroneseProcess(args, {
+      ...options,
+      onStart: async (child) => {
+        await underWay(child);
+        assert.equal(child.exitCode, null, 'it is still at work');
+        child.kill('SIGTERM');
+      },
+    });
     assert.equal(code, 143, `${args[0]} ${stderr}`);
     assert.match(stderr, /veronese: error: cancelled: [^\n]+\n$/);
-  };
-  const large = (folder) => folder.file('large.pgm', Buffer.concat([Buffer.from('P5 4096 4096 255\n'), Buffer.alloc(4096 * 4096, 'texture')]));
+  }
 
-  test('ends pair, batch, clip and points', async (t) => {
+  test('ends clip and points', async (t) => {
     const folder = frames(t);
-    const [picture, out] = [large(folder), folder.path('out')];
-    const other = folder.path('other.pgm');
-    writeFileSync(other, Buffer.concat([Buffer.from('P5 4096 4096 255\n'), Buffer.alloc(4096 * 4096, 'another texture')]));
-    await ends(['pair', picture, other, '--out', out]);
-    await ends(['batch', picture, other, picture, '--out', out]);
-    await ends(['clip', picture, other, '--out', out]);
-    const row = (_, k) => [Math.sin(k) * 99, Math.cos(3 * k) * 99, Math.sin(7 * k)];
-    const derivatives = Array.from({ length: 400_000 }, row);
-    await ends(['points', folder.file('points.json', JSON.stringify({ positions: derivatives.map(([x, y]) => [x, y]), derivatives }))]);
-  });
-
-  test('ends convert', async (t) => {
-    const folder = temporaryFolder(t);
-    const noise = Uint8Array.from({ length: 512 * 512 }, (_, at) => Math.imul(at, 0x9e3779b1) >>> 31);
-    clipFolder(folder.path('clip'), { frames: Array(60).fill(noise), width: 512, height: 512 });
-    await ends(['convert', folder.path('clip'), '--to', 'labelme-polygon,coco-polygon']);
+    const [first, second] = largeFrames(folder);
+    const ofClip = markedReading(folder, second);
+    await ends(['clip', first, second, '--out', folder.path('out')], ofClip.seen, { env: ofClip.env });
+    const derivatives = Array.from({ length: 400_000 }, (_, k) => [Math.sin(k) * 99, Math.cos(3 * k) * 99, Math.sin(7 * k)]);
+    const file = folder.file('points.json', JSON.stringify({ positions: derivatives.map(([x, y]) => [x, y]), derivatives }));
+    const ofPoints = markedReading({ ...folder, path: (name) => folder.path(`points-${name}`) }, file);
+    await ends(['points', file], ofPoints.seen, { env: ofPoints.env });
   });
 
   test('ends a wait for a list', async (t) => {
-    const folder = frames(t);
-    await Promise.all([
-      ends(['batch', '--list', '-'], { stdin: 'pipe' }),
-      ends(['clip', '--list', '-', '--out', folder.path('out')], { stdin: 'pipe' }),
-      spawnSync('mkfifo', [folder.path('list')]).status === 0 && ends(['batch', '--list', folder.path('list')]),
-    ]);
+    const { path } = frames(t);
+    // More than a pipe holds: it is all written when somebody reads.
+    const isRead = (child) => new Promise((resolve) => child.stdin.on('error', () => {}).write('\n'.repeat(2 ** 20), resolve));
+    await ends(['batch', '--list', '-'], isRead, { stdin: 'pipe' });
+    await ends(['clip', '--list', '-', '--out', path('out')], isRead, { stdin: 'pipe' });
+    if (spawnSync('mkfifo', [path('list')]).status !== 0) return;
+    // Opens when the other end is open too.
+    let writer;
+    await ends(['batch', '--list', path('list')], async () => (writer = await open(path('list'), 'w')));
+    await writer.close();
   });
 
   test('ends a wait for ffmpeg', async (t) => {
-    const folder = temporaryFolder(t);
-    const file = folder.file('film.mp4', 'film');
-    const scripts = { asked: 'exec sleep 60', reading: '[ "$1" = -version ] && echo "ffmpeg version 6.0" && exit; exec sleep 60' };
-    const runs = Object.entries(scripts).flatMap(([name, script]) => {
-      const bin = folder.path(name);
-      mkdirSync(bin);
-      writeFileSync(join(bin, 'ffmpeg'), `#!/bin/sh\n${script}\n`);
-      chmodSync(join(bin, 'ffmpeg'), 0o755);
-      const env = { PATH: `${bin}:${process.env.PATH}` };
-      return [ends(['video', file], { env }), ends(['clip', file, '--out', folder.path(`out-${name}`)], { env })];
-    });
-    await Promise.all(runs);
+    const { file, path } = temporaryFolder(t);
+    const film = file('film.mp4', 'film');
+    const scripts = { asked: '', reading: '[ "$1" = -version ] && echo "ffmpeg version 6.0" && exit;' };
+    for (const [name, script] of Object.entries(scripts)) {
+      for (const args of [['video', film], ['clip', film, '--out', path('out')]]) {
+        const started = path(`${name}-${args[0]}`);
+        mkdirSync(path(`bin-${name}`), { recursive: true });
+        writeFileSync(path(`bin-${name}`, 'ffmpeg'), `#!/bin/sh\n${script} touch '${started}'; exec sleep 60\n`, { mode: 0o755 });
+        await ends(args, (child) => there(started, child), { env: { PATH: `${path(`bin-${name}`)}:${process.env.PATH}` } });
+      }
+    }
   });
 });
 
@@ -117,9 +92,8 @@ test('an output folder that cannot be made is an error', { skip: !existsSync('/p
   ];
   for (const out of ['/proc/none/a/b', '/dev/fd/99/out', '/proc/self/fd/77/out']) {
     for (const args of commands) {
-      const { code, signal, stderr } = await veronese([...args, '--out', out]);
-      assert.equal(signal, null, `${args[0]} ${out} ends`);
-      assert.equal(code, 1);
+      const { code, stderr } = await veronese([...args, '--out', out]);
+      assert.equal(code, 1, `${args[0]} ${out}`);
       assert.match(stderr, /^veronese: error: write-failed: /m);
     }
   }

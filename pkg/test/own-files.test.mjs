@@ -8,7 +8,7 @@ import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
 
 const COUNT = 4;
@@ -297,7 +297,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
       for (const first of [undefined, other]) {
         for (const [n, when] of cases([[1, 'before'], [1, 'after'], [3, 'after']], [[2, 'before'], [4, 'before'], [5, 'after']])) {
           if (first) await done(first);
-          const { signal } = await veronese(args, { env: killed(folder, n, when) });
+          const { signal } = await veroneseProcess(args, { env: killed(folder, n, when) });
           assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
           const again = await veronese(args);
           assert.deepEqual([again.code, again.stderr], [0, ''], `${command} ${n} ${when} ${Boolean(first)}`);
@@ -310,7 +310,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
   test('of a clip leave files of others alone, and name a new one in their way', async (t) => {
     const { commands, out, place } = made(t, 12);
     const args = [...commands.clip, '--look-ahead', '0'];
-    const { signal } = await veronese(args, { onStart: (child) => child.stdout.once('data', () => child.kill('SIGKILL')) });
+    const { signal } = await veroneseProcess(args, { onStart: (child) => child.stdout.once('data', () => child.kill('SIGKILL')) });
     assert.equal(signal, 'SIGKILL');
     assert.ok(existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
     place('labels/f11.png', 'mine');
@@ -323,7 +323,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
 describe('at once', () => {
   test('two batches into one folder both end well', async (t) => {
     const { commands, out } = made(t, 8);
-    const runs = await Promise.all([veronese(commands.batch), veronese(commands.batch)]);
+    const runs = await Promise.all([veroneseProcess(commands.batch), veroneseProcess(commands.batch)]);
     for (const { code, stderr } of runs) assert.deepEqual([code, stderr], [0, '']);
     await done(commands.batch);
     assert.equal(entries(out).length, 7);
@@ -331,7 +331,7 @@ describe('at once', () => {
 
   test('a file that comes into the way while a clip is worked on stays', { skip: skipWindows }, async (t) => {
     const { commands, out, place } = made(t, 12);
-    const { code, stderr } = await veronese([...commands.clip, '--look-ahead', '0'], { onStart: (child) => child.stdout.once('data', () => place('tracks.json', 'mine')) });
+    const { code, stderr } = await veronese([...commands.clip, '--look-ahead', '0'], { onLine: () => place('tracks.json', 'mine') });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
     assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
