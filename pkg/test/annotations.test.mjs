@@ -9,6 +9,7 @@ import * as formats from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
 import { drawnClip } from './support/clip.mjs';
 import { drawn, labelImages } from './support/masks.mjs';
+import { soaking } from './support/soak.mjs';
 
 const { readAnnotations } = formats;
 const encoder = new TextEncoder();
@@ -427,7 +428,8 @@ describe('what is none of that', () => {
   });
 
   describe('work without end', () => {
-    const [width, height] = [4096, 4096];
+    // The work is bounded by the size of the frame: the largest there may be, with npm run soak.
+    const [width, height] = soaking ? [4096, 4096] : [1024, 1024];
     const large = (annotations) => ({ images: [{ id: 1, file_name: 'f', width, height }], annotations });
     const full = { size: [height, width], counts: [0, width * height] };
     const HOSTILE = {
@@ -435,15 +437,17 @@ describe('what is none of that', () => {
       'a polygon that goes up and down': large([{ image_id: 1, segmentation: [Array.from({ length: 2_000_000 }, (_, k) => (k % 4 === 1 ? -1 : k % 4 === 3 ? 5000 : k % 3000))] }]),
       'many polygons': large(Array.from({ length: 50_000 }, () => ({ image_id: 1, track_id: 1, segmentation: [[0, 0, 9999, 0, 9999, 9999, 0, 9999]] }))),
       'a tower of elements': `${'<annotations>'.repeat(100_000)}${'</annotations>'.repeat(100_000)}`,
-      'an archive that grows': zipSync({ 'a.json': new Uint8Array(2 ** 27), 'b.json': new Uint8Array(1) }),
-      'a PNG that grows': Buffer.concat([png.subarray(0, 33), chunk('IDAT', deflateSync(Buffer.alloc(2 ** 28)))]),
+      'an archive that grows': zipSync({ 'a.json': new Uint8Array(2 ** (soaking ? 27 : 24)), 'b.json': new Uint8Array(1) }),
+      'a PNG that grows': Buffer.concat([png.subarray(0, 33), chunk('IDAT', deflateSync(Buffer.alloc(2 ** (soaking ? 28 : 24))))]),
     };
     for (const [name, content] of Object.entries(HOSTILE)) {
-      test(name, { timeout: 60_000 }, () => {
+      test(name, () => {
         const source = file('a.file', content);
-        const began = performance.now();
+        const started = process.cpuUsage();
         assert.throws(() => [...readAnnotations([source]).frames.values()].map((one) => one.read()), { name: 'VeroneseError' });
-        const seconds = (performance.now() - began) / 1000;
+        // Of a processor, which others on the machine do not change.
+        const { user, system } = process.cpuUsage(started);
+        const seconds = (user + system) / 1e6;
         assert.ok(seconds < 20, `${seconds} s`);
       });
     }

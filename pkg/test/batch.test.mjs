@@ -10,7 +10,7 @@ import { ProgressBar } from '../build/cli/terminal.js';
 import { pixmaps } from '../build/cli/video.js';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
-import { cases } from './support/soak.mjs';
+import { cases, soaking } from './support/soak.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
@@ -308,7 +308,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     await batch(args(frames, folder.path('undisturbed')));
     const expected = tree(folder.path('undisturbed'));
     let there = 0;
-    for (const [n, when] of [[1, 'before'], [2, 'after'], [3, 'before']]) {
+    for (const [n, when] of cases([[1, 'before'], [2, 'after']], [[3, 'before']])) {
       const killed = await veroneseProcess(['batch', ...args(frames, out)], signalled(folder, 'SIGKILL', n, when));
       assert.equal(killed.signal, 'SIGKILL');
       const left = readdirSync(out).filter((name) => !name.startsWith('.'));
@@ -322,7 +322,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     assert.deepEqual(tree(out), expected);
   });
 
-  test('by kill -9 from outside, at a moment nobody chose', async (t) => {
+  test('by kill -9 from outside, at a moment nobody chose', { skip: !soaking && 'npm run soak' }, async (t) => {
     const { frames, out, path } = clip(t, 8, SIZE);
     await batch(args(frames, path('undisturbed')));
     await veroneseProcess(['batch', ...args(frames, out)], {
@@ -356,7 +356,7 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     assert.deepEqual(hidden, ['.000001-f1.00000000-1.part', `.000002-f2.${host}-${process.ppid}.part`]);
   });
 
-  for (const [signal, exit] of [['SIGINT', 130], ['SIGTERM', 143]]) {
+  for (const [signal, exit] of cases([['SIGINT', 130]], [['SIGTERM', 143]])) {
     test(`by ${signal} leaves whole results only, exit ${exit}`, async (t) => {
       const { frames, out, path, ...folder } = clip(t, 8, SIZE);
       const run = await veroneseProcess(['batch', ...args(frames, out)], signalled(folder, signal, 3, 'after'));

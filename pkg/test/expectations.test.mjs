@@ -1,10 +1,12 @@
-// What must hold of real frames, in WebAssembly: the scenes of tests/expectations, whose README.md says what their fields mean.
+// What must hold of real frames, in WebAssembly: the scenes of tests/expectations, whose README.md says what their fields mean. The crate's
+// tests ask the same of native code, and golden.test.mjs that the module gives the same bits: so this is for npm run soak.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { segmentClip, segmentPair } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
+import { soaking } from './support/soak.mjs';
 
 /** IoU of a mask with the outline of its object, unless the scene says otherwise. */
 const OVERLAP = 0.85;
@@ -99,7 +101,7 @@ async function checkClip({ folder, objects }, quality) {
 
 for (const file of readdirSync(new URL('tests/expectations/', root)).filter((name) => name.endsWith('.json'))) {
   const expected = JSON.parse(fileAt(`tests/expectations/${file}`));
-  describe(expected.scene, () => {
+  describe(expected.scene, { skip: !soaking && 'npm run soak' }, () => {
     // The page's tests have the clip with *best*, and the crate's tests both.
     for (const quality of expected.folder ? ['fast'] : ['fast', 'best']) test(quality, () => (expected.folder ? checkClip : checkPair)(expected, quality));
   });

@@ -8,7 +8,7 @@ import { davisPalette, VeroneseError } from 'veronese';
 import * as formats from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
 import { drawn, labelImages, present } from './support/masks.mjs';
-import { cases } from './support/soak.mjs';
+import { cases, soaking } from './support/soak.mjs';
 
 /** The encoders of many frames. */
 const MANY = ['encodeCocoImages', 'encodeCocoVideo', 'encodeCvatImages', 'encodeCvatVideo', 'encodeCvatMots', 'encodeMots', 'encodeMotChallenge', 'encodeLabelStudioVideo'];
@@ -70,7 +70,7 @@ describe('polygons with a tolerance', () => {
     return distance < outer && distance > inner ? 1 : 255;
   });
   /** Random images with smooth borders and several masks, larger than the others: there are lines to draw. */
-  const smooth = Array.from({ length: 40 }, (_, seed) => {
+  const smooth = Array.from({ length: soaking ? 40 : 10 }, (_, seed) => {
     const next = random(seed + 1);
     const [width, height] = [60 + Math.floor(next() * 60), 60 + Math.floor(next() * 60)];
     const seeds = Array.from({ length: 3 + Math.floor(next() * 6) }, () => ({ x: next() * width, y: next() * height, wave: 0.05 + next() / 4, label: Math.floor(next() * 5) }));
@@ -167,8 +167,10 @@ describe('masks of noise', () => {
     const next = random(3);
     return [Uint8Array.from({ length: side * side }, () => Number(next() < 0.5)), side, side];
   };
+  /** Width and height of most masks and of the larger ones. */
+  const [side, largerSide] = soaking ? [1024, 2048] : [512, 1024];
   /** Seconds of a processor, which others on the machine do not change: five times what is needed. */
-  const PATIENCE = 30;
+  const PATIENCE = 30 * (side / 1024) ** 2;
   const soon = (title, encode) => {
     test(title, () => {
       const started = process.cpuUsage();
@@ -179,7 +181,7 @@ describe('masks of noise', () => {
     });
   };
   const frame = ([labels, width, height]) => ({ labels, width, height });
-  const [large, larger] = [noise(1024), noise(2048)];
+  const [large, larger, largest] = [side, largerSide, 2048].map(noise);
   const polygons = { shape: 'polygon' };
   const encoders = {
     'COCO, run lengths': (all) => formats.encodeCoco(...all),
@@ -197,11 +199,11 @@ describe('masks of noise', () => {
     Supervisely: (all) => formats.encodeSupervisely(...all),
     'Web Annotation': (all) => formats.encodeWebAnnotation(...all),
   };
-  for (const [title, encode] of Object.entries(encoders)) soon(`${title}: 1024 × 1024`, () => encode(large));
-  for (const title of cases(['Supervisely'], ['CVAT MOTS', 'DAVIS'])) soon(`${title}: 2048 × 2048`, () => encoders[title](larger));
-  for (const title of cases(['COCO, polygons', 'YOLO'], ['CVAT, polygons', 'Label Studio, polygons', 'LabelMe, polygons', 'Web Annotation'])) {
+  for (const [title, encode] of Object.entries(encoders)) soon(`${title}: ${side} × ${side}`, () => encode(large));
+  for (const title of cases(['Supervisely'], ['CVAT MOTS', 'DAVIS'])) soon(`${title}: ${largerSide} × ${largerSide}`, () => encoders[title](larger));
+  for (const title of cases(['COCO, polygons'], ['YOLO', 'CVAT, polygons', 'Label Studio, polygons', 'LabelMe, polygons', 'Web Annotation'])) {
     soon(`${title}: 2048 × 2048 has too many vertices`, () => {
-      assert.throws(() => encoders[title](larger), { code: 'invalid-input', message: /more than 4000000 vertices/ });
+      assert.throws(() => encoders[title](largest), { code: 'invalid-input', message: /more than 4000000 vertices/ });
     });
   }
 
@@ -215,7 +217,7 @@ describe('masks of noise', () => {
   });
 
   soon('teeth that a tolerance takes off one by one', () => {
-    const side = 2048;
+    const side = largerSide;
     const teeth = (x, y) => y % 6 < 2 || (y % 6 === 2 && x % 2 === 0) || x === (Math.floor(y / 6) % 2 ? 0 : side - 1);
     const labels = Uint8Array.from({ length: side * side }, (_, at) => Number(teeth(at % side, Math.floor(at / side))));
     const [{ segmentation }] = formats.encodeCoco(labels, side, side, { labels: [1] }, { ...polygons, tolerance: 0.4 }).annotations;

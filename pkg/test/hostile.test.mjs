@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { describe, test } from 'node:test';
+import { after, describe, test } from 'node:test';
 import { inspect, isDeepStrictEqual } from 'node:util';
 import { Worker } from 'node:worker_threads';
 import * as index from 'veronese';
@@ -33,22 +33,33 @@ async function everywhere(call, harmless, also = async () => {}) {
   }
 }
 
+/** One worker for all calls of a suite: no call may end it. */
+function segmenterOf() {
+  let started = 0;
+  const worker = () => {
+    started += 1;
+    return new Worker(new URL('../dist/worker-node.js', import.meta.url));
+  };
+  const segmenter = new index.Segmenter(undefined, { worker });
+  after(() => segmenter.close());
+  return {
+    segmenter,
+    checkWorker: async () => {
+      assert.equal((await segmenter.segmentPair(first, second)).width, 16);
+      assert.equal(started, 1, 'no call has ended the worker');
+    },
+  };
+}
+
 describe('direct calls and workers', () => {
+  const { segmenter, checkWorker } = segmenterOf();
   for (const [place, [name, args, harmless]] of Object.entries(CALLS)) {
-    test(place, async (t) => {
-      let started = 0;
-      const worker = () => {
-        started += 1;
-        return new Worker(new URL('../dist/worker-node.js', import.meta.url));
-      };
-      const segmenter = new index.Segmenter(undefined, { worker });
-      t.after(() => segmenter.close());
+    test(place, async () => {
       await everywhere((value) => index[name](...args(value)), harmless, async (value, direct) => {
         const there = await outcome(() => segmenter[name](...args(value)));
         if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
       });
-      assert.equal((await segmenter.segmentPair(first, second)).width, 16);
-      assert.equal(started, 1, 'no call has ended the worker');
+      await checkWorker();
     });
   }
 
@@ -82,21 +93,14 @@ describe('direct calls and workers', () => {
 });
 
 describe('clips, directly and in workers', () => {
+  const { segmenter, checkWorker } = segmenterOf();
   for (const [place, [args, harmless]] of Object.entries(CLIPS)) {
-    test(place, async (t) => {
-      let started = 0;
-      const worker = () => {
-        started += 1;
-        return new Worker(new URL('../dist/worker-node.js', import.meta.url));
-      };
-      const segmenter = new index.Segmenter(undefined, { worker });
-      t.after(() => segmenter.close());
+    test(place, async () => {
       await everywhere((value) => all(index.segmentClip(...args(value))), harmless, async (value, direct) => {
         const there = await outcome(() => all(segmenter.segmentClip(...args(value))));
         if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
       });
-      assert.equal((await segmenter.segmentPair(first, second)).width, 16);
-      assert.equal(started, 1, 'no clip has ended the worker');
+      await checkWorker();
     });
   }
 });
