@@ -31,6 +31,6 @@ process.exitCode = await main(process.argv.slice(2), {
     return process.stdin;
   },
   stdout,
-  stderr: { isTTY: stderr.isTTY === true, write: say },
+  stderr: { isTTY: Boolean(stderr.isTTY), write: say },
   signal: stopping.signal,
 });

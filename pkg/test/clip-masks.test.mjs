@@ -1,13 +1,14 @@
 // What a person says of a whole clip, directly and in workers: given masks, where corrections spread, locked objects, frames as they change.
 
 import assert from 'node:assert/strict';
-import { describe, test } from 'node:test';
+import { after, describe, test } from 'node:test';
 import { davisPalette, segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
 import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
 import { asked } from '../build/calls/clip/asked.js';
 import { frame } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
+import { cases } from './support/soak.mjs';
 
 const COUNT = 7;
 const SIZE = { width: 96, height: 72 };
@@ -53,19 +54,16 @@ const clip = segmentClip(source, { quality: 'fast' });
 const whole = await all(clip);
 const state = await clip.state();
 
-const WAYS = {
-  directly: () => segmentClip,
-  'in a worker': (t) => {
-    const segmenter = new Segmenter();
-    t.after(() => segmenter.close());
-    return (...args) => segmenter.segmentClip(...args);
-  },
-  'in a pool': (t) => {
-    const pool = new SegmenterPool({ jobs: 2 });
-    t.after(() => pool.close());
-    return (...args) => pool.segmentClip(...args);
-  },
-};
+/** All ways to segment a clip. */
+const [segmenter, pool] = [new Segmenter(), new SegmenterPool({ jobs: 2 })];
+after(() => {
+  segmenter.close();
+  pool.close();
+});
+const WAYS = cases(
+  [['directly', segmentClip], ['in a pool', (...args) => pool.segmentClip(...args)]],
+  [['in a worker', (...args) => segmenter.segmentClip(...args)]],
+);
 
 test('the square is found by itself', () => {
   assert.deepEqual(idsOf(whole), ALL.map(() => [1]));
@@ -78,10 +76,9 @@ test('what is merged into a locked object is locked with it', () => {
   assert.deepEqual([lockedBy({ locked: [] }), lockedBy({ edits: {} })], [new Uint8Array(), undefined]);
 });
 
-for (const [way, make] of Object.entries(WAYS)) {
+for (const [way, segment] of WAYS) {
   describe(`what is said of a clip ${way}`, () => {
-    test('a given mask keeps its number and its pixels, and the object is followed', async (t) => {
-      const segment = make(t);
+    test('a given mask keeps its number and its pixels, and the object is followed', async () => {
       const frames = await run(segment, { masks: [{ frame: 1, labels: labelled(1, 7) }] });
       assert.deepEqual(frames[1].labels, labelled(1, 7));
       for (const one of frames) {
@@ -94,8 +91,8 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(await run(segment, { state: await again.state(), masks: [{ frame: 1, labels: labelled(1, 7) }] }), frames);
     });
 
-    test('what was found under the number of a mask gets another', async (t) => {
-      const frames = await run(make(t), { state, masks: [{ frame: 2, labels: corner(1), propagate: 'none' }] });
+    test('what was found under the number of a mask gets another', async () => {
+      const frames = await run(segment, { state, masks: [{ frame: 2, labels: corner(1), propagate: 'none' }] });
       assert.deepEqual(idsOf(frames), ALL.map((index) => (index === 2 ? [1, 2] : [2])));
       frames.forEach(({ labels, index }) => {
         const expected = whole[index].labels.map((label) => (label === 1 ? 2 : label));
@@ -105,12 +102,11 @@ for (const [way, make] of Object.entries(WAYS)) {
         if (index === 2) assert.ok(labels.every(isRight));
         else assert.deepEqual(labels, expected);
       });
-      const changes = await run(make(t), { state, changesOnly: true, masks: [{ frame: 2, labels: corner(1), propagate: 'none' }] });
+      const changes = await run(segment, { state, changesOnly: true, masks: [{ frame: 2, labels: corner(1), propagate: 'none' }] });
       assert.deepEqual(changes, frames, 'all of them have changed');
     });
 
-    test('masks have many forms', async (t) => {
-      const segment = make(t);
+    test('masks have many forms', async () => {
       const labels = labelled(3, 7);
       const { width, height } = SIZE;
       const picture = (colourOf) => ({ ...SIZE, data: Uint8ClampedArray.from([...labels].flatMap((label) => [...colourOf(label), 255])) });
@@ -137,8 +133,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(await run(segment, { state, masks: over }), await said({ labels: halves }), 'one over the other');
     });
 
-    test('the arrays of masks stay the caller\'s', async (t) => {
-      const segment = make(t);
+    test('the arrays of masks stay the caller\'s', async () => {
       const mask = labelled(3, 7);
       const clip = segment(source, { state, masks: [{ frame: 3, labels: mask }] });
       const first = clip.next();
@@ -146,8 +141,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual([(await first).value, ...(await all(clip))], await run(segment, { state, masks: [{ frame: 3, labels: labelled(3, 7) }] }));
     });
 
-    test('corrections go before the mask of their frame', async (t) => {
-      const segment = make(t);
+    test('corrections go before the mask of their frame', async () => {
       const mask = labelled(3, 7);
       const labels = mask.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 9 : 255));
       const frames = await run(segment, { state, masks: [{ frame: 3, labels: mask }], corrections: [{ frame: 3, labels }] });
@@ -155,8 +149,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(idsOf(frames)[3], [7, 9]);
     });
 
-    test('a correction spreads where it is to', async (t) => {
-      const segment = make(t);
+    test('a correction spreads where it is to', async () => {
       for (const [propagate, indices] of [['none', [3]], ['forward', [3, 4, 5, 6]], ['backward', [0, 1, 2, 3]], ['both', ALL], [undefined, ALL]]) {
         for (const name of ['corrections', 'masks']) {
           const frames = await run(segment, { state, [name]: [{ frame: 3, labels: labelled(3, 9), propagate }] });
@@ -168,8 +161,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       }
     });
 
-    test('locked and named objects do not change by a pixel when another is corrected', async (t) => {
-      const segment = make(t);
+    test('locked and named objects do not change by a pixel when another is corrected', async () => {
       // A stroke across half of the square.
       const stroke = labelled(3, 1).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 9 : 255));
       const corrections = [{ frame: 3, labels: stroke }];
@@ -191,8 +183,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.equal(changedOf(before, after, 7), 0);
     });
 
-    test('onChange tells of frames as they change, the one that is spoken of first', async (t) => {
-      const segment = make(t);
+    test('onChange tells of frames as they change, the one that is spoken of first', async () => {
       const told = [];
       let late;
       const onChange = async (index, segmented) => {
@@ -223,8 +214,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       for (const onChange of throwing) assert.equal(await failure(run(segment, { ...options, onChange })), mine);
     });
 
-    test('is cancelled while a correction spreads; what was given is as it was', async (t) => {
-      const segment = make(t);
+    test('is cancelled while a correction spreads; what was given is as it was', async () => {
       const kept = state.slice();
       const options = { state, masks: [{ frame: 1, labels: labelled(1, 7) }], corrections: [{ frame: 3, labels: labelled(3, 9) }] };
       const expected = await run(segment, options);
@@ -243,8 +233,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       }
     });
 
-    test('refuses what it cannot use before any pair is solved', async (t) => {
-      const segment = make(t);
+    test('refuses what it cannot use before any pair is solved', async () => {
       const mask = (rest) => ({ masks: [{ frame: 0, ...rest }] });
       const colours = await encodeColourPng(4, 3, new Uint8Array(36));
       const rle = { size: [72, 96], counts: [PIXELS] };

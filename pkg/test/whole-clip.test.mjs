@@ -1,7 +1,7 @@
 // Clips whose frames can be read again: corrections, edits, states and pairs that are known, directly and in workers.
 
 import assert from 'node:assert/strict';
-import { describe, test } from 'node:test';
+import { after, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
@@ -70,34 +70,30 @@ const whole = await outcome(segmentClip, readable());
 const corrected = await outcome(segmentClip, readable(), { corrections: [{ frame: 3, labels: mask(9, 0) }] });
 
 /** All ways to segment a clip. */
-const WAYS = {
-  directly: () => segmentClip,
-  'in a worker': (t) => {
-    const segmenter = new Segmenter();
-    t.after(() => segmenter.close());
-    return (...args) => segmenter.segmentClip(...args);
-  },
-  'in several workers': (t) => {
-    const pool = new SegmenterPool({ jobs: 3 });
-    t.after(() => pool.close());
-    return (...args) => pool.segmentClip(...args);
-  },
-};
+const [segmenter, pool] = [new Segmenter(), new SegmenterPool({ jobs: 3 })];
+after(() => {
+  segmenter.close();
+  pool.close();
+});
+const WAYS = cases(
+  [['directly', segmentClip], ['in several workers', (...args) => pool.segmentClip(...args)]],
+  [['in a worker', (...args) => segmenter.segmentClip(...args)]],
+);
 
-for (const [way, make] of Object.entries(WAYS)) {
+for (const [way, segment] of WAYS) {
   describe(`a whole clip ${way}`, () => {
-    test('reads every frame for its pairs and for its labels', async (t) => {
+    test('reads every frame for its pairs and for its labels', async () => {
       const source = readable();
-      const { frames, tracks, state, stages } = await outcome(make(t), source);
+      const { frames, tracks, state, stages } = await outcome(segment, source);
       assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
       assert.deepEqual(stages, { pairs: ALL, corrections: [], labels: ALL });
       assert.deepEqual(source.asked, [...ALL, ...ALL]);
       assert.deepEqual(idsOf(frames), ALL.map(() => [1]));
     });
 
-    test('a correction holds to the pixel and spreads both ways', async (t) => {
+    test('a correction holds to the pixel and spreads both ways', async () => {
       const source = readable();
-      const { frames, tracks, stages } = await outcome(make(t), source, { corrections: [{ frame: 3, labels: mask(9, 0) }] });
+      const { frames, tracks, stages } = await outcome(segment, source, { corrections: [{ frame: 3, labels: mask(9, 0) }] });
       assert.deepEqual(frames[3].labels, mask(9, 0));
       assert.deepEqual(idsOf(frames), ALL.map(() => [9]));
       assert.deepEqual(tracks.objects.map(({ id, first, last }) => [id, first, last]), [[9, 0, COUNT - 1]]);
@@ -105,8 +101,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(frames, corrected.frames);
     });
 
-    test('a box and a click point to an object, which is followed', async (t) => {
-      const segment = make(t);
+    test('a box and a click point to an object, which is followed', async () => {
       const box = [23, 16, 44, 44];
       const isWithin = (p) => p % SIZE.width >= 23 && p % SIZE.width < 67 && p / SIZE.width >= 16 && p / SIZE.width < 60;
       for (const at of [{ box }, { click: [45, 38] }]) {
@@ -132,30 +127,29 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(idsOf(alone.frames), ALL.map((index) => [index === 3 ? 9 : 1]));
     });
 
-    test('edits merge, remove and name', async (t) => {
+    test('edits merge, remove and name', async () => {
       // One half of the square is an object of its own.
       const corrections = [{ frame: 3, labels: mask(9, 0).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label)) }];
-      const halves = await outcome(make(t), readable(), { corrections });
+      const halves = await outcome(segment, readable(), { corrections });
       assert.deepEqual(idsOf(halves.frames)[3], [1, 9]);
       const edits = { merge: [[9, 1]], names: { 9: 'square', 30: 'nobody' } };
-      const merged = await outcome(make(t), readable(), { corrections, edits });
+      const merged = await outcome(segment, readable(), { corrections, edits });
       const labels = halves.frames.map(({ labels }) => labels.map((label) => (label > 0 ? 9 : 0)));
       assert.deepEqual(merged.frames.map(({ labels }) => labels), labels);
       assert.deepEqual(merged.tracks.objects.map(({ id, name }) => [id, name]), [[9, 'square']]);
       // Numbers that no object has change nothing.
       for (const merge of [[[9, 1]], [[9, 8]], [[1, 9]]]) {
-        const { frames, tracks } = await outcome(make(t), readable(), { edits: { merge, names: { 9: 'nobody' } } });
+        const { frames, tracks } = await outcome(segment, readable(), { edits: { merge, names: { 9: 'nobody' } } });
         assert.deepEqual([frames, tracks], [whole.frames, whole.tracks]);
       }
       for (const name of ['delete', 'background']) {
-        const { frames, tracks } = await outcome(make(t), readable(), { edits: { [name]: [1, 77] } });
+        const { frames, tracks } = await outcome(segment, readable(), { edits: { [name]: [1, 77] } });
         assert.deepEqual([idsOf(frames), tracks.objects], [ALL.map(() => []), []]);
         assert.ok(frames.every(({ labels }) => labels.every((label) => label === 0)));
       }
     });
 
-    test('a state takes the place of all pairs', async (t) => {
-      const segment = make(t);
+    test('a state takes the place of all pairs', async () => {
       const source = readable();
       const again = await outcome(segment, source, { state: whole.state });
       assert.deepEqual({ ...again, stages: 0 }, { ...whole, stages: 0 });
@@ -172,8 +166,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(idsOf(back.frames), idsOf(whole.frames));
     });
 
-    test('changesOnly gives the frames that corrections and edits change', async (t) => {
-      const segment = make(t);
+    test('changesOnly gives the frames that corrections and edits change', async () => {
       const changes = async (options) => (await outcome(segment, readable(), { state: whole.state, changesOnly: true, ...options })).frames;
       const frames = await changes({ corrections: [{ frame: 3, labels: mask(9, 0) }] });
       assert.deepEqual(frames, ALL.map((index) => corrected.frames[index]));
@@ -188,8 +181,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       for (const one of every) assert.deepEqual(one, given.get(one.index) ?? whole.frames[one.index]);
     });
 
-    test('frames must be those of the state, and the same whenever they are read', async (t) => {
-      const segment = make(t);
+    test('frames must be those of the state, and the same whenever they are read', async () => {
       const altered = (index) => ({ ...list[index], data: list[index].data.map((value, at) => (at === 4000 ? value ^ 1 : value)) });
       const transparent = list.map(({ data, ...size }) => ({ data: data.map((value, at) => (at % 4 === 3 ? 7 : value)), ...size }));
       assert.deepEqual((await outcome(segment, transparent, { state: whole.state })).frames, whole.frames, 'alpha is ignored');
@@ -209,8 +201,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.match(twice.error.message, /^frame 4 is not the one that was segmented$/);
     });
 
-    test('an interrupted run goes on with the pairs that are known', async (t) => {
-      const segment = make(t);
+    test('an interrupted run goes on with the pairs that are known', async () => {
       const kept = new Map();
       const onPairs = async (index, pairs) => {
         kept.set(index, pairs);
@@ -232,8 +223,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual([unfit.error.code, unfit.given], ['invalid-input', []]);
     });
 
-    test('shows what the pairs tell while they are solved, and returns the same', async (t) => {
-      const segment = make(t);
+    test('shows what the pairs tell while they are solved, and returns the same', async () => {
       const previews = [];
       const onPreview = async (preview) => void previews.push(preview);
       const { frames, tracks, state } = await outcome(segment, readable(), { onPreview });
@@ -244,8 +234,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(await failing, { given: [], error: MINE });
     });
 
-    test('a frame that cannot be read the first time ends the clip before it, one of the second time there', async (t) => {
-      const segment = make(t);
+    test('a frame that cannot be read the first time ends the clip before it, one of the second time there', async () => {
       for (const fail of [(index) => index === 4, (index, { length }) => length === COUNT + 5]) {
         const source = readable(fail);
         assert.deepEqual(await until(segment(source, FAST)), { given: [0, 1, 2, 3], error: MINE });
@@ -260,8 +249,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual([given, error.code, error.message.startsWith('frame 2 ')], [[0, 1], 'frame-size-mismatch', true]);
     });
 
-    test('is cancelled in each of its passes, and left early', async (t) => {
-      const segment = make(t);
+    test('is cancelled in each of its passes, and left early', async () => {
       const options = { ...FAST, corrections: [{ frame: 3, labels: mask(9, 0) }] };
       for (const [stage, given] of [['pairs', []], ['corrections', []], ['labels', [0, 1, 2, 3]]]) {
         const controller = new AbortController();
@@ -275,8 +263,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual((await outcome(segment, list.slice(0, 2), { lookAhead: 'all' })).frames.length, 2);
     });
 
-    test('is cancelled while it waits for the caller to keep or find pairs', async (t) => {
-      const segment = make(t);
+    test('is cancelled while it waits for the caller to keep or find pairs', async () => {
       for (const name of ['onPairs', 'knownPairs']) {
         const controller = new AbortController();
         const waiting = (index) => {
@@ -290,8 +277,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       }
     });
 
-    test('refuses corrections, edits and states before any pair is solved', async (t) => {
-      const segment = make(t);
+    test('refuses corrections, edits and states before any pair is solved', async () => {
       const said = (frame, labels = mask(1, 255)) => ({ corrections: [{ frame: 0, labels: mask(1, 255) }, { frame, labels }] });
       const damaged = whole.state.slice(0, -1);
       const cases = [
