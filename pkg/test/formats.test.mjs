@@ -12,7 +12,7 @@ import { cases, soaking } from './support/soak.mjs';
 
 /** The encoders of many frames. */
 const MANY = ['encodeCocoImages', 'encodeCocoVideo', 'encodeCvatImages', 'encodeCvatVideo', 'encodeCvatMots', 'encodeMots', 'encodeMotChallenge', 'encodeLabelStudioVideo'];
-const IMAGES = labelImages(300);
+const IMAGES = labelImages(soaking ? 300 : 100);
 const each = (check) => IMAGES.forEach(({ labels, width, height }, index) => check(labels, width, height, index));
 const mask = (labels, label) => labels.map((value) => Number(value === label));
 

@@ -7,8 +7,8 @@ import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { segmentClip, segmentPair } from 'veronese';
 import { frame, pair, png } from '../support/frames.mjs';
-import { launch, outcomeOf, serve } from './browser.mjs';
-import { install, run } from './packed.mjs';
+import { launch, outcomeOf, serve } from '../packed/browser.mjs';
+import { install, run } from '../packed/packed.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 // The project's, which is much faster than the one beside this file.

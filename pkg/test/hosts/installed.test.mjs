@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { install } from './packed.mjs';
+import { install } from '../packed/packed.mjs';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 

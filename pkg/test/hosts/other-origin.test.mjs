@@ -10,9 +10,9 @@ import { encodeDavis, encodeSupervisely } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
 import { policyFor as documented, examples } from '../support/readme.mjs';
-import { outcomeOf, launch, serve } from './browser.mjs';
-import { install } from './packed.mjs';
-import { report } from './app/report.js';
+import { outcomeOf, launch, serve } from '../packed/browser.mjs';
+import { install } from '../packed/packed.mjs';
+import { report } from '../packed/app/report.js';
 
 const SHARED = { 'Access-Control-Allow-Origin': '*' };
 

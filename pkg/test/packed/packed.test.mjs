@@ -1,0 +1,82 @@
+// The packed package, installed into an empty project: run in Node, and bundled by Vite and run in Chromium. What other bundlers and
+// frameworks make of it is in hosts, for npm run soak.
+
+import assert from 'node:assert/strict';
+import { readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { build, createServer } from 'vite';
+import { launch, outcomeOf, serve } from './browser.mjs';
+import { checkOutcome, expected, isWhole } from './outcome.mjs';
+import { install, run } from './packed.mjs';
+
+let [app, remove, browser] = [];
+before(async () => {
+  ({ app, remove } = install());
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+  remove?.();
+});
+
+describe('plain Node', () => {
+  test('imports the installed package and runs it', () => {
+    checkOutcome({ outcome: JSON.parse(run(process.execPath, ['plain.mjs'], { cwd: app })), complaints: [] });
+  });
+
+  test('runs the installed program', () => {
+    assert.match(run('npx', ['--no-install', 'veronese', '--version'], { cwd: app }), /^veronese \d+\.\d+\.\d+\n$/);
+  });
+
+  test('reaches the module file and the manifest by their names', () => {
+    const script = `
+      const { readFileSync } = await import('node:fs');
+      const compiled = (name) => WebAssembly.compile(readFileSync(new URL(import.meta.resolve(name))));
+      for (const name of ['veronese/veronese_bg.wasm', 'veronese/veronese_points_bg.wasm']) await compiled(name);
+      console.log(true, import.meta.resolve('veronese/package.json').length > 0);`;
+    assert.equal(run(process.execPath, ['--input-type=module', '--eval', script], { cwd: app }), 'true true\n');
+  });
+
+  test('every entry of package.json that is JavaScript can be imported, on a server too', () => {
+    const { exports } = JSON.parse(readFileSync(join(app, 'node_modules/veronese/package.json')));
+    const entries = Object.keys(exports).filter((name) => !/\.(wasm|json)$/.test(name) && name !== './worker');
+    assert.ok(entries.length >= 4);
+    for (const entry of entries) {
+      run(process.execPath, ['--input-type=module', '--eval', `await import(${JSON.stringify(join('veronese', entry))})`], { cwd: app });
+    }
+  });
+});
+
+describe('Vite 8', () => {
+  const quiet = { logLevel: 'error', configFile: false, clearScreen: false };
+
+  test('development server', async (t) => {
+    const server = await createServer({ ...quiet, root: app, server: { host: '127.0.0.1', port: 0, hmr: false, watch: null } });
+    t.after(() => server.close());
+    await server.listen();
+    const found = await outcomeOf(t, browser, `http://127.0.0.1:${server.httpServer.address().port}/`);
+    checkOutcome(found);
+    isWhole(found);
+  });
+
+  test('build', async (t) => {
+    await build({ ...quiet, root: app, build: { outDir: 'built-by-vite', emptyOutDir: true } });
+    const files = readdirSync(join(app, 'built-by-vite/assets'));
+    const modules = files.filter((name) => name.endsWith('.wasm')).map((name) => name.replace(/_bg.*/, ''));
+    assert.deepEqual(modules.sort(), ['veronese', 'veronese_points'], 'each module once, whoever loads it');
+    const { address, missing } = await serve(t, join(app, 'built-by-vite'));
+    const found = await outcomeOf(t, browser, address);
+    checkOutcome(found);
+    isWhole(found);
+    assert.deepEqual(missing, []);
+  });
+
+  test('import on the server', async (t) => {
+    const server = await createServer({ ...quiet, root: app, appType: 'custom', server: { middlewareMode: true, hmr: false, watch: null, ws: false } });
+    t.after(() => server.close());
+    const module = await server.ssrLoadModule('/server.js');
+    assert.equal(module.render(), '<p>function function</p>');
+    assert.equal(await module.segment(), expected);
+  });
+});
