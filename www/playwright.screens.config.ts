@@ -2,5 +2,5 @@ import { defineConfig } from '@playwright/test';
 
 import pages from './playwright.config.js';
 
-/** Screenshots of the page; `npm test -- screens` starts this. */
+/** Screenshots of the page; `npm run soak -- screens` starts this. */
 export default defineConfig({ ...pages, testDir: 'screens' });

@@ -88,17 +88,22 @@ export const buildPage = once(async () => {
 });
 
 /** Builds the wheel of the Python package, with the maturin of an environment. Returns its path. Cargo knows what is up to date. */
-export async function buildWheel(python) {
-  say('Building the wheel of the Python package (about a minute when everything is new) …');
+export function buildWheel(python) {
+  return makeWheel(python, ['--release'], { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') });
+}
+
+/** The same wheel compiled as tests are, so that the native tests and it share the crate. */
+export function buildTestWheel(python) {
+  return makeWheel(python, ['--profile', 'dev', '--features', 'veronese/stages']);
+}
+
+async function makeWheel(python, profile, env = {}) {
+  say('Building the wheel of the Python package …');
   const folder = join(root, 'out', 'wheel');
   rmSync(folder, { recursive: true, force: true });
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked']);
-  await must(
-    'The wheel could not be built.',
-    python,
-    ['-m', 'maturin', 'build', '--quiet', '--release', '--locked', '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder],
-    { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') } },
-  );
+  const args = ['-m', 'maturin', 'build', '--quiet', '--locked', ...profile, '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder];
+  await must('The wheel could not be built.', python, args, { env });
   return join(folder, readdirSync(folder)[0]);
 }
 
@@ -147,6 +152,13 @@ export async function buildPlainModule(folder) {
 function ofModule(features, flags = []) {
   const config = `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`;
   return ['--locked', '--config', config, '--no-default-features', '--features', features.join(',')];
+}
+
+/** wasm-pack's arguments for a test of the modules' own crate, and the environment: with them, the library is the one that is built for them. */
+export function testOfModules(name) {
+  const { features } = MODULES.at(-1);
+  const args = ['test', 'wasm', '--node', '--release', '--mode', 'no-install', '--', '--test', name, ...ofModule(features)];
+  return { args, env: FLAGS_OF_PROJECT };
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */

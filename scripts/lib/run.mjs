@@ -4,20 +4,21 @@ import { AsyncLocalStorage } from 'node:async_hooks';
 import { spawn } from 'node:child_process';
 import { setPriority } from 'node:os';
 
+import { account } from './processor.mjs';
 import { environment, root } from './project.mjs';
 
 /** A failure that one sentence explains to the user; commands print it without a stack trace. */
 export class Stop extends Error {}
 
 const running = new Set();
-const lanes = new AsyncLocalStorage();
+const parts = new AsyncLocalStorage();
 
 /**
- * Runs `main` beside others: what it says and what its programs show goes to `write`, and its programs get this `niceness` (0 to 19; where
- * cores are short, those with less go first).
+ * Runs `main` as a part of the work with a name, under which its seconds of processor are counted. What it says and what its programs show
+ * goes to `write`, where that is given, and its programs get this `niceness` (0 to 19; where cores are short, those with less go first).
  */
-export function inLane({ write, niceness }, main) {
-  return lanes.run({ write, niceness }, main);
+export function inPart({ name, write, niceness = 0 }, main) {
+  return parts.run({ name, write, niceness }, main);
 }
 
 /** Shows a line. */
@@ -26,8 +27,8 @@ export function say(line = '') {
 }
 
 function show(piece, stream) {
-  const lane = lanes.getStore();
-  if (lane) lane.write(piece);
+  const write = parts.getStore()?.write;
+  if (write) write(piece);
   else stream.write(piece);
 }
 
@@ -39,13 +40,16 @@ function show(piece, stream) {
  * wrote, with standard output in `stdout` alone as well.
  */
 export function run(program, args, { output = 'inherit', env = {}, cwd = root } = {}) {
-  const lane = lanes.getStore();
-  const pipe = output === 'inherit' && !lane ? 'inherit' : 'pipe';
+  const part = parts.getStore();
+  const pipe = output === 'inherit' && !part?.write ? 'inherit' : 'pipe';
   return new Promise((resolve) => {
     // A process group of its own, so that an interruption reaches the programs that it starts as well.
     const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe], detached: true });
-    if (child.pid) running.add(child);
-    if (lane?.niceness && child.pid) setPriority(child.pid, lane.niceness);
+    if (child.pid) {
+      running.add(child);
+      if (part) account(part.name, child.pid);
+      if (part?.niceness) setPriority(child.pid, part.niceness);
+    }
     const pieces = [];
     const written = [];
     child.stdout?.on('data', (piece) => {

@@ -1,8 +1,8 @@
-// Test programs: how many of their tests passed and failed in what they write, which failed, and how only those are run again.
+// Test programs: how many of their tests passed and failed in what they write, and which failed.
 
 const ESCAPES = /\u001b\[[0-9;]*m/g;
 
-/** cargo test and wasm-pack test: a line of counts for each binary. Their tests wait for nobody, so that a second run would tell nothing new. */
+/** cargo test and wasm-pack test: a line of counts for each binary. */
 export const cargo = {
   counts: (output) => {
     const counts = { passed: 0, failed: 0, skipped: 0 };
@@ -23,11 +23,6 @@ export const node = {
     return sum(output, /^# (pass|fail|cancelled|skipped|todo) (\d+)$/gm, kinds, ([, kind, count]) => [kind, count]);
   },
   failures: (output) => first(output, /^ *not ok \d+ - (.+)$/gm),
-  /** Whole files, because a test may need what one before it did; none if a test is not written in such a file. */
-  again: (output) => {
-    const files = first(output, /^ *not ok [^\n]*\n *---\n(?: *(?!\.\.\.)[^\n]*\n)*? *location: '([^']+?)(?::\d+)*'$/gm);
-    return files.length > 0 && files.every((file) => file.endsWith('.test.mjs')) ? [process.execPath, ['--test', '--test-reporter=tap', '--test-concurrency=1', ...files]] : undefined;
-  },
 };
 
 /** Playwright, whose configuration is in a file or a workspace of npm. */
@@ -38,7 +33,6 @@ export const playwright = {
     return sum(output, line, kinds, ([, count, kind]) => [kind, count]);
   },
   failures: (output) => first(output, /^ +\d+\) (.+?)(?: ─+)?$/gm),
-  again: (output, program, args) => [program, [...args, ...(program === 'npm' && !args.includes('--') ? ['--'] : []), '--last-failed', '--workers=1']],
 };
 
 /** pytest, whose last line has all counts. */

@@ -16,7 +16,7 @@ export type Found = { readonly name: string } & ({ readonly program: string; rea
 const PATIENCE = 60_000;
 
 export const BROWSERS: readonly Found[] = JSON.parse(
-  process.env.VERONESE_BROWSERS ?? '[{"name": "No browser", "problem": "The browsers are found by `npm run test:browsers`: run that."}]',
+  process.env.VERONESE_BROWSERS ?? '[{"name": "No browser", "problem": "The browsers are found by `npm run soak -- browsers`: run that."}]',
 );
 
 /** A browser that is open. */

@@ -13,7 +13,7 @@ const BATCH = 25;
 const HOST = '127.0.0.1';
 
 /** Yields how many are done after each batch. */
-export async function* page({ from, total, references, jobs, chromium }) {
+export async function* page({ from, total, references, jobs, setup: { chromium } }) {
   if (chromium.problem) throw new Stop(chromium.problem);
   const { first, second } = pairOf(REFERENCE);
   sameAsBefore(references, 'pairs', hashOf(await segmentPair(first, second, OPTIONS)));

@@ -1,0 +1,155 @@
+// The parts of the tests. DAILY is what `npm test` runs: what users rely on, once. RARE is for `npm run soak`: what downloads much, needs
+// other programs, or looks at the same things in many more ways.
+//
+// Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs.
+
+import { readdirSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { findBrowsers, testInBrowsers } from './browsers.mjs';
+import { buildAll, buildModules, buildPackage, buildPage, buildTestWheel, testOfModules } from './builds.mjs';
+import { runChecks, runRareChecks } from './checks.mjs';
+import { root } from './project.mjs';
+import { OWN, installWheel } from './python-packages.mjs';
+import { Stop, must, say } from './run.mjs';
+import { buildSite } from './site.mjs';
+import { cargo, node, playwright, pytest } from './test-programs.mjs';
+import { added, tests } from './tests.mjs';
+
+/** What is tested natively; the package of Python has tests of its own. */
+const NATIVE = ['--locked', '--workspace', '--exclude', 'veronese-python', '--no-fail-fast', '--features', 'codecs,stages'];
+const SOAK = { VERONESE_SOAK: '1' };
+
+/** Parts of one lane run one after another, because they would wait for each other: for cargo's lock, for ports, for cores. */
+export const DAILY = {
+  native: {
+    lane: 'cargo',
+    title: 'native tests',
+    run: async () => added(await tests(cargo, 'cargo', ['test', ...NATIVE, '--lib', '--tests']), await tests(cargo, 'cargo', ['test', ...NATIVE, '--doc'])),
+  },
+  wasm: {
+    lane: 'cargo',
+    title: 'the algebra in WebAssembly, under Node',
+    // Its library is that of the modules, compiled once.
+    run: async () => {
+      await buildModules();
+      const { args, env } = testOfModules('algebra');
+      return tests(cargo, 'wasm-pack', args, env);
+    },
+  },
+  check: { lane: 'cargo', title: 'checks', needs: { checks: true }, run: runChecks },
+  python: {
+    lane: 'cargo',
+    title: 'the Python package',
+    needs: { ownPython: true },
+    run: async ({ ownPython: { problem } }) => {
+      if (problem) return { passed: 0, failed: 0, skipped: 1, failures: [], note: problem };
+      await buildPackage();
+      const wheel = await buildTestWheel(OWN.python);
+      await installWheel(OWN, wheel);
+      // What is installed is tested, not the sources beside the tests.
+      return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
+    },
+  },
+  builds: {
+    lane: 'node',
+    title: 'the modules, the package and the page',
+    run: async () => {
+      await buildAll();
+      return { passed: 0, failed: 0, skipped: 0, failures: [] };
+    },
+  },
+  package: { lane: 'node', title: 'package tests', run: () => ofPackage('test') },
+  packed: { lane: 'node', title: 'the packed package, in Node and with Vite', needs: { browser: true }, run: (setup) => ofPackage('test:packed', inBrowser(setup)) },
+  page: { lane: 'node', title: 'page tests in Chromium', needs: { browser: true }, run: (setup) => ofPage('test', setup) },
+};
+
+export const RARE = {
+  native: {
+    title: 'native tests that take long',
+    run: async () =>
+      added(
+        await tests(cargo, 'cargo', ['test', ...NATIVE, '--lib', '--tests', '--', '--ignored']),
+        await tests(cargo, 'cargo', ['test', ...NATIVE, '--test', 'all', 'properties'], { PROPTEST_CASES: '200000' }),
+      ),
+  },
+  check: { title: 'the crates with each set of features', needs: { checks: true }, run: runRareChecks },
+  package: { title: 'package tests, whole sweeps', run: () => ofPackage('test', SOAK) },
+  page: { title: 'page tests, whole sweeps', needs: { browser: true }, run: (setup) => ofPage('test', setup, SOAK) },
+  screens: { title: 'screenshots of the page, in out/screens', needs: { browser: true }, run: (setup) => ofPage('screens', setup) },
+  formats: {
+    title: "formats, read by the annotation tools' own decoders",
+    needs: { python: true },
+    run: ({ python }) => {
+      if (python.problem) throw new Stop(python.problem);
+      return ofPackage('test:formats');
+    },
+  },
+  hosts: {
+    title: 'the packed package in its hosts',
+    needs: { browser: true, python: true, hosts: true },
+    run: (setup) => ofPackage('test:hosts', inBrowser(setup)),
+  },
+  runtimes: { title: 'the packed package in Node 20 to 26, Deno, Bun and workerd', needs: { runtimes: true }, run: () => ofPackage('test:runtimes') },
+  browsers: {
+    title: 'the page in Chromium, Firefox and WebKit',
+    needs: { browser: true },
+    run: async ({ chromium }) => {
+      const browsers = await findBrowsers(chromium.path, { install: true });
+      await buildAll();
+      return testInBrowsers(browsers);
+    },
+  },
+  site: {
+    title: 'the site in Chromium',
+    needs: { browser: true },
+    run: async (setup) => {
+      const env = inBrowser(setup);
+      await buildSite();
+      const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs') && name !== 'guide.test.mjs');
+      const inNode = await tests(node, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
+      return added(inNode, await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env));
+    },
+  },
+  guide: {
+    title: "the code of the site's guide",
+    needs: { browser: true, ownPython: true, hosts: true },
+    run: async (setup) => {
+      const env = inBrowser(setup);
+      await buildPackage();
+      if (setup.ownPython.problem) say(setup.ownPython.problem);
+      else await installWheel(OWN, await buildTestWheel(OWN.python));
+      return tests(node, process.execPath, ['--test', '--test-reporter=tap', 'site/tests/guide.test.mjs'], env);
+    },
+  },
+  release: {
+    title: 'a rehearsal of a release',
+    run: async () => {
+      await must('A release would fail.', process.execPath, ['scripts/release.mjs', '--dry-run']);
+      return { passed: 1, failed: 0, skipped: 0, failures: [] };
+    },
+  },
+};
+
+/** What the parts of these names need of set-up, for prepare.mjs. */
+export function needsOf(parts) {
+  return Object.assign({}, ...parts.map(({ needs }) => needs));
+}
+
+/** Runs a script of the package. */
+async function ofPackage(script, env = {}) {
+  await buildPackage();
+  return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
+}
+
+/** Runs a script of the page. */
+async function ofPage(script, setup, env = {}) {
+  const browser = inBrowser(setup);
+  await buildPage();
+  return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www'], { ...browser, ...env });
+}
+
+function inBrowser({ chromium }) {
+  if (chromium.problem) throw new Stop(chromium.problem);
+  return { VERONESE_CHROMIUM: chromium.path };
+}
