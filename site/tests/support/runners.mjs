@@ -80,7 +80,7 @@ function checkTypes({ folder, block }) {
   const types = [];
   if (block.language === 'tsx') {
     const react = join(FRAMEWORKS, '@types/react');
-    if (!existsSync(react)) return { skip: 'the types of React are not installed: `npm test -- hosts` does that' };
+    if (!existsSync(react)) return { skip: 'the types of React are not installed: `npm run soak -- hosts` does that' };
     for (const name of ['@types/react', 'csstype']) link(join(FRAMEWORKS, name), join(folder, 'node_modules', name.replace('@types/', '')));
     types.push('react');
   }
