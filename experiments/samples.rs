@@ -1,4 +1,4 @@
-//! Writes the generated sample pair of the page, and the thumbnails of all: `cargo run --release --features codecs --example samples`.
+//! Writes the generated sample pair of the page, and the thumbnails of all: `cargo run --release --package experiments --example samples`.
 //! How the frames of cars were made stands in the LICENCE.md beside them.
 
 use std::error::Error;

@@ -11,7 +11,7 @@ import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
-const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'annotator', '--'];
+const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'annotator', '--'];
 const DATA = {
   chosenOn: 'the propagation on half of the real clips each, confirmed on the other; views on the generated clips; clips as such on the ten old ones first',
   heldOut: 'nothing entirely',

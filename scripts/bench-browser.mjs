@@ -22,7 +22,7 @@ import { serve } from './lib/static-server.mjs';
 import { exponent, median } from './lib/statistics.mjs';
 
 const FRAMES = join(root, 'out/bench/frames');
-const NATIVE = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
+const NATIVE = ['run', '--quiet', '--release', '--locked', '--package', 'benches', '--example', 'ratio', '--'];
 const PEERS = { '@techstark/opencv-js': '5.0.0-release.1', jsfeat: '0.0.8' };
 const PEER_FILES = { opencv: '@techstark/opencv-js/dist/opencv.js', jsfeat: 'jsfeat/build/jsfeat-min.js' };
 const OURS = ['fast', 'best'];

@@ -10,7 +10,7 @@ import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
-const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'clips', '--'];
+const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'clips', '--'];
 const PARTIAL = ['--quick', '--only', '--methods'];
 const DATA = { chosenOn: 'all real clips; the generated ones were looked at', heldOut: 'nothing' };
 

@@ -33,7 +33,7 @@ await command(async (args) => {
   await buildPackage();
   mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');
-  await must('The frames could not be generated.', 'cargo', ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--', 'scenes', FRAMES, ...SIZES]);
+  await must('The frames could not be generated.', 'cargo', ['run', '--quiet', '--release', '--locked', '--package', 'benches', '--example', 'ratio', '--', 'scenes', FRAMES, ...SIZES]);
   const server = await serve(root, { host: HOST, headers: {} });
   const address = `http://${HOST}:${server.address().port}/benches/first-call.html`;
   let version = '';

@@ -11,7 +11,7 @@ import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
-const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
+const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'masks', '--'];
 /** Steps that are measured by themselves, without the baseline. */
 const APART = ['ablation', 'sensitivity', 'stability', 'calibration', 'junctions'];
 const PARTIAL = ['--quick', '--only'];

@@ -16,7 +16,7 @@ import { quantile } from './lib/statistics.mjs';
 const ROUNDS = 7;
 const PROBLEMS = 8;
 const SIZE = { width: 320, height: 240 };
-const CARGO = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
+const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'benches', '--example', 'ratio', '--'];
 
 await command(async (args) => {
   await prepare();

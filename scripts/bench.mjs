@@ -5,5 +5,5 @@ import { command, run } from './lib/run.mjs';
 
 await command(async (args) => {
   await checkRust();
-  return (await run('cargo', ['bench', '--locked', '--benches', '--', ...args])).code;
+  return (await run('cargo', ['bench', '--locked', '--package', 'benches', '--benches', '--', ...args])).code;
 });

@@ -4,7 +4,7 @@
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
-const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'fit', '--'];
+const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'fit', '--'];
 
 await command(async (args) => {
   await checkRust();

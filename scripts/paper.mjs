@@ -8,7 +8,7 @@ import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
-const PROGRAM = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,stages', '--example', 'paper', '--'];
+const PROGRAM = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'plot', '--example', 'paper', '--'];
 const PICTURES = ['figure-1.svg', 'leader-follower.png', 'paper-two-cars.png'];
 
 await command(async (args) => {

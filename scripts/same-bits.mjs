@@ -83,7 +83,7 @@ function options(args) {
 }
 
 async function native(profile, args) {
-  const cargo = ['run', '--quiet', '--locked', ...(profile === 'release' ? ['--release'] : []), '--features', 'codecs', '--example', 'same-bits', '--', ...args];
+  const cargo = ['run', '--quiet', '--locked', ...(profile === 'release' ? ['--release'] : []), '--package', 'experiments', '--example', 'same-bits', '--', ...args];
   return must('The native program failed.', 'cargo', cargo, { output: 'collect' });
 }
 

@@ -7,8 +7,8 @@ import { root } from './lib/project.mjs';
 import { command, run } from './lib/run.mjs';
 import { checkRust } from './lib/rust.mjs';
 
-const SCORE = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'score', '--'];
-const EXPECTATIONS = ['test', '--quiet', '--release', '--locked', '--features', 'codecs', '--test', 'expectations'];
+const SCORE = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'score', '--'];
+const EXPECTATIONS = ['test', '--quiet', '--release', '--locked', '--features', 'codecs', '--test', 'all', 'expectations::'];
 
 await command(async (args) => {
   await checkRust();

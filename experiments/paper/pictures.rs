@@ -79,7 +79,7 @@ pub(crate) fn pictures(seed: u64) -> Result<([File; 2], [OfPair; 2]), Box<dyn Er
 
 /// A frame of the bundled pair.
 fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
-    let path = format!("{}/www/public/samples/intel-two-cars/{name}.png", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../www/public/samples/intel-two-cars/{name}.png", env!("CARGO_MANIFEST_DIR"));
     let bytes = fs::read(&path).map_err(|error| format!("{path} cannot be read: {error}"))?;
     Ok(decode_image(&bytes)?.frame()?)
 }

@@ -9,6 +9,9 @@ import { projectText, root } from '../project.mjs';
 import { must } from '../run.mjs';
 import { prepareCycloneDx } from '../rust.mjs';
 
+/** Crates that are never in what is shipped. */
+const OWN = ['scenes', 'experiments', 'benches'];
+
 /** Writes them and returns `{ path, name, count }` of each: what it is about, and how many components it has. */
 export async function writeSboms(out) {
   mkdirSync(out, { recursive: true });
@@ -52,7 +55,7 @@ async function crateSboms(out) {
       continue;
     }
     rmSync(path);
-    if (folder !== 'scenes') kept.push(keep(join(out, `${list.metadata.component.name}-crates.cdx.json`), list));
+    if (!OWN.includes(folder)) kept.push(keep(join(out, `${list.metadata.component.name}-crates.cdx.json`), list));
   }
   return kept;
 }

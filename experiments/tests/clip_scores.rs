@@ -1,10 +1,9 @@
 //! The figures of the clip benchmark, on labels whose figures follow from their definition.
-#![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../experiments/boundary.rs"]
+#[path = "../boundary.rs"]
 mod boundary;
-#[path = "../experiments/clips/scores.rs"]
+#[path = "../clips/scores.rs"]
 mod scores;
 
 use scores::{Identities, Scores, VOID, scores};

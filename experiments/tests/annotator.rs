@@ -1,10 +1,9 @@
 //! The robot of the annotator benchmark, and how it judges, on masks whose depths, parts and overlaps follow from their definition.
-#![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../experiments/annotator/overlap.rs"]
+#[path = "../annotator/overlap.rs"]
 mod overlap;
-#[path = "../experiments/annotator/robot.rs"]
+#[path = "../annotator/robot.rs"]
 mod robot;
 
 use overlap::{between, each, masks, mean, of_label, worst};
@@ -67,14 +66,14 @@ fn a_stroke_is_the_deeper_half_of_the_largest_part() {
     let expected: Vec<usize> =
         rectangle(7..14, 7..14).iter().enumerate().filter(|(_, inside)| **inside).map(|(p, _)| p).collect();
     assert_eq!(stroke(&region, WIDTH), expected);
-    assert_eq!(stroke(&vec![false; WIDTH * HEIGHT], WIDTH), []);
+    assert_eq!(stroke(&vec![false; WIDTH * HEIGHT], WIDTH), [0_usize; 0]);
 }
 
 #[test]
 fn a_region_below_a_twentieth_of_a_per_cent_of_the_frame_gets_no_stroke() {
     let mut region = vec![false; 100 * 100];
     region[210..214].fill(true);
-    assert_eq!(stroke(&region, 100), []);
+    assert_eq!(stroke(&region, 100), [0_usize; 0]);
     region[214] = true;
     assert_eq!(stroke(&region, 100), [210, 211, 212, 213, 214]);
 }

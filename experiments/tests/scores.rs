@@ -1,10 +1,9 @@
 //! The scores of the mask benchmark, on labellings with known scores.
-#![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../experiments/boundary.rs"]
+#[path = "../boundary.rs"]
 mod boundary;
-#[path = "../experiments/masks/scores.rs"]
+#[path = "../masks/scores.rs"]
 mod scores;
 
 use scores::{VOID, flow_error, scores};

@@ -1,10 +1,9 @@
 //! What `npm run score` says of figures: intervals over sequences, and what rose and what fell.
-#![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../experiments/score/report.rs"]
+#[path = "../score/report.rs"]
 mod report;
-#[path = "../experiments/score/statistics.rs"]
+#[path = "../score/statistics.rs"]
 mod statistics;
 
 use report::{Entry, changes, file, table};
