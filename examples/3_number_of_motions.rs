@@ -4,7 +4,7 @@
 use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
 use veronese::{AffineMotion, FitOptions, Measurements, Random, Result, fit_motions};
 
-fn main() -> Result<()> {
+pub fn main() -> Result<()> {
     let motions = [
         AffineMotion::new([0.3, -0.6, 0.9, 0.5, 0.2, -0.8]),
         AffineMotion::new([-0.7, 0.1, -0.5, 0.4, 0.6, 0.7]),

@@ -4,7 +4,7 @@
 use scenes::{SceneOptions, generate};
 use veronese::{Result, SegmentOptions, segment_pair};
 
-fn main() -> Result<()> {
+pub fn main() -> Result<()> {
     let scene = generate(&SceneOptions { width: 160, height: 120, objects: 2, seed: 5, ..SceneOptions::default() })?;
 
     // Frames of your own: `Frame::from_rgba(width, height, &bytes)`, or with the feature `codecs`

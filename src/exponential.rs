@@ -73,9 +73,6 @@ pub(crate) fn power_of_two_f32(t: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    #[cfg(target_arch = "wasm32")]
-    use wasm_bindgen_test::wasm_bindgen_test as test;
-
     use super::*;
 
     #[test]

@@ -1,12 +1,10 @@
 //! Clips: objects keep their number while they move, stop, cross and hide, and the stream keeps its promises.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
-mod support;
-
-use support::moving::{Thing, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole};
+use crate::support::moving::{
+    Thing, correct, frames_of, mask, moving_and_resting, moving_and_resting_clip, one_number, options, scene, thing,
+    whole,
+};
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
@@ -34,7 +32,6 @@ fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
     done
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn two_that_cross_keep_their_numbers() {
     let things = [
@@ -58,7 +55,6 @@ fn assert_covered_and_back(things: [Thing; 2], count: usize) {
     assert_eq!(one_number(&done, &truths, 1, hidden[hidden.len() - 1] + 3..count), before);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_was_covered_by_another_gets_its_number_back() {
     let things = [
@@ -68,7 +64,6 @@ fn one_that_was_covered_by_another_gets_its_number_back() {
     assert_covered_and_back(things, 20);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn repeated_frames_do_not_stop_what_is_covered() {
     // Frame 7 repeats frame 6 and frame 12 repeats frame 11, where the one is hidden.
@@ -83,7 +78,6 @@ fn repeated_frames_do_not_stop_what_is_covered() {
 }
 
 /// As where the rate of frames was raised.
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn what_moves_is_seen_in_repeated_frames_too() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * (t / 2) as f32, 44.0])];
@@ -94,7 +88,6 @@ fn what_moves_is_seen_in_repeated_frames_too() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];
@@ -105,7 +98,6 @@ fn one_that_stops_is_still_itself() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_was_hidden_gets_its_number_back() {
     // Behind a post that belongs to the background.
@@ -117,7 +109,6 @@ fn one_that_was_hidden_gets_its_number_back() {
     assert_eq!(one_number(&done, &truths, 1, 17..20), before);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn parts_that_move_together_are_one_object() {
     // A post of the background stands before it in all frames: it is never in sight as a whole.
@@ -128,7 +119,6 @@ fn parts_that_move_together_are_one_object() {
     assert!(done.iter().all(|frame| frame.objects.len() == 1), "one object and no other");
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_cut_ends_all_objects() {
     let one = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
@@ -209,7 +199,7 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
 #[test]
 fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     correct(&mut clip, &frames, 5, &mask(&truths[5], &[(2, 9)]));
     let bytes = clip.to_bytes();
     let again = SegmentedClip::from_bytes(&bytes).unwrap();
@@ -241,7 +231,7 @@ fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
 #[test]
 fn a_clip_knows_its_frames() {
     let (frames, _) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     let mut correction = clip.correct(3, &[1; 160 * 120], Spread::Both).unwrap();
     assert!(matches!(clip.frame(3, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     assert!(matches!(correction.take(&mut clip, &frames[4]), Err(Error::OtherFrame { index: 3 })));
@@ -358,13 +348,12 @@ fn pairs_are_known_for_their_frames_and_options_alone() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn undecided_pixels_are_marked_when_asked() {
     let (frames, _) = moving_and_resting();
     let marked = options(Quality::Fast, None).with_pair(options(Quality::Fast, None).pair.with_mark_unknown(true));
     let clip = whole(&frames, marked);
-    let plain = whole(&frames, options(Quality::Fast, None));
+    let plain = moving_and_resting_clip();
     let (mut unknown, mut all) = (0, 0);
     for (marked, plain) in frames_of(&clip, &frames).iter().zip(frames_of(&plain, &frames)) {
         assert!(marked.labels.iter().zip(&plain.labels).all(|(&m, &p)| m == 255 || m == p));

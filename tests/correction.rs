@@ -1,9 +1,6 @@
 //! Interactive correction: strokes hold exactly, distant labels do not change, one stroke corrects a region.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use scenes::{Scene, SceneOptions};
 use veronese::{
     AffineMotion, Correction, Error, Relabelling, SegmentOptions, Segmentation, UNLABELLED, relabel, segment_pair,
@@ -101,7 +98,6 @@ fn strokes_hold_exactly_and_distant_labels_do_not_change() {
     assert_eq!(counted + corrected.unlabelled, case.pixels());
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_stroke_corrects_a_region() {
     // An object was labelled as background: its labels are lost, its motion is known.
@@ -122,7 +118,6 @@ fn one_stroke_corrects_a_region() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn an_excluded_label_is_removed_and_a_full_set_is_no_constraint() {
     let case = Case::new(320, 240, 5);
@@ -140,7 +135,6 @@ fn an_excluded_label_is_removed_and_a_full_set_is_no_constraint() {
     assert_eq!(kept.labels[y * case.found.width + x], 1);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn unlabelled_pixels_without_strokes_stay_unlabelled() {
     let case = Case::new(320, 240, 5);

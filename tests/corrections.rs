@@ -1,14 +1,11 @@
 //! Corrections of a clip: what a person says of a frame holds there, follows each object, and disturbs nothing else.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
+use std::sync::LazyLock;
 
-mod support;
-
-use support::moving::{
-    SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, one_number, options, scene_of,
-    thing, whole,
+use crate::support::moving::{
+    SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, moving_and_resting_clip,
+    one_number, options, scene_of, thing, whole,
 };
 use veronese::clip::{Prompt, SegmentedClip, Spread};
 use veronese::{Error, Frame, Quality, Random};
@@ -112,12 +109,15 @@ impl Shot {
 
 /// One that moves and is found (1), and two that rest (2, 3), so unlike that no pixel could be of two of them.
 fn three() -> Shot {
-    let things = [
-        thing(26, [32.0, 26.0], |t| [6.0 + 4.0 * t as f32, 8.0]),
-        thing(3, [34.0, 26.0], |_| [86.0, 62.0]),
-        thing(14, [28.0, 30.0], |_| [10.0, 60.0]),
-    ];
-    Shot::new([128, 96], &things, 7)
+    static MADE: LazyLock<Shot> = LazyLock::new(|| {
+        let things = [
+            thing(26, [32.0, 26.0], |t| [6.0 + 4.0 * t as f32, 8.0]),
+            thing(3, [34.0, 26.0], |_| [86.0, 62.0]),
+            thing(14, [28.0, 30.0], |_| [10.0, 60.0]),
+        ];
+        Shot::new([128, 96], &things, 7)
+    });
+    MADE.clone()
 }
 
 /// All orders of some numbers.
@@ -154,7 +154,6 @@ fn assert_any_order(shot: &Shot, said: &[Said]) {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn masks_and_strokes_of_one_object_in_any_order() {
     let shot = three();
@@ -166,7 +165,6 @@ fn masks_and_strokes_of_one_object_in_any_order() {
     assert_any_order(&shot, &said);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn two_separate_objects_in_any_order() {
     let shot = three();
@@ -178,7 +176,6 @@ fn two_separate_objects_in_any_order() {
     assert_any_order(&shot, &said);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn ground_said_of_a_found_object_and_a_mask_that_takes_it_over_in_any_order() {
     let shot = three();
@@ -191,7 +188,6 @@ fn ground_said_of_a_found_object_and_a_mask_that_takes_it_over_in_any_order() {
     assert_any_order(&shot, &said);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_correction_replaces_the_one_before_in_its_frame_and_can_be_taken_back() {
     let mut shot = three();
@@ -236,17 +232,19 @@ fn a_correction_replaces_the_one_before_in_its_frame_and_can_be_taken_back() {
 
 /// Two of a person that cross, close to one that was found and to one another.
 fn crossing() -> Shot {
-    let things = [
-        thing(2, [24.0, 22.0], |t| [6.0 + 7.0 * t as f32, 34.0]),
-        thing(3, [26.0, 30.0], |t| [88.0 - 7.0 * t as f32, 38.0]),
-        thing(7, [30.0, 22.0], |t| [40.0 + 2.0 * t as f32, 10.0]),
-        thing(9, [30.0, 20.0], |_| [60.0, 74.0]),
-        thing(11, [24.0, 20.0], |_| [90.0, 74.0]),
-    ];
-    Shot::new([128, 96], &things, 8)
+    static MADE: LazyLock<Shot> = LazyLock::new(|| {
+        let things = [
+            thing(2, [24.0, 22.0], |t| [6.0 + 7.0 * t as f32, 34.0]),
+            thing(3, [26.0, 30.0], |t| [88.0 - 7.0 * t as f32, 38.0]),
+            thing(7, [30.0, 22.0], |t| [40.0 + 2.0 * t as f32, 10.0]),
+            thing(9, [30.0, 20.0], |_| [60.0, 74.0]),
+            thing(11, [24.0, 20.0], |_| [90.0, 74.0]),
+        ];
+        Shot::new([128, 96], &things, 8)
+    });
+    MADE.clone()
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn other_objects_of_a_person_keep_every_pixel() {
     let start = crossing();
@@ -270,7 +268,6 @@ fn other_objects_of_a_person_keep_every_pixel() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_loses_a_pixel_to_another_is_still_followed_from_where_it_was_said() {
     let things = [
@@ -293,7 +290,6 @@ fn one_that_loses_a_pixel_to_another_is_still_followed_from_where_it_was_said() 
     assert!(overlaps.iter().flatten().all(|&iou| iou > 0.9), "{overlaps:.3?}");
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_all() {
     let mut shot = crossing();
@@ -331,7 +327,6 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
     assert!(!shot.labels()[4].contains(&number));
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
     let start = three();
@@ -393,7 +388,6 @@ fn prompts_of(shot: &Shot, index: usize, thing: usize) -> [Prompt; 2] {
     [Prompt::Box([left, top, right - left, bottom - top]), Prompt::Click([x + width / 2, y + height / 2])]
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_box_and_a_click_give_what_was_found_and_what_was_not_and_these_follow_it() {
     let start = three();
@@ -413,7 +407,6 @@ fn a_box_and_a_click_give_what_was_found_and_what_was_not_and_these_follow_it() 
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn what_was_found_elsewhere_stays_at_full_size() {
     let things = [
@@ -516,7 +509,6 @@ fn differing(one: &[Vec<u8>], other: &[Vec<u8>]) -> Vec<usize> {
     (0..one.len()).filter(|&t| one[t] != other[t]).collect()
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn corrections_spread_where_they_are_told_to() {
     let start = three();
@@ -537,7 +529,6 @@ fn corrections_spread_where_they_are_told_to() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn two_frames_with_different_spreads() {
     let mut shot = three();
@@ -556,7 +547,6 @@ fn two_frames_with_different_spreads() {
     assert_eq!(shot.labels(), before);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn nothing_crosses_a_cut() {
     let size = [128, 96];
@@ -579,7 +569,6 @@ fn nothing_crosses_a_cut() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_cancelled_correction_leaves_no_trace() {
     let mut shot = three();
@@ -603,7 +592,6 @@ fn a_cancelled_correction_leaves_no_trace() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_given_mask_follows_what_moves() {
     let things = [
@@ -619,7 +607,6 @@ fn a_given_mask_follows_what_moves() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn strokes_alone_make_an_object_that_is_followed() {
     let mut shot = three();
@@ -631,7 +618,6 @@ fn strokes_alone_make_an_object_that_is_followed() {
     assert!(overlaps.len() == 7 && overlaps.iter().all(|&iou| iou > 0.85), "{overlaps:.3?}");
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_is_hidden_for_some_frames_keeps_its_number() {
     let things = [
@@ -651,7 +637,6 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn extremes_are_taken_as_they_are() {
     let size @ [width, height] = [16, 16];
@@ -695,7 +680,6 @@ fn extremes_are_taken_as_they_are() {
     assert_eq!(shot.labels()[0], [254; 256]);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_restored_clip_goes_on_with_the_same_bits() {
     let mut shot = three();
@@ -713,11 +697,10 @@ fn a_restored_clip_goes_on_with_the_same_bits() {
     assert!(shot.state() == again.state());
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_corrected_mask_holds_and_spreads_both_ways() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     let before = frames_of(&clip, &frames);
     assert_eq!(carrier(&before[5].labels, &truths[5], 2).unwrap().0, 0, "what rests is background");
     let moving = one_number(&before, &truths, 1, 0..12);
@@ -738,11 +721,10 @@ fn a_corrected_mask_holds_and_spreads_both_ways() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_stroke_takes_the_region_around_it_along() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     let stroke = |p: usize| (95..125).contains(&(p % SIZE[0])) && (88..96).contains(&(p / SIZE[0]));
     let ground = |p: usize| p / SIZE[0] == 116 || p / SIZE[0] == 72 || p % SIZE[0] == 84 || p % SIZE[0] == 138;
     let said = |p: usize| {
@@ -762,20 +744,18 @@ fn a_stroke_takes_the_region_around_it_along() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_new_number_of_an_object_lasts() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     correct(&mut clip, &frames, 2, &mask(&truths[2], &[(1, 40)]));
     assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn objects_can_be_merged_and_removed() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     correct(&mut clip, &frames, 5, &mask(&truths[5], &[(2, 30)]));
     let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
     let all: Vec<usize> = (0..12).collect();
@@ -799,7 +779,7 @@ fn objects_can_be_merged_and_removed() {
 #[test]
 fn reserved_numbers_are_free_for_objects_of_a_person() {
     let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     let found = frames_of(&clip, &frames);
     let (number, _) = carrier(&found[3].labels, &truths[3], 1).unwrap();
     let ids: Vec<u8> = (1..255).filter(|&id| !clip.frames_with(id).is_empty()).collect();
@@ -822,20 +802,19 @@ fn reserved_numbers_are_free_for_objects_of_a_person() {
     let said = clip.frame(3, &frames[3]).unwrap().labels;
     assert!(mask.iter().zip(&said).all(|(&said, &label)| said != number || label == number));
     // A number that was merged away or deleted before is a new one, and what was merged into it goes along.
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     clip.renumber(number, 0).unwrap();
     clip.reserve(&[number]);
     assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], vec![]));
     correct(&mut clip, &frames, 3, &mask);
     assert!(clip.frames_with(number).contains(&3));
     // Where no number is left there is nothing to give.
-    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut clip = moving_and_resting_clip();
     clip.reserve(&(0..=255).collect::<Vec<u8>>());
     assert_eq!(clip.dropped(), ids.len());
     assert!(frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label == 0)));
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_corrected_frame_is_nearly_right_at_once() {
     let shot = three();
@@ -866,7 +845,6 @@ fn the_corrected_frame_is_nearly_right_at_once() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_of_the_grounds_own_colours_is_followed_by_its_motion() {
     let [width, height] = [96, 64];

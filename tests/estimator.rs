@@ -4,12 +4,7 @@
 //! `npm run paper -- --table limit`.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
-mod support;
-
-use support::protocol::{Protocol, SPECIAL};
+use crate::support::protocol::{Protocol, SPECIAL};
 use veronese::{
     AffineMotion, Error, FitOptions, Measurements, MotionCount, MotionFit, Random, UNLABELLED, fit_motions,
 };
@@ -52,7 +47,6 @@ fn assert_cell(protocol: &Protocol, trials: u64, ratio: f64) {
 
 // The bounds are the ratios of the full table (1.06, 1.10, 1.14 with outliers, 1.12 for the small motion) plus the scatter of few trials.
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn general_motions_are_found_as_well_as_unknown_labels_allow() {
     for (n, noise, ratio) in
@@ -62,7 +56,6 @@ fn general_motions_are_found_as_well_as_unknown_labels_allow() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn outliers_do_not_spoil_the_motions() {
     for (n, ratio) in [(2, 1.2), (3, 1.25), (4, 1.3)] {
@@ -75,7 +68,6 @@ fn a_motion_with_a_twentieth_of_the_measurements_is_found() {
     assert_cell(&Protocol { first_share: Some(0.05), ..Protocol::new(4, 0.05) }, 20, 1.35);
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn special_configurations_are_found() {
     for relation in SPECIAL {
@@ -86,7 +78,6 @@ fn special_configurations_are_found() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn noise_free_motions_are_exact_even_among_outliers() {
     for n in 1..=5 {
@@ -111,7 +102,6 @@ fn assert_numbers(trials: u64) {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_number_of_motions_is_found() {
     assert_numbers(1);
@@ -263,7 +253,7 @@ fn scale_and_place_do_not_matter() {
 
 #[test]
 fn the_same_input_gives_the_same_bits_everywhere() {
-    // FNV-1a over all bits of the results. The constant must be the same on all targets.
+    // FNV-1a over all bits of the results. See CONTRIBUTING.md, "Golden hashes".
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut eat = |value: u64| {
         value.to_le_bytes().iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))

@@ -1,21 +1,38 @@
-//! The examples: each is run with cargo, and its output is checked.
-#![allow(clippy::unwrap_used, reason = "test code may panic")]
-#![cfg(not(target_arch = "wasm32"))]
+//! The examples: each is run, and what it prints is checked.
+#![allow(clippy::unwrap_used, unreachable_pub, reason = "test code may panic; examples are programs elsewhere")]
 
-use std::process::Command;
+use std::cell::RefCell;
+use std::fmt::Arguments;
 
-/// The output of an example, built with the features of the tests so that cargo can reuse the build.
-fn output(example: &str) -> String {
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--quiet", "--locked", "--example", example]);
-    for (feature, enabled) in [("codecs", cfg!(feature = "codecs")), ("stages", cfg!(feature = "stages"))] {
-        if enabled {
-            cargo.args(["--features", feature]);
-        }
-    }
-    let output = cargo.output().unwrap();
-    assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+thread_local! {
+    static PRINTED: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+fn print(line: Arguments<'_>) {
+    PRINTED.with_borrow_mut(|printed| *printed += &format!("{line}\n"));
+}
+
+/// What the examples below print with is kept.
+macro_rules! println {
+    ($($line:tt)*) => {
+        crate::examples::print(format_args!($($line)*))
+    };
+}
+
+#[path = "../examples/3_number_of_motions.rs"]
+mod number_of_motions;
+#[path = "../examples/4_pair_of_frames.rs"]
+mod pair_of_frames;
+#[path = "../examples/2_two_motions.rs"]
+mod two_motions;
+#[path = "../examples/1_union_of_lines.rs"]
+mod union_of_lines;
+
+/// What an example prints.
+fn output(example: fn()) -> String {
+    PRINTED.take();
+    example();
+    PRINTED.take()
 }
 
 /// The number before `unit` in a line.
@@ -25,7 +42,7 @@ fn number_before(line: &str, unit: &str) -> f64 {
 
 #[test]
 fn a_union_of_lines_is_factored() {
-    let text = output("1_union_of_lines");
+    let text = output(union_of_lines::main);
     for line in
         ["[1.000000, 2.000000, -1.000000]", "[0.500000, -1.000000, 2.000000]", "[-2.000000, 1.000000, 1.000000]"]
     {
@@ -36,7 +53,7 @@ fn a_union_of_lines_is_factored() {
 
 #[test]
 fn two_motions_are_found_from_points() {
-    let text = output("2_two_motions");
+    let text = output(|| two_motions::main().unwrap());
     assert_eq!(text.matches("without noise: wrong by less than 1e-9: true").count(), 2, "{text}");
     let noisy: Vec<&str> = text.lines().filter(|line| line.starts_with("with 5 % noise")).collect();
     assert_eq!(noisy.len(), 2, "{text}");
@@ -50,7 +67,7 @@ fn two_motions_are_found_from_points() {
 
 #[test]
 fn the_number_of_motions_is_found_by_the_likelihood_and_not_always_by_the_rank() {
-    let text = output("3_number_of_motions");
+    let text = output(|| number_of_motions::main().unwrap());
     assert_eq!(text.lines().count(), 12, "{text}");
     for line in text.lines() {
         assert!(line.ends_with(&format!("the likelihood {}", &line[..1])), "{line}");
@@ -61,7 +78,7 @@ fn the_number_of_motions_is_found_by_the_likelihood_and_not_always_by_the_rank()
 
 #[test]
 fn a_pair_of_frames_is_segmented() {
-    let text = output("4_pair_of_frames");
+    let text = output(|| pair_of_frames::main().unwrap());
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some("3 motions"), "{text}");
     assert_eq!(lines.filter(|line| line.starts_with("motion ")).count(), 3, "{text}");

@@ -1,5 +1,4 @@
 //! What must hold of real frames: the scenes of `tests/expectations`, whose README.md says what their fields mean.
-#![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};

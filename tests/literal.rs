@@ -1,9 +1,6 @@
 //! The paper's image experiment, on scenes that satisfy its assumptions.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use scenes::{Background, SceneOptions, Speed};
 use veronese::{Frame, KeptPixels, MotionCount, UNLABELLED, derivatives, literal_pair};
 

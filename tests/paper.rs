@@ -2,12 +2,7 @@
 //! that differentiation solves.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
-mod synthetic;
-
-use synthetic::{CONFIGURATIONS, Protocol, random_motions, worst_error};
+use crate::synthetic::{CONFIGURATIONS, Protocol, random_motions, worst_error};
 use veronese::embedding::monomials::{count, kept_pairs, structural_zeros, unknowns};
 use veronese::embedding::rank::{KAPPA, number_of_motions, numerical_rank};
 use veronese::embedding::{EmbeddedData, MultibodyMotion, embedded_matrix, taubin_motion};
@@ -290,7 +285,6 @@ fn by_the_five_steps(data: &Measurements, n: usize, _: &mut Random) -> Vec<Affin
     five_steps(&MultibodyMotion::estimate(data, n).unwrap())
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
     for (name, special) in CONFIGURATIONS {
@@ -300,7 +294,6 @@ fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn every_special_configuration_is_recovered_with_noise() {
     for (name, special) in CONFIGURATIONS {
@@ -440,9 +433,9 @@ fn fingerprint(values: impl Iterator<Item = f64>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// The constants hold natively and in WebAssembly (see CONTRIBUTING.md, "Golden hashes").
+/// See CONTRIBUTING.md, "Golden hashes".
 #[test]
-fn the_results_have_the_same_bits_natively_and_in_webassembly() {
+fn the_results_have_the_same_bits_everywhere() {
     let mut random = Random::from_seed(62);
     let truth = random_motions(3, &mut random);
     let data = Protocol::B1.measurements(&truth, 400, 0.02, &mut random);

@@ -1,9 +1,6 @@
 //! The image pipeline: generated scenes with known masks and motions, ambiguous frames, and the same bits on all targets.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use std::ops::Range;
 
 use scenes::{Background, Scene, SceneOptions, Speed};
@@ -119,7 +116,6 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn generated_scenes_are_segmented() {
     let mut all = Vec::new();
@@ -182,7 +178,6 @@ fn motions_are_measured_to_a_fraction_of_a_pixel() {
 }
 
 /// The scene of Figures 2 and 3 of the paper: two small robots with nearly the same motion on a static background.
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_leader_and_the_follower_are_separate_motions() {
     let mut told_apart = 0;
@@ -195,7 +190,6 @@ fn the_leader_and_the_follower_are_separate_motions() {
 }
 
 /// A number that is given is reached by splitting, too, where the search takes both robots for one thing.
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
     let told_apart = (1..=5).filter(|&seed| {
@@ -209,7 +203,6 @@ fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
 }
 
 /// A single motion fitted to all cars explains more than a static ground, until the cars have motions of their own.
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_bare_ground_is_left_at_rest_by_the_cars_on_it() {
     for seed in [1, 2] {
@@ -319,7 +312,6 @@ fn unrelated_frames_give_a_valid_result() {
     }
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_number_of_motions_can_be_given() {
     let scene = scenes::generate(&SceneOptions {
@@ -406,7 +398,6 @@ fn calibration(quality: Quality) -> [(usize, usize); 5] {
     bins
 }
 
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn more_confident_labels_are_more_often_right() {
     for quality in [Quality::Fast, Quality::Best] {
@@ -469,7 +460,7 @@ fn fingerprint(result: &Segmentation) -> u64 {
     hash
 }
 
-/// The constants hold natively and in WebAssembly (see CONTRIBUTING.md, "Golden hashes").
+/// See CONTRIBUTING.md, "Golden hashes".
 #[test]
 fn the_same_bits_on_every_target() {
     let expected: [u64; 3] = [0x6642_e969_77f2_8885, 0x1a49_21d2_4c2b_658f, 0xbc1e_6392_8d7b_325b];

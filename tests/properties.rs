@@ -1,6 +1,5 @@
 //! Properties of the algebra for random inputs; more of them with the environment variable PROPTEST_CASES.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
-#![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;
 use veronese::AffineMotion;

@@ -1,9 +1,6 @@
 //! The truth of generated clips holds from frame to frame, and the same options give the same bytes everywhere.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use std::ops::Range;
 
 use scenes::{ClipScene, ClipSceneOptions, Event, generate_clip};

@@ -1,9 +1,6 @@
 //! Generated scenes: the ground truth agrees with the frames, and the same options give the same bytes on every platform.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Plane};
 

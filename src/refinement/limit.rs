@@ -1,9 +1,6 @@
 //! Tests that the search reaches the likelihood that EM reaches from the true motions. A lower likelihood is a failure of the search; a
 //! higher one, or a wrong motion, is a property of the data.
 
-#[cfg(target_arch = "wasm32")]
-use wasm_bindgen_test::wasm_bindgen_test as test;
-
 use super::mixture::{EmBuffers, Mixture, Stop};
 use super::{Samples, Search};
 

@@ -70,9 +70,6 @@ pub(crate) fn quadratic_form(matrix: &Matrix6, right: &[f64; 6]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    #[cfg(target_arch = "wasm32")]
-    use wasm_bindgen_test::wasm_bindgen_test as test;
-
     use super::*;
 
     #[test]

@@ -1,5 +1,7 @@
 //! Small scenes of boxes that move over a ground, and clips of them.
 
+use std::sync::LazyLock;
+
 use veronese::clip::{ClipFrame, ClipOptions, ClipSegmenter, SegmentedClip, Spread};
 use veronese::{Frame, Quality, Random, SegmentOptions};
 
@@ -117,10 +119,21 @@ pub fn one_number(done: &[ClipFrame], truths: &[Vec<usize>], thing: usize, frame
     number
 }
 
-/// A box that moves, and one that rests.
+/// A box that moves, and one that rests. Made once, as its clip: many tests begin with them.
 pub fn moving_and_resting() -> (Vec<Frame>, Vec<Vec<usize>>) {
-    let things = [thing(2, [34.0, 30.0], |t| [10.0 + 4.0 * t as f32, 20.0]), thing(3, [40.0, 26.0], |_| [90.0, 80.0])];
-    scene(1, &things, 12)
+    static MADE: LazyLock<(Vec<Frame>, Vec<Vec<usize>>)> = LazyLock::new(|| {
+        let things =
+            [thing(2, [34.0, 30.0], |t| [10.0 + 4.0 * t as f32, 20.0]), thing(3, [40.0, 26.0], |_| [90.0, 80.0])];
+        scene(1, &things, 12)
+    });
+    MADE.clone()
+}
+
+/// The clip of [`moving_and_resting`], in quality fast.
+pub fn moving_and_resting_clip() -> SegmentedClip {
+    static MADE: LazyLock<SegmentedClip> =
+        LazyLock::new(|| whole(&moving_and_resting().0, options(Quality::Fast, None)));
+    MADE.clone()
 }
 
 /// What is said of a frame: a number for some things, 255 elsewhere.

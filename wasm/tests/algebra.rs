@@ -1,19 +1,119 @@
-//! The interface to JavaScript under Node: panics, and that reports have all entries. Everything else is tested by the package.
+//! The algebra in WebAssembly, under Node: the Veronese map, the multibody motion, rank, factorisation and refinement on generated
+//! measurements; and a panic, which no call of the package brings about. tests/paper.rs says all this in more cases natively, and golden
+//! hashes (tests/golden.json) that the modules answer as the crate does.
 #![cfg(target_arch = "wasm32")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "clippy knows #[test] only, not #[wasm_bindgen_test]")]
 
 use js_sys::{Function, Reflect};
-use serde_json::Value;
-use veronese::clip::{ClipOptions, StreamSegmenter};
-use veronese::{FitOptions, Frame, Measurements, Method, MotionCount, Quality, SegmentOptions};
+use veronese::embedding::monomials::unknowns;
+use veronese::embedding::rank::{number_of_motions, numerical_rank};
+use veronese::embedding::veronese::{embed, jacobian};
+use veronese::embedding::{EmbeddedData, MultibodyMotion};
+use veronese::factorisation::differentiation::{POINTS, motions_from_points};
+use veronese::factorisation::five_steps;
+use veronese::factorisation::ternary::factorise;
+use veronese::refinement::product;
+use veronese::{AffineMotion, FitOptions, Measurements, Method, MotionCount, Random, fit_motions};
 use wasm_bindgen::prelude::*;
-use wasm_bindgen_test::wasm_bindgen_test;
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+#[path = "../../tests/synthetic/mod.rs"]
+mod synthetic;
+
+use synthetic::{Protocol, random_motions, worst_error};
+
+/// Motions and measurements of them.
+fn problem(n: usize, noise: f64) -> (Vec<AffineMotion>, Measurements, Random) {
+    let mut random = Random::from_seed(20 + n as u64);
+    let truth = random_motions(n, &mut random);
+    let data = Protocol::B1.measurements(&truth, 200 * n.max(3), noise, &mut random);
+    (truth, data, random)
+}
+
+#[test]
+fn the_veronese_map_has_all_monomials_and_its_jacobian_obeys_euler() {
+    let v = [2.0, 3.0, 5.0];
+    assert_eq!(embed(2, v).as_slice(), [4.0, 6.0, 10.0, 9.0, 15.0, 25.0]);
+    for n in 1..=10 {
+        let (map, jacobian) = (embed(n, v), jacobian(n, v));
+        for (row, entry) in map.iter().enumerate() {
+            let product: f64 = (0..3).map(|k| jacobian[(row, k)] * v[k]).sum();
+            assert!((product - n as f64 * entry).abs() <= 1e-13 * product, "n = {n}, row {row}");
+        }
+    }
+}
+
+#[test]
+fn the_multibody_motion_is_the_product_of_the_constraints() {
+    for n in 1..=5 {
+        let (truth, data, _) = problem(n, 0.1);
+        let multibody = MultibodyMotion::from_motions(&truth);
+        for ([x, y], derivatives) in data.iter().take(20) {
+            let expected: f64 = truth.iter().map(|motion| motion.residual([x, y], derivatives)).product();
+            assert!((multibody.evaluate([x, y, 1.0], derivatives) - expected).abs() < 1e-13, "n = {n}");
+        }
+    }
+}
+
+#[test]
+fn the_rank_says_how_many_motions_there_are() {
+    for n in 1..=3 {
+        let (_, data, _) = problem(n, 0.0);
+        let values = EmbeddedData::new(&data, n).scaled_singular_values().unwrap();
+        assert_eq!(numerical_rank(&values, 1e-11), unknowns(n) - 1, "n = {n}");
+        assert_eq!(number_of_motions(&data, 4).unwrap().motions, n);
+    }
+}
+
+#[test]
+fn a_product_of_lines_is_factored() {
+    // (z₁ + 2 z₂ − z₃) (z₁ − z₂ + 3 z₃)
+    let found = factorise(&[1.0, 1.0, 2.0, -2.0, 7.0, -3.0], 2).unwrap();
+    for line in [[1.0, 2.0, -1.0], [1.0, -1.0, 3.0]] {
+        let is_line = |factor: &[f64; 3]| (0..3).all(|k| (factor[k] * line[0] - line[k] * factor[0]).abs() < 1e-12);
+        assert!(found.iter().any(is_line), "{line:?} is not in {found:?}");
+    }
+}
+
+#[test]
+fn motions_are_recovered_by_both_factorisations() {
+    for n in 1..=4 {
+        let (truth, data, mut random) = problem(n, 0.0);
+        let multibody = MultibodyMotion::estimate(&data, n).unwrap();
+        let motions = motions_from_points(&multibody, &data, POINTS, &mut random);
+        assert!(worst_error(&truth, &motions) < 1e-9, "n = {n}");
+        assert!(worst_error(&truth, &five_steps(&multibody)) < 1e-6, "n = {n}");
+    }
+}
+
+#[test]
+fn the_refinement_lowers_the_error() {
+    for n in 1..=4 {
+        let (truth, data, _) = problem(n, 0.01);
+        let (refined, report) = product::refine(&truth, &data);
+        assert_eq!(report.final_cost, product::cost(&refined, &data));
+        assert!(report.final_cost < report.initial_cost && report.was_successful(), "n = {n}");
+    }
+}
+
+#[test]
+fn generated_measurements_are_fitted() {
+    for n in 1..=3 {
+        let (truth, data, _) = problem(n, 0.0);
+        for method in [Method::Paper, Method::Best] {
+            let options = FitOptions::default().with_method(method).with_motions(MotionCount::Given(n));
+            let found = fit_motions(&data, &options, &mut |_| {}).unwrap();
+            let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
+            assert!(worst_error(&truth, &motions) < 1e-8, "n = {n}, {method:?}");
+        }
+    }
+}
 
 fn property(value: &JsValue, name: &str) -> Option<String> {
     Reflect::get(value, &name.into()).ok()?.as_string()
 }
 
-#[wasm_bindgen_test]
+#[test]
 fn a_panic_is_thrown_as_an_error_that_keeps_its_message_and_place() {
     veronese_wasm::start();
     let panicking = Closure::<dyn Fn()>::new(|| panic!("the reason"));
@@ -22,106 +122,6 @@ fn a_panic_is_thrown_as_an_error_that_keeps_its_message_and_place() {
     assert_eq!(property(&thrown, "name").as_deref(), Some("VeroneseError"));
     assert_eq!(property(&thrown, "code").as_deref(), Some("internal"));
     let message = property(&thrown, "message").unwrap();
-    assert!(message.contains("the reason") && message.contains("boundary.rs"), "{message}");
+    assert!(message.contains("the reason") && message.contains("algebra.rs"), "{message}");
     assert!(thrown.is_instance_of::<js_sys::Error>());
-}
-
-/// Every entry of `expected` is in `found`, with the same value. Numbers differ by rounding in the last digits at most.
-fn assert_contains(found: &Value, expected: &Value, path: &str) {
-    match (found, expected) {
-        (Value::Object(found), Value::Object(expected)) => {
-            for (name, value) in expected {
-                let path = format!("{path}.{name}");
-                let found = found.get(name).unwrap_or_else(|| panic!("there is no {path}"));
-                assert_contains(found, value, &path);
-            }
-        }
-        (Value::Array(found), Value::Array(expected)) => {
-            assert_eq!(found.len(), expected.len(), "{path}");
-            found.iter().zip(expected).for_each(|(found, expected)| assert_contains(found, expected, path));
-        }
-        (Value::Number(found), Value::Number(expected)) => {
-            let [found, expected] = [found, expected].map(|number| number.as_f64().unwrap());
-            assert!((found - expected).abs() <= 1e-15 * expected.abs(), "{path}: {found} is not {expected}");
-        }
-        _ => assert_eq!(found, expected, "{path}"),
-    }
-}
-
-fn json(value: &JsValue) -> Value {
-    serde_json::from_str(&String::from(js_sys::JSON::stringify(value).unwrap())).unwrap()
-}
-
-fn object(entries: &[(&str, JsValue)]) -> JsValue {
-    let object = js_sys::Object::new();
-    entries.iter().for_each(|(name, value)| drop(Reflect::set(&object, &(*name).into(), value)));
-    object.into()
-}
-
-/// A textured frame with a square that has moved by some pixels.
-fn rgba(moved: usize) -> Vec<u8> {
-    let texture = |x: usize, y: usize, seed: usize| ((x * x + 3 * y * y + x * y * seed) % 97 + 60) as u8;
-    let at = |x: usize, y: usize| match (x.wrapping_sub(20 + moved), y.wrapping_sub(15)) {
-        (a @ ..20, b @ ..20) => texture(a / 3, b / 3, 7),
-        _ => texture(x / 3, y / 3, 2),
-    };
-    (0..48 * 64).flat_map(|p| [at(p % 64, p / 64); 3].into_iter().chain([255])).collect()
-}
-
-#[wasm_bindgen_test]
-fn nothing_of_a_segmentation_is_left_out() {
-    let frames = [rgba(0), rgba(2)];
-    let [first, second] = frames.each_ref().map(|rgba| {
-        let data = js_sys::Uint8Array::from(&rgba[..]).into();
-        object(&[("data", data), ("width", 64.into()), ("height", 48.into())])
-    });
-    let found = json(&veronese_wasm::segment_pair(&first, &second, &JsValue::UNDEFINED, None).unwrap());
-    let [first, second] = frames.map(|rgba| Frame::from_rgba(64, 48, rgba).unwrap());
-    let expected = veronese::segment_pair(&first, &second, &SegmentOptions::default(), &mut |_| {}).unwrap();
-    assert_eq!(expected.count, 2);
-    assert_contains(&found, &serde_json::to_value(&expected).unwrap(), "segmentation");
-}
-
-#[wasm_bindgen_test]
-fn nothing_of_a_fit_is_left_out() {
-    // Two motions by halves; gradients in all directions.
-    let positions: Vec<[f64; 2]> =
-        (0..200).map(|j| [f64::from(j % 20) / 10.0 - 1.0, f64::from(j / 20) / 5.0 - 1.0]).collect();
-    let derivatives: Vec<[f64; 3]> = (0..200)
-        .map(|j| {
-            let (ix, iy) = (f64::from(j * j % 7) - 3.5, f64::from(j * 5 % 11) - 5.5);
-            let [u, v] = if j % 2 == 0 { [0.5, -0.25] } else { [-0.4, 0.1] };
-            [ix, iy, -ix * u - iy * v]
-        })
-        .collect();
-    let measurements = Measurements::new(positions.clone(), derivatives.clone()).unwrap();
-    for method in [Method::Paper, Method::Best] {
-        let asked = object(&[("method", method.name().into()), ("motions", 2.into())]);
-        let found = veronese_wasm::fit_motions(positions.as_flattened(), derivatives.as_flattened(), &asked, None);
-        let options = FitOptions::default().with_method(method).with_motions(MotionCount::Given(2));
-        let expected = veronese::fit_motions(&measurements, &options, &mut |_| {}).unwrap();
-        assert_contains(&json(&found.unwrap()), &serde_json::to_value(&expected).unwrap(), "fit");
-    }
-}
-
-#[wasm_bindgen_test]
-fn nothing_of_a_frame_of_a_clip_is_left_out() {
-    let clip = 1;
-    let options = object(&[("lookAhead", 0.into()), ("quality", "fast".into())]);
-    veronese_wasm::begin_clip(clip, false, &options).unwrap();
-    let pair = SegmentOptions::default().with_quality(Quality::Fast);
-    let mut stream = StreamSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(Some(0))).unwrap();
-    let mut objects = 0;
-    for moved in [0, 2, 4] {
-        let rgba = rgba(moved);
-        let data = js_sys::Uint8Array::from(&rgba[..]).into();
-        let pixels = object(&[("data", data), ("width", 64.into()), ("height", 48.into())]);
-        let found = veronese_wasm::push_clip(clip, &pixels, None).unwrap();
-        if let Some(expected) = stream.push(Frame::from_rgba(64, 48, rgba).unwrap()).unwrap() {
-            objects += expected.objects.len();
-            assert_contains(&json(&found), &serde_json::to_value(&expected).unwrap(), "frame");
-        }
-    }
-    assert!(objects > 0);
-    veronese_wasm::end_clip(clip);
 }

@@ -1,0 +1,102 @@
+// Golden hashes, in the module that is shipped: tests/golden.json says what is asked, and which bits the answers have. tests/golden.rs asks
+// the crate for the same natively.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { fitMotions, relabel, segmentClip, segmentPair } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+const root = new URL('../../', import.meta.url);
+const golden = JSON.parse(readFileSync(new URL('tests/golden.json', root), 'utf8'));
+
+/** FNV-1a, 64 bits: the prime is 2⁴⁰ + 435, the two halves are multiplied one by one. */
+class Hash {
+  #high = 0xcbf29ce4;
+  #low = 0x84222325;
+
+  bytes(bytes) {
+    for (const byte of bytes) {
+      const low = ((this.#low ^ byte) >>> 0) * 435;
+      this.#high = (this.#high * 435 + Math.floor(low / 2 ** 32) + ((this.#low ^ byte) << 8 >>> 0)) % 2 ** 32;
+      this.#low = low >>> 0;
+    }
+  }
+
+  /** All numbers, entries in the order of their names. */
+  numbers(answer) {
+    if (typeof answer === 'number') this.bytes(new Uint8Array(Float64Array.of(answer).buffer));
+    else if (Array.isArray(answer)) answer.forEach((value) => this.numbers(value));
+    else if (answer !== null && typeof answer === 'object') for (const name of Object.keys(answer).sort()) this.numbers(answer[name]);
+  }
+
+  toString() {
+    return [this.#high, this.#low].map((half) => half.toString(16).padStart(8, '0')).join('');
+  }
+}
+
+const decoded = new Map();
+const framesOf = (name) => Promise.all(golden.frames[name].map((file) => {
+  if (!decoded.has(file)) decoded.set(file, decodeImage(readFileSync(new URL(file, root))));
+  return decoded.get(file);
+}));
+
+/** Measurements spread by remainders. The crate's test computes them in the same order, so that both have the same bits. */
+function measurementsOf({ count, noise, motions }) {
+  const spread = (j, factor, modulus) => ((j * factor) % modulus) / Math.floor(modulus / 2) - 1;
+  const [positions, derivatives] = [new Float64Array(2 * count), new Float64Array(3 * count)];
+  for (let j = 0; j < count; j++) {
+    const [x, y] = [spread(j, 37, 101), spread(j, 53, 97)];
+    const [ix, iy] = [spread(j, 29, 83), spread(j, 71, 89)];
+    const m = motions[j % motions.length];
+    const [u, v] = [m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5]];
+    positions.set([x, y], 2 * j);
+    derivatives.set([ix, iy, noise * spread(j, 67, 79) - (ix * u + iy * v)], 3 * j);
+  }
+  return { positions, derivatives };
+}
+
+/** `inside` at the pixels of a box, `outside` elsewhere. */
+function filled(array, { width, height }, [left, top, across, down], inside, outside) {
+  return array.from({ length: width * height }, (_, p) => {
+    const [x, y] = [p % width, Math.floor(p / width)];
+    return x >= left && x < left + across && y >= top && y < top + down ? inside : outside;
+  });
+}
+
+/** The bytes of an answer, and what else it has; not what the package says of the call itself. */
+function answered({ labels, confidence, version, milliseconds, settings, ...rest }) {
+  return { bytes: [labels, ...(confidence ? [confidence] : [])], rest };
+}
+
+const CALLS = {
+  segmentPair: async ({ of, options }) => answered(await segmentPair(...(await framesOf(of)), options)),
+  relabel: async ({ of, options, stroke }) => {
+    const frames = await framesOf(of);
+    const found = await segmentPair(...frames, options);
+    const { motions, unlabelled, labels } = await relabel(...frames, found, filled(Uint16Array, found, stroke.box, stroke.motions, 0));
+    return answered({ motions, unlabelled, labels });
+  },
+  segmentClip: async ({ of, options, corrections: said = [] }) => {
+    const frames = await framesOf(of);
+    const corrections = said.map(({ frame, box, label }) => ({ frame, labels: filled(Uint8Array, frames[0], box, label, 255) }));
+    // A stream cannot be corrected.
+    const asked = corrections.length > 0 ? { ...options, corrections } : options;
+    const source = options.lookAhead === 'all' ? { length: frames.length, read: (index) => frames[index] } : frames;
+    const done = [];
+    for await (const frame of segmentClip(source, asked)) done.push(answered(frame));
+    return { bytes: done.flatMap(({ bytes }) => bytes), rest: done.map(({ rest }) => rest) };
+  },
+  fitMotions: async ({ of, options }) => answered(await fitMotions(measurementsOf(golden.measurements[of]), options)),
+};
+
+for (const asked of golden.answers) {
+  const { call, of, options, hash } = asked;
+  test(`${call} of ${of}, ${JSON.stringify(options)}: the same bits`, async () => {
+    const { bytes, rest } = await CALLS[call](asked);
+    const found = new Hash();
+    bytes.forEach((one) => found.bytes(one));
+    found.numbers(rest);
+    assert.equal(String(found), hash);
+  });
+}

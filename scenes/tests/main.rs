@@ -1,0 +1,4 @@
+//! Pairs and clips, in one program.
+
+mod clips;
+mod pairs;
