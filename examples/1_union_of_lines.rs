@@ -4,6 +4,7 @@
 
 use veronese::factorisation::ternary::factorise;
 
+/// Public: the tests run it, too.
 pub fn main() {
     // In the projective plane a line is b·z = b₁z₁ + b₂z₂ + b₃z₃ = 0. Three lines:
     let lines = [[1.0, 2.0, -1.0], [0.5, -1.0, 2.0], [-2.0, 1.0, 1.0]];

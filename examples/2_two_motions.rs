@@ -5,6 +5,7 @@ use veronese::embedding::MultibodyMotion;
 use veronese::factorisation::differentiation::{POINTS, motions_from_points};
 use veronese::{AffineMotion, FitOptions, Measurements, MotionCount, Random, Result, fit_motions};
 
+/// Public: the tests run it, too.
 pub fn main() -> Result<()> {
     let truth =
         [AffineMotion::new([0.1, -0.2, 0.5, 0.2, 0.1, -0.3]), AffineMotion::new([0.0, 0.0, -0.4, 0.0, 0.0, 0.2])];

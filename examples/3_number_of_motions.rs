@@ -4,6 +4,7 @@
 use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
 use veronese::{AffineMotion, FitOptions, Measurements, Random, Result, fit_motions};
 
+/// Public: the tests run it, too.
 pub fn main() -> Result<()> {
     let motions = [
         AffineMotion::new([0.3, -0.6, 0.9, 0.5, 0.2, -0.8]),

@@ -4,6 +4,7 @@
 use scenes::{SceneOptions, generate};
 use veronese::{Result, SegmentOptions, segment_pair};
 
+/// Public: the tests run it, too.
 pub fn main() -> Result<()> {
     let scene = generate(&SceneOptions { width: 160, height: 120, objects: 2, seed: 5, ..SceneOptions::default() })?;
 

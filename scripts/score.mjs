@@ -8,7 +8,7 @@ import { command, run } from './lib/run.mjs';
 import { checkRust } from './lib/rust.mjs';
 
 const SCORE = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'score', '--'];
-const EXPECTATIONS = ['test', '--quiet', '--release', '--locked', '--features', 'codecs', '--test', 'all', 'expectations::'];
+const EXPECTATIONS = ['test', '--quiet', '--release', '--locked', '--features', 'codecs', '--test', 'all', 'expectations::', '--', '--include-ignored'];
 
 await command(async (args) => {
   await checkRust();

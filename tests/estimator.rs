@@ -258,7 +258,7 @@ fn the_same_input_gives_the_same_bits_everywhere() {
     let mut eat = |value: u64| {
         value.to_le_bytes().iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
     };
-    for seed in 0..200 {
+    for seed in 0..40 {
         let n = 1 + seed as usize % 5;
         let protocol = Protocol {
             count: 150 + 3 * seed as usize,
@@ -280,4 +280,4 @@ fn the_same_input_gives_the_same_bits_everywhere() {
 }
 
 /// Changes with the arithmetic (see CONTRIBUTING.md, "Golden hashes"). A failing test prints the new value.
-const GOLDEN: u64 = 0xe4fd_ba56_39b4_eb3e;
+const GOLDEN: u64 = 0x6dc2_42f1_4a18_b312;

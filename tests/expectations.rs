@@ -148,10 +148,13 @@ fn best_group(
 }
 
 fn check_pair(name: &str) {
+    check_altered(name, &[Altered::No]);
+}
+
+fn check_altered(name: &str, altered: &[Altered]) {
     let expected = expected(name);
     let pictures = [0, 1].map(|k| picture(expected["frames"][k].as_str().unwrap()));
     let objects = expected["objects"].as_array().unwrap();
-    let altered = if expected["altered"] == true { &Altered::ALL[..] } else { &[Altered::No] };
     for (&altered, quality) in altered.iter().flat_map(|altered| [Quality::Fast, Quality::Best].map(|q| (altered, q))) {
         let case = format!("{name}, {altered:?}, {quality:?}");
         let [first, second] = [0, 1].map(|k| altered.frame(&pictures[k]));
@@ -188,7 +191,18 @@ fn check_pair(name: &str) {
 
 #[test]
 fn two_cars_on_a_plain_road_are_two_objects_and_the_road_is_at_rest() {
-    check_pair("two-cars");
+    check_altered("two-cars", &[Altered::No, Altered::Mirrored([true, false]), Altered::Jpeg]);
+}
+
+#[test]
+#[ignore = "npm run soak"]
+fn frames_that_are_altered_show_the_same_objects() {
+    let files = fs::read_dir("tests/expectations").unwrap().map(|entry| entry.unwrap().path());
+    let names = files.filter(|path| path.extension().is_some_and(|kind| kind == "json"));
+    let names = names.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned());
+    for name in names.filter(|name| expected(name)["altered"] == true) {
+        check_altered(&name, &Altered::ALL);
+    }
 }
 
 #[test]
@@ -241,13 +255,13 @@ fn nothing_moves_in_an_empty_room() {
 /// Scenes of seeds that nothing was chosen on.
 #[test]
 fn ground_is_at_rest_below_the_cars_of_a_camera_at_rest() {
-    assert_ground_at_rest(53_000..53_006);
+    assert_ground_at_rest(53_000..53_003);
 }
 
 #[test]
 #[ignore = "npm run soak"]
 fn ground_is_at_rest_in_many_scenes() {
-    assert_ground_at_rest(53_006..53_030);
+    assert_ground_at_rest(53_003..53_030);
 }
 
 fn assert_ground_at_rest(seeds: Range<u64>) {
@@ -267,35 +281,43 @@ fn assert_ground_at_rest(seeds: Range<u64>) {
 
 #[test]
 fn passing_cars_are_two_objects_from_coming_to_leaving() {
+    check_clip(Quality::Fast);
+}
+
+#[test]
+#[ignore = "npm run soak"]
+fn passing_cars_are_two_objects_in_the_best_quality() {
+    check_clip(Quality::Best);
+}
+
+fn check_clip(quality: Quality) {
     let expected = expected("passing-cars");
     let mut paths: Vec<PathBuf> =
         fs::read_dir(expected["folder"].as_str().unwrap()).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let frames: Vec<Frame> = paths.iter().map(|path| Altered::No.frame(&picture(path.to_str().unwrap()))).collect();
-    for quality in [Quality::Fast, Quality::Best] {
-        let pair = SegmentOptions::default().with_quality(quality);
-        let mut clip = ClipSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(None)).unwrap();
-        frames.iter().for_each(|frame| drop(clip.push(frame.clone()).unwrap()));
-        let clip = clip.conclude();
-        let objects = expected["objects"].as_array().unwrap();
-        assert!(clip.frames_with(objects.len() as u8 + 1).is_empty(), "{quality:?}: there are more objects");
-        for (object, id) in objects.iter().zip(1..) {
-            let (name, seen) = (object["name"].as_str().unwrap(), clip.frames_with(id));
-            let from = object["from"].as_u64().unwrap() as usize;
-            let follow = seen.windows(2).all(|pair| pair[1] == pair[0] + 1) && seen.last() == Some(&(frames.len() - 1));
-            assert!(seen[0] <= from && follow, "{quality:?}: {name} is found in the frames {seen:?}");
-            for (index, corners) in object["outlines"].as_object().unwrap() {
-                let (index, corners): (usize, _) = (index.parse().unwrap(), outline(corners));
-                let (frame, width) = (&frames[index], frames[index].width());
-                let labels = clip.frame(index, frame).unwrap().labels;
-                let inside = |&p: &usize| contains(&corners, (p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
-                let pixels: Vec<usize> = (0..labels.len()).filter(inside).collect();
-                let covered = pixels.iter().filter(|&&p| labels[p] == id).count() as f64 / pixels.len() as f64;
-                assert!(covered >= COVERED, "{quality:?}: {covered:.3} of {name} in frame {index}");
-                let outside = |p: &usize| labels[*p] == id && !inside(p);
-                let outside = (0..labels.len()).filter(outside).count() as f64 / pixels.len() as f64;
-                assert!(outside <= OUTSIDE, "{quality:?}: {outside:.3} around {name} in frame {index}");
-            }
+    let pair = SegmentOptions::default().with_quality(quality);
+    let mut clip = ClipSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(None)).unwrap();
+    frames.iter().for_each(|frame| drop(clip.push(frame.clone()).unwrap()));
+    let clip = clip.conclude();
+    let objects = expected["objects"].as_array().unwrap();
+    assert!(clip.frames_with(objects.len() as u8 + 1).is_empty(), "{quality:?}: there are more objects");
+    for (object, id) in objects.iter().zip(1..) {
+        let (name, seen) = (object["name"].as_str().unwrap(), clip.frames_with(id));
+        let from = object["from"].as_u64().unwrap() as usize;
+        let follow = seen.windows(2).all(|pair| pair[1] == pair[0] + 1) && seen.last() == Some(&(frames.len() - 1));
+        assert!(seen[0] <= from && follow, "{quality:?}: {name} is found in the frames {seen:?}");
+        for (index, corners) in object["outlines"].as_object().unwrap() {
+            let (index, corners): (usize, _) = (index.parse().unwrap(), outline(corners));
+            let (frame, width) = (&frames[index], frames[index].width());
+            let labels = clip.frame(index, frame).unwrap().labels;
+            let inside = |&p: &usize| contains(&corners, (p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
+            let pixels: Vec<usize> = (0..labels.len()).filter(inside).collect();
+            let covered = pixels.iter().filter(|&&p| labels[p] == id).count() as f64 / pixels.len() as f64;
+            assert!(covered >= COVERED, "{quality:?}: {covered:.3} of {name} in frame {index}");
+            let outside = |p: &usize| labels[*p] == id && !inside(p);
+            let outside = (0..labels.len()).filter(outside).count() as f64 / pixels.len() as f64;
+            assert!(outside <= OUTSIDE, "{quality:?}: {outside:.3} around {name} in frame {index}");
         }
     }
 }

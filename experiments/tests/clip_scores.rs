@@ -1,11 +1,10 @@
 //! The figures of the clip benchmark, on labels whose figures follow from their definition.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../boundary.rs"]
-mod boundary;
 #[path = "../clips/scores.rs"]
 mod scores;
 
+use crate::boundary;
 use scores::{Identities, Scores, VOID, scores};
 
 const WIDTH: usize = 80;

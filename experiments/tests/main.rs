@@ -1,6 +1,8 @@
 //! What the programs measure with, on cases whose figures follow from their definition. One program: it is linked once.
 
 mod annotator;
+#[path = "../boundary.rs"]
+mod boundary;
 mod clip_scores;
+mod mask_scores;
 mod score;
-mod scores;

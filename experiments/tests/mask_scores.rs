@@ -1,11 +1,10 @@
 //! The scores of the mask benchmark, on labellings with known scores.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[path = "../boundary.rs"]
-mod boundary;
 #[path = "../masks/scores.rs"]
 mod scores;
 
+use crate::boundary;
 use scores::{VOID, flow_error, scores};
 use veronese::Random;
 
