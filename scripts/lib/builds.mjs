@@ -154,11 +154,10 @@ function ofModule(features, flags = []) {
   return ['--locked', '--config', config, '--no-default-features', '--features', features.join(',')];
 }
 
-/** wasm-pack's arguments for a test of the modules' own crate, and the environment: with them, the library is the one that is built for them. */
+/** Cargo's arguments for a test of the modules' own crate, and the environment: with these, the libraries are those that the modules have. */
 export function testOfModules(name) {
-  const { features } = MODULES.at(-1);
-  const args = ['test', 'wasm', '--node', '--release', '--mode', 'no-install', '--', '--test', name, ...ofModule(features)];
-  return { args, env: FLAGS_OF_PROJECT };
+  const args = ['test', '--package', 'veronese-wasm', '--test', name, '--release', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
+  return { args, env: { ...FLAGS_OF_PROJECT, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner' } };
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */

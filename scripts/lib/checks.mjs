@@ -12,7 +12,7 @@ import { versionProblem, versions } from './versions.mjs';
 
 const DENY = ['--', '-D', 'warnings'];
 const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
-const ALL = ['--features', 'codecs,stages,ablation'];
+const ALL = ['--features', 'codecs,stages,ablation,plot'];
 
 const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],

@@ -16,8 +16,9 @@ import { buildSite } from './site.mjs';
 import { cargo, node, playwright, pytest } from './test-programs.mjs';
 import { added, tests } from './tests.mjs';
 
-/** What is tested natively; the package of Python has tests of its own. */
-const NATIVE = ['--locked', '--workspace', '--exclude', 'veronese-python', '--no-fail-fast', '--features', 'codecs,stages'];
+/** The crates that have native tests, and what cargo needs for them. */
+const CRATES = ['veronese', 'scenes', 'experiments'].flatMap((name) => ['--package', name]);
+const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs,stages', ...CRATES];
 const SOAK = { VERONESE_SOAK: '1' };
 
 /** Parts of one lane run one after another, because they would wait for each other: for cargo's lock, for ports, for cores. */
@@ -25,7 +26,7 @@ export const DAILY = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: async () => added(await tests(cargo, 'cargo', ['test', ...NATIVE, '--lib', '--tests']), await tests(cargo, 'cargo', ['test', ...NATIVE, '--doc'])),
+    run: async () => added(await tests(cargo, 'cargo', [...NATIVE, '--lib', '--tests']), await tests(cargo, 'cargo', [...NATIVE, '--doc'])),
   },
   wasm: {
     lane: 'cargo',
@@ -34,7 +35,7 @@ export const DAILY = {
     run: async () => {
       await buildModules();
       const { args, env } = testOfModules('algebra');
-      return tests(cargo, 'wasm-pack', args, env);
+      return tests(cargo, 'cargo', args, env);
     },
   },
   check: { lane: 'cargo', title: 'checks', needs: { checks: true }, run: runChecks },
@@ -69,8 +70,8 @@ export const RARE = {
     title: 'native tests that take long',
     run: async () =>
       added(
-        await tests(cargo, 'cargo', ['test', ...NATIVE, '--lib', '--tests', '--', '--ignored']),
-        await tests(cargo, 'cargo', ['test', ...NATIVE, '--test', 'all', 'properties'], { PROPTEST_CASES: '200000' }),
+        await tests(cargo, 'cargo', [...NATIVE, '--lib', '--tests', '--', '--ignored']),
+        await tests(cargo, 'cargo', [...NATIVE, '--test', 'all', 'properties::'], { PROPTEST_CASES: '200000' }),
       ),
   },
   check: { title: 'the crates with each set of features', needs: { checks: true }, run: runRareChecks },

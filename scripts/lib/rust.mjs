@@ -18,9 +18,6 @@ export const NIGHTLY = 'nightly-2026-05-20';
 // Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
-/** Cargo's arguments for all crates but that of the Python package, which is no program of its own and nothing for WebAssembly. */
-export const CRATES = ['--workspace', '--exclude', 'veronese-python'];
-
 /** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
 export function wasmBindgenVersion() {
   const found = /name = "wasm-bindgen"\r?\nversion = "([^"]+)"/.exec(projectText('Cargo.lock'));
@@ -73,7 +70,6 @@ export async function prepareWasmTools(meanwhile) {
     crate: 'wasm-bindgen-cli',
     version: wasmBindgenVersion(),
     companions: ['wasm-bindgen-test-runner'],
-    busy: ['walrus', 'wasmparser', 'wasm-encoder', 'wasm-bindgen-cli-support'],
   };
   const tools = [bindgen, { program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK }];
   const missing = [];
@@ -127,20 +123,20 @@ async function cargoInstall(tool) {
   const name = `${tool.crate} ${tool.version}`;
   const crate = `${tool.crate}@${tool.version}`;
   const wanted = [tool.program, ...(tool.companions ?? [])].flatMap((program) => ['--bin', program]);
-  // Programs run for a second and take minutes to compile: only the packages that do the work are optimised.
-  const optimised = (tool.busy ?? []).flatMap((name) => ['--config', `profile.release.package.${name}.opt-level=1`]);
   if (which('cargo-binstall') && (await binstall(crate))) return;
   await longStep(
     `Installing ${name} into .tools (some minutes; once)`,
     `${name} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, ...optimised, crate],
+    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, crate],
     {
       env: {
         CARGO_TARGET_DIR: COMPILE_FOLDER,
+        // Programs run for a second and take minutes to compile.
         CARGO_PROFILE_RELEASE_OPT_LEVEL: '0',
         CARGO_PROFILE_RELEASE_LTO: 'off',
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
+        CARGO_PROFILE_RELEASE_PANIC: 'abort',
         RUSTFLAGS: undefined,
         CARGO_ENCODED_RUSTFLAGS: undefined,
       },

@@ -2,7 +2,7 @@
 
 const ESCAPES = /\u001b\[[0-9;]*m/g;
 
-/** cargo test and wasm-pack test: a line of counts for each binary. */
+/** cargo test: a line of counts for each binary. */
 export const cargo = {
   counts: (output) => {
     const counts = { passed: 0, failed: 0, skipped: 0 };
