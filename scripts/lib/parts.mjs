@@ -7,7 +7,7 @@ import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { findBrowsers, testInBrowsers } from './browsers.mjs';
-import { buildAll, buildModules, buildPackage, buildPage, buildTestWheel, testOfModules } from './builds.mjs';
+import { buildAll, buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
 import { runChecks, runRareChecks } from './checks.mjs';
 import { root } from './project.mjs';
 import { OWN, installWheel } from './python-packages.mjs';
@@ -43,14 +43,7 @@ export const DAILY = {
     lane: 'cargo',
     title: 'the Python package',
     needs: { ownPython: true },
-    run: async ({ ownPython: { problem } }) => {
-      if (problem) return { passed: 0, failed: 0, skipped: 1, failures: [], note: problem };
-      await buildPackage();
-      const wheel = await buildTestWheel(OWN.python);
-      await installWheel(OWN, wheel);
-      // What is installed is tested, not the sources beside the tests.
-      return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
-    },
+    run: (setup) => ofPython('python', setup, buildTestWheel),
   },
   builds: {
     lane: 'node',
@@ -78,6 +71,11 @@ export const RARE = {
   package: { title: 'package tests, whole sweeps', run: () => ofPackage('test', SOAK) },
   page: { title: 'page tests, whole sweeps', needs: { browser: true }, run: (setup) => ofPage('test', setup, SOAK) },
   screens: { title: 'screenshots of the page, in out/screens', needs: { browser: true }, run: (setup) => ofPage('screens', setup) },
+  python: {
+    title: 'the wheel as it is published',
+    needs: { ownPython: true },
+    run: (setup) => ofPython('python/tests/test_wheel.py', setup, buildWheel, { VERONESE_PUBLISHED: '1' }),
+  },
   formats: {
     title: "formats, read by the annotation tools' own decoders",
     needs: { python: true },
@@ -148,6 +146,15 @@ async function ofPage(script, setup, env = {}) {
   const browser = inBrowser(setup);
   await buildPage();
   return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www'], { ...browser, ...env });
+}
+
+/** Runs tests of the Python package: what is installed is tested, not the sources beside the tests. */
+async function ofPython(place, { ownPython: { problem } }, build, env = {}) {
+  if (problem) return { passed: 0, failed: 0, skipped: 1, failures: [], note: problem };
+  await buildPackage();
+  const wheel = await build(OWN.python);
+  await installWheel(OWN, wheel);
+  return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', place], { ...env, VERONESE_WHEEL: wheel });
 }
 
 function inBrowser({ chromium }) {
