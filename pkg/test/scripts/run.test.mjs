@@ -5,20 +5,20 @@ import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
-import { inLane, run, say } from '../../../scripts/lib/run.mjs';
+import { inPart, run, say } from '../../../scripts/lib/run.mjs';
 
 const MODULE = new URL('../../../scripts/lib/run.mjs', import.meta.url).href;
 
-test('what lanes and their programs show is not mixed, and programs get the niceness of their lane', async () => {
+test('what parts and their programs show is not mixed, and programs get the niceness of their part', async () => {
   const written = { one: '', two: '' };
   const nice = Number((await run('nice', [], { output: 'collect' })).text);
-  const lane = (name, niceness) =>
-    inLane({ write: (piece) => (written[name] += piece), niceness }, async () => {
+  const part = (name, niceness) =>
+    inPart({ name, write: (piece) => (written[name] += piece), niceness }, async () => {
       say(`${name}:`);
       const { code } = await run('bash', ['-c', 'echo "$0"; sleep 0.2; nice >&2; exit 3', name]);
       say(`${name} ended with ${code}`);
     });
-  await Promise.all([lane('one', 0), lane('two', nice + 3)]);
+  await Promise.all([part('one', 0), part('two', nice + 3)]);
   assert.equal(written.one, `one:\none\n${nice}\none ended with 3\n`);
   assert.equal(written.two, `two:\ntwo\n${nice + 3}\ntwo ended with 3\n`);
 });
