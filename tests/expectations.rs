@@ -284,8 +284,8 @@ fn passing_cars_are_two_objects_from_coming_to_leaving() {
     check_clip(Quality::Fast);
 }
 
+/// What a first visitor of the page sees.
 #[test]
-#[ignore = "npm run soak"]
 fn passing_cars_are_two_objects_in_the_best_quality() {
     check_clip(Quality::Best);
 }
