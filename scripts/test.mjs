@@ -13,6 +13,7 @@ const NICENESS = { cargo: 10, node: 0 };
 const SETUP = 'set-up';
 /** A budget is what a part took when everything was new. Machines differ by so much before it is worth a word. */
 const AIR = 1.15;
+const NOTHING = { passed: 0, failed: 0, skipped: 0, failures: [] };
 
 await command(async (args) => {
   const unknown = args.filter((name) => !Object.hasOwn(DAILY, name));
@@ -52,8 +53,6 @@ async function runBeside(name, setup) {
     console.log(`… ${title}: end`);
   }
 }
-
-const NOTHING = { passed: 0, failed: 0, skipped: 0, failures: [] };
 
 /** Runs one part; a failure does not stop the parts after it. */
 async function runPart(name, setup, options) {
