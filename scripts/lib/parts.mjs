@@ -16,8 +16,11 @@ import { buildSite } from './site.mjs';
 import { cargo, node, playwright, pytest } from './test-programs.mjs';
 import { added, tests } from './tests.mjs';
 
-/** The crates that have native tests, and what cargo needs for them. */
-const CRATES = ['veronese', 'scenes', 'experiments'].flatMap((name) => ['--package', name]);
+/**
+ * The crates that have native tests, and that of the Python package, which has none: named beside them, it asks for the same features of
+ * other packages, so that the tests and its wheel share what is compiled.
+ */
+const CRATES = ['veronese', 'scenes', 'experiments', 'veronese-python'].flatMap((name) => ['--package', name]);
 const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs,stages', ...CRATES];
 const SOAK = { VERONESE_SOAK: '1' };
 
@@ -26,7 +29,7 @@ export const DAILY = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: async () => added(await tests(cargo, 'cargo', [...NATIVE, '--lib', '--tests']), await tests(cargo, 'cargo', [...NATIVE, '--doc'])),
+    run: async () => added(await tests(cargo, 'cargo', [...NATIVE, '--tests']), await tests(cargo, 'cargo', [...NATIVE, '--doc'])),
   },
   wasm: {
     lane: 'cargo',
@@ -63,13 +66,13 @@ export const RARE = {
     title: 'native tests that take long',
     run: async () =>
       added(
-        await tests(cargo, 'cargo', [...NATIVE, '--lib', '--tests', '--', '--ignored']),
+        await tests(cargo, 'cargo', [...NATIVE, '--tests', '--', '--ignored']),
         await tests(cargo, 'cargo', [...NATIVE, '--test', 'all', 'properties::'], { PROPTEST_CASES: '200000' }),
       ),
   },
   check: { title: 'the crates with each set of features', needs: { checks: true }, run: runRareChecks },
   package: { title: 'package tests, whole sweeps', run: () => ofPackage('test', SOAK) },
-  page: { title: 'page tests, whole sweeps', needs: { browser: true }, run: (setup) => ofPage('test', setup, SOAK) },
+  page: { title: 'page tests that take long', needs: { browser: true }, run: (setup) => ofPage('test', setup, SOAK, ['--grep', '@soak|same-bits']) },
   screens: { title: 'screenshots of the page, in out/screens', needs: { browser: true }, run: (setup) => ofPage('screens', setup) },
   python: {
     title: 'the wheel as it is published',
@@ -142,10 +145,10 @@ async function ofPackage(script, env = {}) {
 }
 
 /** Runs a script of the page. */
-async function ofPage(script, setup, env = {}) {
+async function ofPage(script, setup, env = {}, args = []) {
   const browser = inBrowser(setup);
   await buildPage();
-  return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www'], { ...browser, ...env });
+  return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www', '--', ...args], { ...browser, ...env });
 }
 
 /** Runs tests of the Python package: what is installed is tested, not the sources beside the tests. */

@@ -84,8 +84,8 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(72 * 1024);
   // What is loaded when it is used; what reads masks of annotation tools is needed by few, what reads masks given to calls by none here.
   const later = files.filter((name) => !asked.has(name));
-  const reading = later.filter((name) => /^(importing|annotations|indexed-png|given-masks)-/.test(name));
-  expect(reading).toHaveLength(4);
+  const reading = later.filter((name) => /^(importing|annotations|given-masks)-/.test(name));
+  expect(reading).toHaveLength(3);
   expect(sizeOf(reading)).toBeLessThanOrEqual(15 * 1024);
   expect(sizeOf(later.filter((name) => !reading.includes(name)))).toBeLessThanOrEqual(49 * 1024);
 });
