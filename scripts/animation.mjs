@@ -5,7 +5,7 @@ import { mkdtempSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root, which } from './lib/project.mjs';
 import { Stop, command, must, say } from './lib/run.mjs';
@@ -21,7 +21,6 @@ const LARGEST = 1.5 * 1024 ** 2;
 await command(async () => {
   if (!which('ffmpeg')) throw new Stop('ffmpeg was not found; it joins the pictures (Debian: apt-get install ffmpeg).');
   await prepare();
-  await buildModules();
   await buildPackage();
   const folder = mkdtempSync(join(tmpdir(), 'veronese-'));
   try {

@@ -9,7 +9,7 @@ import { masksOfCvat } from './lib/annotator/cvat.mjs';
 import { annotate } from './lib/annotator/expert.mjs';
 import { mean, overlap } from './lib/annotator/overlap.mjs';
 import { annotatedPage } from './lib/annotator/page.mjs';
-import { buildAll } from './lib/builds.mjs';
+import { buildPage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -33,7 +33,7 @@ await command(async (args) => {
   for (const clip of options.only) if (!existsSync(join(options.data, clip, 'masks'))) throw new Stop(`${join(options.data, clip)} has no frames and masks.`);
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
-  await buildAll();
+  await buildPage();
   const { decodeImage } = await import('../pkg/dist/codecs.js');
   const server = await serve(join(root, 'www/dist'), { host: HOST });
   const address = `http://${HOST}:${server.address().port}/`;

@@ -12,7 +12,7 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { gzipSync } from 'node:zlib';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -48,7 +48,6 @@ await command(async (args) => {
   const cases = alone ? [...OURS, CLIPS[0]] : [...OURS, ...THEIRS, ...CLIPS];
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
-  await buildModules();
   await buildPackage();
   if (!alone) await preparePeers();
   await writeFrames(sizes);

@@ -7,7 +7,7 @@ import { mkdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -29,7 +29,6 @@ await command(async (args) => {
   const { runs, writeDocs } = options(args);
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
-  await buildModules();
   await buildPackage();
   mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');

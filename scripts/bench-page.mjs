@@ -15,7 +15,7 @@ import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
 import { browserMemory } from './lib/browser-memory.mjs';
-import { buildAll } from './lib/builds.mjs';
+import { buildPage } from './lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
@@ -38,7 +38,7 @@ await command(async (args) => {
   if (process.platform !== 'linux') throw new Stop('The memory of processes is read from /proc, which only Linux has.');
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
-  await buildAll();
+  await buildPage();
   mkdirSync(OUT, { recursive: true });
   const server = await serve(join(root, 'www/dist'), { host: HOST });
   const address = `http://${HOST}:${server.address().port}/`;

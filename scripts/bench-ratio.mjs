@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -20,7 +20,6 @@ const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'benches'
 
 await command(async (args) => {
   await prepare();
-  await buildModules();
   await buildPackage();
   const folder = mkdtempSync(join(tmpdir(), 'veronese-'));
   try {

@@ -5,7 +5,7 @@ import { mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:net';
 import { join, relative } from 'node:path';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { decodedByStudio, picture, predictions, prepareLabelStudio, serveFiles, startLabelStudio, videoPredictions } from './lib/label-studio.mjs';
 import { SERVERS, prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -21,7 +21,6 @@ const [START, LENGTH, RATE] = [20, 24, 25];
 await command(async () => {
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
-  await buildModules();
   await buildPackage();
   await prepareNpmPackages(SERVERS);
   await prepareLabelStudio();

@@ -1,7 +1,7 @@
 // npm run proof:scale-out: two workers process 200 pairs from Redis; one worker is killed in the middle of a job, and the server is
 // restarted once. Then two workers share the blocks of a clip, and one of them is killed inside a block.
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { SCALE_OUT, prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { Stop, command } from './lib/run.mjs';
@@ -10,7 +10,6 @@ import { prove, proveClip, redisServer } from './lib/scale-out.mjs';
 await command(async () => {
   await prepare();
   await prepareNpmPackages(SCALE_OUT);
-  await buildModules();
   await buildPackage();
   const program = await redisServer({ install: true });
   if (!program) throw new Stop('There is no redis-server and no valkey-server: install one (Debian: `apt-get install redis-server`).');

@@ -150,7 +150,6 @@ async function compareModules() {
 }
 
 async function packArchives(release) {
-  await buildModules();
   await buildPackage();
   const { crate } = identity();
   const archives = [

@@ -10,7 +10,7 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { findBrowsers } from './lib/browsers.mjs';
-import { buildModules, buildPackage, buildPlainModule, buildWheel } from './lib/builds.mjs';
+import { buildPackage, buildPlainModule, buildWheel } from './lib/builds.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -46,7 +46,6 @@ await command(async (args) => {
   const answers = {};
   for (const profile of ['release', 'debug']) if (wanted.has(profile)) answers[profile] = await ofNative(profile, folder, cases);
   if (['node', 'plain', ...BROWSERS.map((name) => name.toLowerCase())].some((name) => wanted.has(name))) {
-    await buildModules();
     await buildPackage();
   }
   if (wanted.has('node')) answers.node = await ofProgram(process.execPath, [join(root, HERE, 'node.mjs'), folder]);

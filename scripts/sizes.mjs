@@ -4,7 +4,7 @@ import { readFileSync, statSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
+import { buildPackage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -26,7 +26,6 @@ const ROWS = [
 
 await command(async (args) => {
   await prepare();
-  await buildModules();
   await buildPackage();
   const entries = ROWS.filter(([, files]) => files.every(exists)).map(([entry, files]) => {
     const bytes = [...new Set(files.flatMap((file) => withImports(file)))].map((file) => readFileSync(join(PKG, file)));

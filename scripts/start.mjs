@@ -4,7 +4,7 @@ import { join, relative } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
-import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
+import { buildPackage, buildPage } from './lib/builds.mjs';
 import { describe } from './lib/describe.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -23,7 +23,6 @@ await command(async (args) => {
   const options = parse(args);
   if (typeof options === 'number') return options;
   await prepare();
-  await buildModules();
   await buildPackage();
   await segmentSample();
   await buildPage();

@@ -20,13 +20,6 @@ export const MODULES = [
   { name: 'veronese_codecs', folder: 'pkg/wasm/codecs', title: 'the module with codecs', features: ['frames', 'points', 'codecs'] },
 ];
 
-/** Everything, in order. */
-export async function buildAll() {
-  await buildModules();
-  await buildPackage();
-  await buildPage();
-}
-
 /** What lies between the steps of the method, for the site alone; no part of the package. */
 const STAGES = { name: 'veronese_stages', folder: 'site/module', title: 'the module of the site', features: ['frames', 'points', 'stages'] };
 
@@ -66,8 +59,9 @@ export async function compileAhead() {
   }
 }
 
-/** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
+/** Builds the modules, then the npm package: their JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
 export const buildPackage = once(async () => {
+  await buildModules();
   // Includes the modules, because one entry of the package embeds them.
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
@@ -77,8 +71,9 @@ export const buildPackage = once(async () => {
   );
 });
 
-/** Builds the page with the parts of the package that it uses. */
+/** Builds the package, then the page with the parts of it that it uses. */
 export const buildPage = once(async () => {
+  await buildPackage();
   const built = ['pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm'];
   const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
   const inputs = ['www', 'examples/embed', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];

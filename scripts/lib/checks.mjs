@@ -1,6 +1,6 @@
 // Checks besides the tests: formatting, lints, documentation, types, spelling, versions. A warning is a failure.
 
-import { buildModules, buildPackage } from './builds.mjs';
+import { buildPackage } from './builds.mjs';
 import { constantsAreFew } from './constants.mjs';
 import { identityProblems } from './identity.mjs';
 import { importsAgree } from './imports.mjs';
@@ -53,7 +53,6 @@ export async function runChecks() {
     ['the pages are what docs/figures gives', pagesAgree()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
-  await buildModules();
   await buildPackage();
   results.push(...(await outcomesOf(CHECKS)));
   const names = await publicApiAgrees();

@@ -7,7 +7,7 @@ import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { findBrowsers, testInBrowsers } from './browsers.mjs';
-import { buildAll, buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
+import { buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
 import { runChecks, runRareChecks } from './checks.mjs';
 import { root } from './project.mjs';
 import { OWN, installWheel } from './python-packages.mjs';
@@ -52,7 +52,7 @@ export const DAILY = {
     lane: 'node',
     title: 'the modules, the package and the page',
     run: async () => {
-      await buildAll();
+      await buildPage();
       return { passed: 0, failed: 0, skipped: 0, failures: [] };
     },
   },
@@ -98,7 +98,7 @@ export const RARE = {
     needs: { browser: true },
     run: async ({ chromium }) => {
       const browsers = await findBrowsers(chromium.path, { install: true });
-      await buildAll();
+      await buildPage();
       return testInBrowsers(browsers);
     },
   },

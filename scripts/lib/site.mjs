@@ -4,7 +4,7 @@ import { cpSync, existsSync, mkdirSync, readdirSync, rmSync, writeFileSync } fro
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
 
-import { buildModules, buildPackage, buildPage, buildStagesModule } from './builds.mjs';
+import { buildPage, buildStagesModule } from './builds.mjs';
 import { HOSTS, SITE, prepareNpmPackages } from './npm-packages.mjs';
 import { prepare } from './prepare.mjs';
 import { root } from './project.mjs';
@@ -29,8 +29,6 @@ export async function makeSite({ onlyPages = false } = {}) {
   await prepare();
   await prepareNpmPackages(SITE);
   await prepareNpmPackages(HOSTS);
-  await buildModules();
-  await buildPackage();
   await buildPage();
   await buildStagesModule();
   mkdirSync(OUT, { recursive: true });
