@@ -10,13 +10,16 @@
 //! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
 //! [`SegmentedClip`] gives any frame, as often as it is asked, takes corrections and can be saved.
 
+mod annotation;
 mod carry;
+mod changes;
 mod colours;
 mod correction;
 mod description;
 mod evidence;
 mod grouping;
 mod identity;
+mod job;
 mod layer;
 mod parting;
 mod record;
@@ -34,10 +37,11 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
-pub use correction::{ClipCorrection, Prompt};
+pub use annotation::{Accepted, Annotations, Click, Painted, Prompt, Spread};
+pub use changes::Changed;
 #[doc(hidden)]
 pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
-pub use layer::Spread;
+pub use job::ClipJob;
 pub use stream::StreamSegmenter;
 pub use whole::{ClipSegmenter, FramePairs, SegmentedClip};
 

@@ -81,6 +81,12 @@ pub enum Error {
         /// Index of the frame, from 0.
         index: usize,
     },
+    /// Something is said of an object that is locked.
+    #[error("object {object} is locked: unlock it to change it")]
+    ObjectLocked {
+        /// Its number.
+        object: u8,
+    },
     /// A file is not an image in a supported format, or is damaged.
     #[error("the image cannot be read: {reason}")]
     UnreadableImage {
@@ -110,6 +116,7 @@ impl Error {
             Error::NotFinite { .. } => "not-finite",
             Error::InvalidOption { .. } => "invalid-option",
             Error::OtherFrame { .. } => "invalid-input",
+            Error::ObjectLocked { .. } => "object-locked",
             Error::UnreadableImage { .. } => "unreadable-image",
         }
     }

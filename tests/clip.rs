@@ -6,7 +6,8 @@ use crate::support::moving::{
     whole,
 };
 use veronese::clip::{
-    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
+    Annotations, ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Painted, SegmentedClip, Spread,
+    StreamSegmenter,
 };
 use veronese::{Error, Frame, MotionCount, Quality};
 
@@ -185,13 +186,18 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert_eq!(clip.len(), 2);
     assert!(matches!(clip.frame(2, &frames[2]), Err(Error::InvalidOption { name: "frame", .. })));
     assert!(matches!(clip.frame(0, &small), Err(Error::FrameSizeMismatch { .. })));
-    assert!(matches!(
-        clip.correct(2, &[255; 160 * 120], Spread::Both),
-        Err(Error::InvalidOption { name: "frame", .. })
-    ));
-    assert!(matches!(clip.correct(0, &[255; 12], Spread::Both), Err(Error::InvalidOption { name: "corrections", .. })));
-    assert!(matches!(clip.renumber(0, 3), Err(Error::InvalidOption { name: "objects", .. })));
-    let mut correction = clip.correct(0, &[0; 160 * 120], Spread::Both).unwrap();
+    let painted = |frame, labels: &[u8]| Annotations {
+        corrections: vec![Painted { frame, object: None, labels: labels.to_vec(), spread: Spread::Both }],
+        ..Annotations::default()
+    };
+    let option = |clip: &mut SegmentedClip, said| match clip.annotate(said) {
+        Err(Error::InvalidOption { name, .. }) => name,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(option(&mut clip, painted(2, &[255; 160 * 120])), "frame");
+    assert_eq!(option(&mut clip, painted(0, &[255; 12])), "corrections");
+    assert_eq!(option(&mut clip, Annotations { numbers: vec![[0, 3]], ..Annotations::default() }), "objects");
+    let mut correction = clip.annotate(painted(0, &[0; 160 * 120])).unwrap();
     assert!(matches!(correction.take(&mut clip, &small), Err(Error::FrameSizeMismatch { .. })));
     assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
 }

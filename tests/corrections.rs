@@ -4,10 +4,10 @@
 use std::sync::LazyLock;
 
 use crate::support::moving::{
-    SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, moving_and_resting_clip,
-    one_number, options, scene_of, thing, whole,
+    SIZE, Thing, annotate, carrier, correct, correct_some, frames_of, mask, moving_and_resting, moving_and_resting_clip,
+    one_number, options, renumber, scene_of, thing, whole,
 };
-use veronese::clip::{Prompt, SegmentedClip, Spread};
+use veronese::clip::{Annotations, Click, Painted, Prompt, SegmentedClip, Spread};
 use veronese::{Error, Frame, Quality, Random};
 
 /// A small scene, and the clip of it.
@@ -17,6 +17,21 @@ struct Shot {
     frames: Vec<Frame>,
     truths: Vec<Vec<usize>>,
     clip: SegmentedClip,
+}
+
+/// Where a prompt points to.
+#[derive(Clone, Copy, Debug)]
+enum Point {
+    Click([usize; 2]),
+    Box([usize; 4]),
+}
+
+fn prompt(frame: usize, point: Point, object: u8) -> Prompt {
+    let (clicks, within) = match point {
+        Point::Click(at) => (vec![Click { at, inside: true }], None),
+        Point::Box(sides) => (Vec::new(), Some(sides)),
+    };
+    Prompt { frame, object, clicks, within, spread: Spread::Both }
 }
 
 /// What is said of a frame.
@@ -58,9 +73,19 @@ impl Shot {
         (0..self.size[0] * self.size[1]).map(|p| if inside(p) { number } else { 255 }).collect()
     }
 
-    /// What is to be said of an object's pixels.
-    fn outline(&self, index: usize, prompt: Prompt, number: u8) -> Vec<u8> {
-        self.clip.outline(index, &self.frames[index], prompt, number).unwrap()
+    /// Points to an object. Returns the frames that change.
+    fn point(&mut self, index: usize, point: Point, number: u8) -> Vec<usize> {
+        let prompts = vec![prompt(index, point, number)];
+        annotate(&mut self.clip, &self.frames, Annotations { prompts, ..Annotations::default() })
+    }
+
+    fn lock(&mut self, objects: &[u8]) {
+        let locked = Some(objects.to_vec());
+        annotate(&mut self.clip, &self.frames, Annotations { locked, ..Annotations::default() });
+    }
+
+    fn renumber(&mut self, object: u8, number: u8) {
+        renumber(&mut self.clip, object, number);
     }
 
     /// The smallest rectangle around what is seen of a thing: first column, first row, width, height.
@@ -311,7 +336,7 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
     }
     shot.correct(4, &shot.nothing());
     assert_eq!(shot.labels(), found);
-    shot.clip.lock(&objects);
+    shot.lock(&objects);
     for labels in [said(&shot), mask(&shot.truths[4], &[(3, 200)]), vec![200; 128 * 96], vec![0; 128 * 96]] {
         shot.correct(4, &labels);
         for (before, after) in found.iter().zip(shot.labels()) {
@@ -322,7 +347,7 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
     shot.correct(4, &vec![200; 128 * 96]);
     assert!(found[4].iter().zip(&shot.labels()[4]).all(|(b, a)| *b != 0 || *a == 200));
     // Unlocked, it can be taken.
-    shot.clip.lock(&[]);
+    shot.lock(&[]);
     shot.give(4, 3, 201);
     assert!(!shot.labels()[4].contains(&number));
 }
@@ -336,7 +361,7 @@ fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
         let mut shot = start.clone();
         shot.give(3, thing, 60);
         assert_ne!(shot.labels(), found.0);
-        shot.clip.renumber(60, 0).unwrap();
+        shot.renumber(60, 0);
         let after = shot.state();
         assert_eq!(after.0, found.0, "thing {thing}: labels");
         assert_eq!(after.1, found.1, "thing {thing}: objects");
@@ -349,7 +374,7 @@ fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
             let mut shot = start.clone();
             shot.correct(3, &said);
             let before = shot.labels();
-            shot.clip.renumber(from, into).unwrap();
+            shot.renumber(from, into);
             for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
                 let merged: Vec<u8> = before.iter().map(|&l| if l == from { into } else { l }).collect();
                 assert!(merged == after, "{from} into {into}, frame {t}");
@@ -381,11 +406,11 @@ fn exact_pixels_stay_exact_at_full_size() {
 }
 
 /// A box with some room around each thing, and a click in its middle.
-fn prompts_of(shot: &Shot, index: usize, thing: usize) -> [Prompt; 2] {
+fn prompts_of(shot: &Shot, index: usize, thing: usize) -> [Point; 2] {
     let [x, y, width, height] = shot.around(index, thing);
     let [left, top] = [x, y].map(|from| from.saturating_sub(3));
     let [right, bottom] = [(x + width + 3).min(shot.size[0]), (y + height + 3).min(shot.size[1])];
-    [Prompt::Box([left, top, right - left, bottom - top]), Prompt::Click([x + width / 2, y + height / 2])]
+    [Point::Box([left, top, right - left, bottom - top]), Point::Click([x + width / 2, y + height / 2])]
 }
 
 #[test]
@@ -446,13 +471,13 @@ fn a_box_holds_its_object_and_a_click_is_in_its_own_at_full_size() {
             [x, y, 1 + below(width - x), 1 + below(height - y)]
         }));
         for [x, y, columns, rows] in boxes {
-            let said = shot.outline(1, Prompt::Box([x, y, columns, rows]), 7);
+            let said = shot.outline(1, Point::Box([x, y, columns, rows]), 7);
             let inside = |p: usize| (x..x + columns).contains(&(p % width)) && (y..y + rows).contains(&(p / width));
             assert!((0..said.len()).all(|p| said[p] != 7 || inside(p)), "{size:?}, box {x} {y} {columns} {rows}");
             assert!(said.contains(&7), "{size:?}, box {x} {y} {columns} {rows}");
         }
         for [x, y] in [[0, 0], [width - 1, height - 1], [below(width), below(height)], [below(width), below(height)]] {
-            let said = shot.outline(0, Prompt::Click([x, y]), 7);
+            let said = shot.outline(0, Point::Click([x, y]), 7);
             assert_eq!((said.len(), said[y * width + x]), (width * height, 7), "{size:?}, click {x} {y}");
         }
     }
@@ -490,11 +515,11 @@ fn an_outline_takes_nothing_from_other_objects_of_a_person_and_must_be_within_th
 
     let fails = |index, frame, prompt| shot.clip.outline(index, &shot.frames[frame], prompt, 9).unwrap_err();
     for sides in [[0, 0, 0, 5], [0, 0, 5, 0], [128, 0, 1, 1], [0, 95, 1, 2], [100, 0, 29, 5], [1, 1, usize::MAX, 1]] {
-        let is_box = matches!(fails(0, 0, Prompt::Box(sides)), Error::InvalidOption { name: "box", .. });
+        let is_box = matches!(fails(0, 0, Point::Box(sides)), Error::InvalidOption { name: "box", .. });
         assert!(is_box, "{sides:?}");
     }
     for at in [[128, 0], [0, 96], [usize::MAX, usize::MAX]] {
-        assert!(matches!(fails(0, 0, Prompt::Click(at)), Error::InvalidOption { name: "click", .. }), "{at:?}");
+        assert!(matches!(fails(0, 0, Point::Click(at)), Error::InvalidOption { name: "click", .. }), "{at:?}");
     }
     for number in [0, 255] {
         let error = shot.clip.outline(0, &shot.frames[0], prompts[0], number).unwrap_err();
@@ -684,7 +709,7 @@ fn extremes_are_taken_as_they_are() {
 fn a_restored_clip_goes_on_with_the_same_bits() {
     let mut shot = three();
     let number = shot.found(1);
-    shot.clip.lock(&[number]);
+    shot.lock(&[number]);
     shot.give(1, 2, 9);
     shot.say(&(4, shot.stroke(12, [16, 66, 10, 10]), Spread::Forward));
     let clip = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
@@ -692,7 +717,7 @@ fn a_restored_clip_goes_on_with_the_same_bits() {
     for shot in [&mut shot, &mut again] {
         shot.correct(5, &mask(&shot.truths[5], &[(2, 9), (0, 0)]));
         shot.correct(1, &shot.nothing());
-        shot.clip.renumber(12, number).unwrap();
+        shot.renumber(12, number);
     }
     assert!(shot.state() == again.state());
 }
@@ -762,15 +787,15 @@ fn objects_can_be_merged_and_removed() {
     let with_resting = clip.frames_with(30);
     assert!(clip.frames_with(moving) == all && with_resting.contains(&5));
     for (object, number) in [(moving, 31), (31, moving), (31, 0), (31, 32)] {
-        assert!(clip.renumber(object, number).unwrap().is_empty(), "no object has the number 31 or 32");
+        assert!(renumber(&mut clip, object, number).is_empty(), "no object has the number 31 or 32");
     }
     assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (all.clone(), with_resting));
-    assert_eq!(clip.renumber(moving, 30).unwrap(), all);
+    assert_eq!(renumber(&mut clip, moving, 30), all);
     assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], all.clone()));
     let merged = frames_of(&clip, &frames);
     assert!(merged.iter().all(|frame| frame.objects.iter().map(|object| object.id).eq([30])));
     assert!(merged[5].labels.iter().zip(&truths[5]).all(|(&label, &thing)| thing != 2 || label == 30));
-    assert_eq!(clip.renumber(30, 0).unwrap(), all);
+    assert_eq!(renumber(&mut clip, 30, 0), all);
     assert!(
         frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label != moving && label != 30))
     );
@@ -803,7 +828,7 @@ fn reserved_numbers_are_free_for_objects_of_a_person() {
     assert!(mask.iter().zip(&said).all(|(&said, &label)| said != number || label == number));
     // A number that was merged away or deleted before is a new one, and what was merged into it goes along.
     let mut clip = moving_and_resting_clip();
-    clip.renumber(number, 0).unwrap();
+    renumber(&mut clip, number, 0);
     clip.reserve(&[number]);
     assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], vec![]));
     correct(&mut clip, &frames, 3, &mask);

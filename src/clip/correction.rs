@@ -1,14 +1,15 @@
-//! Corrections: what a person says of some frames is certain there, and goes through the whole scene.
+//! Corrections: what a person says of an object in one frame is certain there, and goes through the whole scene.
 //!
-//! Each object is followed on its own, from everything that is said of it and nothing else: the order of corrections does not matter, and
-//! what is said of one object changes no other. Where two objects of a person claim a pixel, the one that had it keeps it.
+//! Each object is followed on its own, from everything that is said of it and nothing else. Where two objects of a person claim a pixel, the
+//! one that had it keeps it.
 //!
-//! 1. The corrected frame tells which objects it speaks of, or takes pixels from.
+//! 1. The corrected frame tells which objects it speaks of.
 //! 2. What all frames say of an object is learnt, and how it looks where it was found.
 //! 3. Each is followed forward from the first frame that speaks of it, and backward from the last (`correction/track.rs`).
 //! 4. The claims of a frame become its layer over the labels found automatically (`clip/layer.rs`).
 
 mod evidence;
+mod local;
 mod look;
 mod memory;
 mod outline;
@@ -20,10 +21,12 @@ mod track;
 mod view;
 mod world;
 
+use super::annotation::{Change, Said, Seed, Spread};
+use super::changes::Changes;
 use super::evidence::{Flow, KeptOdds};
-use super::layer::{Layer, SaidFrame, Spread};
+use super::layer::Layer;
 use super::runs::Runs;
-use super::whole::{NOTHING_SAID, SegmentedClip};
+use super::whole::{NOTHING_SAID, Numbers, SegmentedClip};
 use super::{MAX_LOOK_AHEAD, model};
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
@@ -31,43 +34,19 @@ use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 use crate::order::sort_few;
 use look::Look;
-pub use outline::Prompt;
-pub(super) use outline::outline;
+pub(super) use outline::check;
+use outline::outline;
 pub use pair::{Correction, MAX_CORRECTED, Relabelling, relabel};
 use sweep::Claim;
 use track::{Start, Track, Way};
 use world::{Known, World};
 
-/// A correction that spreads through a [`SegmentedClip`]. It asks for the frames that it needs:
-///
-/// ```
-/// use veronese::Frame;
-/// use veronese::clip::{ClipOptions, ClipSegmenter, Spread};
-///
-/// # fn main() -> veronese::Result<()> {
-/// let frames = [(); 3].map(|()| Frame::from_rgba(64, 48, [90; 4 * 64 * 48].as_slice()).expect("a frame"));
-/// let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
-/// for frame in &frames {
-///     segmenter.push(frame.clone())?;
-/// }
-/// let mut clip = segmenter.conclude();
-///
-/// // The left half of frame 1 is object 7; nothing is said of the rest.
-/// let labels: Vec<u8> = (0..64 * 48).map(|p| if p % 64 < 32 { 7 } else { 255 }).collect();
-/// let mut correction = clip.correct(1, &labels, Spread::Both)?;
-/// while let Some(index) = correction.wanted() {
-///     correction.take(&mut clip, &frames[index])?;
-/// }
-/// assert!(correction.changed().contains(&1));
-/// assert_eq!(clip.frame(1, &frames[1])?.labels[0], 7);
-/// # Ok(())
-/// # }
-/// ```
+/// A correction of one frame that spreads through a [`SegmentedClip`]. It asks for the frames that it needs.
 #[derive(Clone, Debug)]
-pub struct ClipCorrection {
+pub(super) struct FrameCorrection {
     index: usize,
     /// What is said, until the frame has come.
-    said: Option<(Runs, Spread)>,
+    change: Option<Change>,
     /// First and last frame of the scene.
     scene: [usize; 2],
     worlds: Vec<World>,
@@ -79,9 +58,10 @@ pub struct ClipCorrection {
     alone: Vec<usize>,
     /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
-    /// What there was of each frame of the scene.
-    before: Vec<(Option<SaidFrame>, Option<Layer>)>,
-    changed: Vec<usize>,
+    /// What the corrected frame said and showed before.
+    before: (Said, Runs),
+    /// Which objects of each frame of the scene were a person's.
+    persons: Vec<Numbers>,
 }
 
 /// What a frame is wanted for.
@@ -94,38 +74,26 @@ enum Pass {
     Sweep(Way),
 }
 
-impl ClipCorrection {
-    pub(super) fn new(clip: &SegmentedClip, index: usize, labels: &[u8], spread: Spread) -> ClipCorrection {
+impl FrameCorrection {
+    pub(super) fn new(clip: &SegmentedClip, index: usize, change: Change) -> FrameCorrection {
         let scene @ [first, last] = clip.scene(index);
-        ClipCorrection {
+        FrameCorrection {
             index,
-            said: Some((Runs::of(labels), spread)),
+            change: Some(change),
             scene,
             worlds: Vec::new(),
             next: Some((index, Pass::Sweep(Way::Forward))),
             survey: Vec::new(),
             alone: Vec::new(),
             done: vec![false; last + 1 - first],
-            before: clip.frames[first..=last].iter().map(|frame| (frame.said.clone(), frame.layer.clone())).collect(),
-            changed: Vec::new(),
+            before: Default::default(),
+            persons: (first..=last).map(|t| clip.persons_in(t)).collect(),
         }
     }
 
     /// Index of the frame to [`take`](Self::take) next; none when the correction has spread.
-    pub fn wanted(&self) -> Option<usize> {
+    pub(super) fn wanted(&self) -> Option<usize> {
         self.next.map(|(index, _)| index)
-    }
-
-    /// The frames changed so far, in the order in which they changed: first the corrected one.
-    pub fn changed(&self) -> &[usize] {
-        &self.changed
-    }
-
-    /// Takes everything back that the correction has changed so far.
-    pub fn cancel(self, clip: &mut SegmentedClip) {
-        for (frame, (said, layer)) in clip.frames[self.scene[0]..].iter_mut().zip(self.before) {
-            (frame.said, frame.layer) = (said, layer);
-        }
     }
 
     /// Takes the frame that is [`wanted`](Self::wanted).
@@ -133,16 +101,15 @@ impl ClipCorrection {
     /// # Errors
     /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch), [`Error::OtherFrame`](crate::Error::OtherFrame); the correction can
     /// continue with the right frame.
-    pub fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame) -> Result<()> {
+    pub(super) fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame, changes: &mut Changes) -> Result<()> {
         let Some((index, pass)) = self.next else { return Ok(()) };
         clip.check(index, frame)?;
         let look = Look::new(frame);
         let mut pass = Some(pass);
-        if let Some((said, spread)) = self.said.take() {
-            let is_new = clip.frames[index].said.as_ref().is_none_or(|before| before.labels != said);
-            let now = self.begin(clip, frame, said, spread);
+        if let Some(change) = self.change.take() {
+            let is_new = self.begin(clip, frame, &look, change);
             if is_new {
-                self.at_once(clip, frame, &look, &now);
+                self.at_once(clip, frame, &look, changes);
             }
             self.next = self.after_survey();
             // The frame is here already.
@@ -153,13 +120,14 @@ impl ClipCorrection {
             match now {
                 Pass::Survey => {
                     let found = clip.found_at(index, look.size);
-                    let said = clip.said_at(index, look.size, look.step);
                     while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
                         for track in self.worlds.iter_mut().flat_map(|world| &mut world.tracks) {
-                            match (number, &said) {
-                                (Some(number), _) if track.number == number => track.survey(&look, &found),
-                                (None, Some((said, _))) if track.is_for_all(index) => {
-                                    track.hear(&look, said, &found);
+                            match number {
+                                Some(number) if track.number == number => track.survey(&look, &found),
+                                None if track.is_for_all(index) => {
+                                    if let Some((seeds, _)) = clip.seeds_at(index, track.number, &look) {
+                                        track.hear(&look, &seeds, &found);
+                                    }
                                 }
                                 _ => {}
                             }
@@ -169,48 +137,63 @@ impl ClipCorrection {
                 }
                 Pass::Alone => {
                     // Nothing is followed yet.
-                    self.visit(clip, frame, &look, index, Way::Backward);
+                    self.visit(clip, frame, &look, (index, Way::Backward), changes);
                     self.next = self.after_survey();
                 }
                 Pass::Sweep(way) => {
-                    self.visit(clip, frame, &look, index, way);
+                    self.visit(clip, frame, &look, (index, way), changes);
                     self.next = self.after(index, way);
                 }
             }
             pass = self.next.filter(|(wanted, _)| *wanted == index).map(|(_, pass)| pass);
         }
         if self.next.is_none() {
-            self.finish(clip);
+            self.finish(clip, changes);
         }
         Ok(())
     }
 
-    /// Which objects the correction is about, and what is said of each. Returns what the frame shows before.
-    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, said: Runs, spread: Spread) -> Vec<u8> {
+    /// Which objects the correction is about. Tells whether the frame says anything else than before.
+    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, change: Change) -> bool {
         let [first, last] = self.scene;
-        let values = said.values();
-        let says = values.iter().any(|&label| label != NOTHING_SAID);
+        let before = clip.frames[self.index].said.clone().unwrap_or_default();
+        let now = clip.layered(self.index, frame.luminance());
+        let mut said = before.clone();
+        match change {
+            Change::Painted(painted) => painted.iter().for_each(|painted| said.paint(painted)),
+            Change::Prompt(prompt) => {
+                let labels = outline(clip, self.index, frame, look, &now, &prompt);
+                said.point(prompt, &labels);
+            }
+        }
+        said.drop_pieces(&before, &now, clip.size()[0]);
+        let persons = clip.persons_in(self.index);
         let mut touched = [false; 256];
         let mut touch = |number: u8| touched[usize::from(number)] = true;
-        values.iter().for_each(|&label| touch(label));
-        let persons = clip.persons_in(self.index);
-        let now = clip.layered(self.index, frame.luminance());
-        let mut loses = [false; 256];
-        for (&said, &now) in values.iter().zip(&now) {
-            loses[usize::from(now)] |= said != NOTHING_SAID && said != now;
-        }
-        let takes = |k: &u8| persons[usize::from(*k)] && loses[usize::from(*k)] && !clip.locked[usize::from(*k)];
-        let takes_from: Vec<u8> = (1..NOTHING_SAID).filter(takes).collect();
-        takes_from.iter().for_each(|&number| touch(number));
-        if let Some(before) = &clip.frames[self.index].said {
-            before.speaks_of.iter().chain(&before.takes_from).for_each(|&number| touch(number));
+        (1..NOTHING_SAID).filter(|&number| !said.agrees(&before, number)).for_each(&mut touch);
+        if !said.agrees(&before, 0) {
+            // Labels that name no object say of those under them that they are not there.
+            said.takes_from.iter().copied().for_each(&mut touch);
+            let mut loses = [false; 256];
+            if said.names_none() {
+                let hand = said.by_hand().unwrap_or_default();
+                hand.iter().zip(&now).for_each(|(&hand, &now)| loses[usize::from(now)] |= hand == 0);
+            }
+            said.takes_from = (1..NOTHING_SAID)
+                .filter(|&k| persons[usize::from(k)] && loses[usize::from(k)] && !clip.locked[usize::from(k)])
+                .collect();
+            said.takes_from.iter().copied().for_each(&mut touch);
         }
         let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
-        clip.frames[self.index].said =
-            says.then_some(SaidFrame { labels: said, spread, speaks_of: Vec::new(), takes_from });
+        let is_new = !said.is_same(&before);
+        clip.frames[self.index].said = (!said.is_empty()).then_some(said);
+        self.before = (before, Runs::of(&now));
         self.speak(clip);
         let starts: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
-        let is_touched = |k: &u8| touched[usize::from(*k)] || starts[usize::from(*k)] != starts_before[usize::from(*k)];
+        let is_touched = |k: &u8| {
+            let k = usize::from(*k);
+            (touched[k] || starts[k] != starts_before[k]) && !clip.locked[k]
+        };
         for number in (1..NOTHING_SAID).filter(is_touched) {
             let frames: Vec<usize> = starts[usize::from(number)].iter().map(|(t, _)| *t).collect();
             let of_these = |world: &&mut World| {
@@ -246,39 +229,33 @@ impl ClipCorrection {
         let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);
         let speaks = |t: usize| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.speaks(t));
         self.alone = (first..=last).filter(|&t| speaks(t) && !is_swept(t)).collect();
-        now
+        is_new
     }
 
-    /// The frames of the scene that speak of an object.
+    /// The frames of the scene that speak of an object, and if there are any those with it that a person accepted.
     fn starts(&self, clip: &SegmentedClip, number: u8) -> Vec<Start> {
-        let start = |t: usize| {
-            let said = clip.frames[t].said.as_ref()?;
-            said.speaks_of.contains(&number).then_some((t, said.spread))
+        let is_said = |t: usize| clip.frames[t].said.as_ref().is_some_and(|said| said.speaks_of.contains(&number));
+        let frames = self.scene[0]..=self.scene[1];
+        if !frames.clone().any(is_said) {
+            return Vec::new();
+        }
+        let start = |t: usize| match &clip.frames[t].said {
+            Some(said) if said.speaks_of.contains(&number) => Some((t, said.spread_of(number))),
+            _ => clip.accepts(t, number).then_some((t, Spread::Both)),
         };
-        (self.scene[0]..=self.scene[1]).filter_map(start).collect()
+        frames.filter_map(start).collect()
     }
 
-    /// Which objects each frame of the scene speaks of: those named there, and those found automatically of which part is said to be ground.
-    /// Of one that another object takes over in some frame nothing needs to be said.
+    /// Which objects each frame of the scene speaks of: those named there, and those found automatically of which part is not where labels
+    /// that name no object say so. Of one that another object takes over in some frame nothing needs to be said.
     fn speak(&self, clip: &mut SegmentedClip) {
-        let size @ [width, height] = clip.working_size();
-        let step = clip.working_step();
-        let mut named: Vec<[bool; 256]> = Vec::new();
-        let mut erased: Vec<[bool; 256]> = Vec::new();
+        let scene = self.scene[0]..=self.scene[1];
         let mut taken = [false; 256];
-        for t in self.scene[0]..=self.scene[1] {
-            let (mut names, mut erases) = ([false; 256], [false; 256]);
+        let mut erased: Vec<[bool; 256]> = Vec::new();
+        for t in scene.clone() {
+            let mut erases = [false; 256];
             if let Some(said) = &clip.frames[t].said {
-                said.labels.each().for_each(|(label, _)| names[usize::from(label)] = true);
-                let values = at_size(&said.labels.values(), clip.size()[0], size, step);
-                let (found, _) = clip.found(t);
-                let mut sizes = [[0usize; 3]; 256];
-                for p in 0..width * height {
-                    let [all, ground, other] = &mut sizes[usize::from(found[p])];
-                    *all += 1;
-                    *ground += usize::from(values[p] == 0);
-                    *other += usize::from(values[p] != 0 && values[p] != NOTHING_SAID && values[p] != found[p]);
-                }
+                let sizes = clip.said_of_found(t, said);
                 for (label, &[all, ground, other]) in sizes.iter().enumerate().skip(1) {
                     taken[label] |= 2 * other > all;
                     // A lock that came later takes nothing back.
@@ -286,24 +263,32 @@ impl ClipCorrection {
                     erases[label] = ground > 0 && ground + other < all && is_free;
                 }
             }
-            named.push(names);
             erased.push(erases);
         }
-        let is_named = |label: usize| named.iter().any(|names| names[label]);
-        for (k, t) in (self.scene[0]..=self.scene[1]).enumerate() {
-            let speaks = |label: usize| named[k][label] || erased[k][label] && (!taken[label] || is_named(label));
+        let names = |clip: &SegmentedClip, t: usize, label: u8| {
+            clip.frames[t].said.as_ref().is_some_and(|said| said.names(label))
+        };
+        let mut named = [false; 256];
+        for label in 1..NOTHING_SAID {
+            named[usize::from(label)] = scene.clone().any(|t| names(clip, t, label));
+        }
+        for (erases, t) in erased.iter().zip(scene) {
+            let speaks = |&label: &u8| {
+                let k = usize::from(label);
+                names(clip, t, label) || erases[k] && (!taken[k] || named[k])
+            };
+            let speaks_of = (1..NOTHING_SAID).filter(speaks).collect();
             if let Some(said) = &mut clip.frames[t].said {
-                said.speaks_of = (1..NOTHING_SAID).filter(|&label| speaks(usize::from(label))).collect();
+                said.speaks_of = speaks_of;
             }
         }
     }
 
     /// The corrected frame at once, from what it shows now.
-    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, now: &[u8]) {
-        let now = at_size(now, clip.size()[0], look.size, look.step);
-        let said = clip.said_at(self.index, look.size, look.step);
-        let known =
-            Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
+    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, changes: &mut Changes) {
+        let now = at_size(&self.before.1.values(), NOTHING_SAID, clip.size()[0], look);
+        let seeds = |number: u8| clip.seeds_at(self.index, number, look);
+        let known = Known { seeds: &seeds, found: &now, flows: None };
         let mut claims = Vec::new();
         for &number in self.worlds.iter().flat_map(|world| &world.decides) {
             let mut alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
@@ -311,7 +296,7 @@ impl ClipCorrection {
             let mut world = World { tracks: vec![alone], decides: vec![number] };
             claims.append(&mut world.visit(self.index, Way::Forward, false, look, &known));
         }
-        self.compose(clip, frame, look, self.index, &claims);
+        self.compose(clip, frame, look, (self.index, &claims), changes);
     }
 
     fn after_survey(&mut self) -> Option<(usize, Pass)> {
@@ -330,7 +315,14 @@ impl ClipCorrection {
         if way == Way::Forward { firsts.min() } else { firsts.max() }
     }
 
-    fn visit(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, way: Way) {
+    fn visit(
+        &mut self,
+        clip: &mut SegmentedClip,
+        frame: &Frame,
+        look: &Look,
+        (t, way): (usize, Way),
+        changes: &mut Changes,
+    ) {
         let [first, last] = self.scene;
         let found = clip.found_at(t, look.size);
         let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(look.size));
@@ -338,19 +330,16 @@ impl ClipCorrection {
             Way::Forward => [flow(clip.back(t)), if t > first { flow(clip.onward(t - 1)) } else { None }],
             Way::Backward => [flow(clip.onward(t)), if t < last { flow(clip.back(t + 1)) } else { None }],
         };
-        let said = clip.said_at(t, look.size, look.step);
-        let known = Known {
-            said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())),
-            found: &found,
-            flows: to.as_ref().zip(from.as_ref()).map(|(to, from)| [to, from]),
-        };
+        let seeds = |number: u8| clip.seeds_at(t, number, look);
+        let known =
+            Known { seeds: &seeds, found: &found, flows: to.as_ref().zip(from.as_ref()).map(|(to, from)| [to, from]) };
         let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|furthest| t < furthest);
         let mut claims = Vec::new();
         for world in &mut self.worlds {
             claims.append(&mut world.visit(t, way, again, look, &known));
         }
         if !again {
-            self.compose(clip, frame, look, t, &claims);
+            self.compose(clip, frame, look, (t, &claims), changes);
             self.done[t - first] = true;
         }
     }
@@ -372,32 +361,38 @@ impl ClipCorrection {
     }
 
     /// In frames that no sweep has come to, nothing is left of objects that nothing is said of any more.
-    fn finish(&mut self, clip: &mut SegmentedClip) {
+    fn finish(&mut self, clip: &mut SegmentedClip, changes: &mut Changes) {
         let decided: Vec<u8> = self.worlds.iter().flat_map(|world| world.decides.clone()).collect();
         for t in self.scene[0]..=self.scene[1] {
             let speaks_of = clip.frames[t].said.as_ref().map_or(&[][..], |said| &said.speaks_of);
             let is_gone = |label: u8| decided.contains(&label) && !speaks_of.contains(&label);
-            let Some(layer) = clip.frames[t].layer.as_ref().filter(|_| !self.done[t - self.scene[0]]) else { continue };
+            let is_open = !self.done[t - self.scene[0]] && !clip.frames[t].accepted;
+            let Some(layer) = clip.frames[t].layer.as_ref().filter(|_| is_open) else { continue };
             if layer.labels.each().any(|(label, _)| is_gone(label)) {
                 let mut labels = layer.labels.values();
                 labels.iter_mut().filter(|label| is_gone(**label)).for_each(|label| *label = NOTHING_SAID);
                 let [width, height] = clip.working_size();
                 let odds = layer.odds.odds(width, height);
-                let layer = clip.layer_of(&labels, &|_, p| odds.values()[p]);
-                self.put(clip, t, layer);
+                changes.add(t);
+                clip.frames[t].layer = clip.layer_of(&labels, &|_, p| odds.values()[p]);
             }
         }
     }
 
-    /// Puts the claims of a frame over what was found.
+    /// Puts the claims of a frame over what was found: what is locked, what a person painted here, what others hold, what is claimed, in
+    /// this order.
     fn compose(
         &mut self,
         clip: &mut SegmentedClip,
         frame: &Frame,
         look: &Look,
-        t: usize,
-        claims: &[(u8, Option<Claim>)],
+        (t, claims): (usize, &[(u8, Option<Claim>)]),
+        changes: &mut Changes,
     ) {
+        let is_accepted = clip.frames[t].accepted;
+        if is_accepted && t != self.index {
+            return;
+        }
         let [width, height] = clip.size();
         let before = clip.frames[t].layer.clone();
         let mut labels = match &before {
@@ -406,24 +401,37 @@ impl ClipCorrection {
         };
         let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
         let persons = clip.persons_in(t);
+        let kept = clip.kept();
         let shown = labels.clone();
         // The objects of a person that the correction is not about keep what they have.
-        let mut held: Vec<bool> = labels.iter().map(|&label| persons[usize::from(label)] && !decided(label)).collect();
-        labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);
-        if clip.locked.contains(&true) {
-            let found = clip.found_full(t, frame.luminance());
+        let holds =
+            |label: u8| (persons[usize::from(label)] || kept[usize::from(label)] || is_accepted) && !decided(label);
+        let mut held: Vec<bool> =
+            labels.iter().map(|&label| label != 0 && label != NOTHING_SAID && holds(label)).collect();
+        for (label, _) in labels.iter_mut().zip(&held).filter(|(_, held)| !**held) {
+            *label = if is_accepted && !decided(*label) { 0 } else { NOTHING_SAID };
+        }
+        let found = clip.found_full(t, frame.luminance());
+        if kept.contains(&true) {
             for (p, held) in held.iter_mut().enumerate() {
                 // What was taken from it before it was locked stays taken.
-                let found = usize::from(found[p]);
-                *held |= shown[p] == NOTHING_SAID && clip.locked[found] && !persons[found];
+                let found = found[p];
+                *held |= shown[p] == NOTHING_SAID
+                    && kept[usize::from(found)]
+                    && !persons[usize::from(found)]
+                    && !decided(found);
             }
         }
+        let said = clip.frames[t].said.clone().unwrap_or_default();
         let mut best = vec![0.0f32; width * height];
         for (number, claim) in claims {
             let Some(claim) = claim.as_ref().filter(|claim| claim.mask.contains(&1)) else { continue };
             let mut mask = vec![0u8; look.pixels()];
             claim.area.pixels(look.size[0]).zip(&claim.mask).for_each(|(p, &inside)| mask[p] = inside);
-            let full = upsample(&mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
+            let mut full = upsample(&mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
+            if t == self.index {
+                local::keep(&mut full, *number, &self.before.1.values(), [&self.before.0, &said], width);
+            }
             for p in (0..full.len()).filter(|&p| full[p] > 0 && !held[p]) {
                 let odds = claim.at(look.pixel(p, width), look.size[0]).max(f32::MIN_POSITIVE);
                 if odds > best[p] {
@@ -431,34 +439,44 @@ impl ClipCorrection {
                 }
             }
         }
-        if let Some(said) = &clip.frames[t].said {
-            let said = said.labels.values();
-            for p in (0..said.len()).filter(|&p| said[p] != NOTHING_SAID && !held[p]) {
-                (best[p], labels[p]) = (2.0 * model().certain, said[p]);
+        let certain = 2.0 * model().certain;
+        for (number, outline) in said.outlines().filter(|(number, _)| decided(*number)) {
+            for p in (0..outline.len()).filter(|&p| outline[p] == number && !held[p]) {
+                (best[p], labels[p]) = (certain, number);
             }
+        }
+        let shown_here = |p: usize| match shown[p] {
+            NOTHING_SAID => 0,
+            label => label,
+        };
+        let erases = said.names_none();
+        for (p, hand) in said.by_hand().unwrap_or_default().into_iter().enumerate() {
+            let is_locked = held[p] && (clip.locked[usize::from(shown_here(p))] || shown[p] == NOTHING_SAID);
+            if hand == NOTHING_SAID || is_locked || hand == 0 && held[p] && !erases {
+                continue;
+            }
+            (best[p], labels[p], held[p]) = (certain, hand, false);
         }
         let [w, h] = clip.working_size();
         let old = before.map(|layer| layer.odds.odds(w, h));
         let layer = clip.layer_of(&labels, &|p, at| match held[p] {
             true => old.as_ref().map_or(0.0, |old| old.values()[at]),
-            false => best[p].min(2.0 * model().certain),
+            false => best[p].min(certain),
         });
-        self.put(clip, t, layer);
-    }
-
-    fn put(&mut self, clip: &mut SegmentedClip, t: usize, layer: Option<Layer>) {
-        let labels = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
-        if labels(&clip.frames[t].layer) != labels(&layer) && !self.changed.contains(&t) {
-            self.changed.push(t);
-        }
+        let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
+        let is_same = of(&clip.frames[t].layer) == of(&layer);
+        let was = (!is_same).then(|| clip.overlaid(t, &found, &self.persons[t - self.scene[0]]));
         clip.frames[t].layer = layer;
+        if let Some(was) = was {
+            changes.set(t, &was, &clip.overlaid(t, &found, &persons));
+        }
     }
 }
 
 impl SegmentedClip {
     /// A layer of full-size labels, if they say anything. `odds` has those of a full-size pixel, and of the working pixel that it is the
     /// corner of.
-    fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
+    pub(super) fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
         let ([width, height], [w, h]) = (self.size(), self.working_size());
         let step = self.working_step();
         labels.iter().any(|&label| label != NOTHING_SAID).then(|| {
@@ -474,20 +492,61 @@ impl SegmentedClip {
         })
     }
 
-    /// What is said of a frame at a working size.
-    fn said_at(&self, t: usize, size: [usize; 2], step: usize) -> Option<(Vec<u8>, Spread)> {
-        let said = self.frames[t].said.as_ref()?;
-        Some((at_size(&said.labels.values(), self.size()[0], size, step), said.spread))
+    /// What is said of a frame about an object at the size of a look, and where that spreads.
+    fn seeds_at(&self, t: usize, number: u8, look: &Look) -> Option<(Vec<Seed>, Spread)> {
+        let width = self.size()[0];
+        let frame = &self.frames[t];
+        let of_said = frame.said.as_ref().and_then(|said| Some((said.seeds(number)?, said.spread_of(number))));
+        let accepted = || {
+            let labels = frame.layer.as_ref().filter(|_| frame.accepted)?.labels.values();
+            let seed = |label: u8| if label == number { Seed::Object } else { Seed::Other };
+            Some((labels.into_iter().map(seed).collect(), Spread::Both))
+        };
+        let (seeds, spread) = of_said.or_else(accepted)?;
+        Some((at_size(&seeds, Seed::Nothing, width, look), spread))
+    }
+
+    /// Of what was found under each number in a frame: all its pixels, those that are said to be nothing, and those said to be another's.
+    fn said_of_found(&self, t: usize, said: &Said) -> [[usize; 3]; 256] {
+        let size @ [width, height] = self.working_size();
+        let hand = said.by_hand().unwrap_or_else(|| vec![NOTHING_SAID; self.size()[0] * self.size()[1]]);
+        let ground = said.names_none();
+        let values = at_working_size(&hand, NOTHING_SAID, self.size()[0], size, self.working_step());
+        let (found, _) = self.found(t);
+        let mut sizes = [[0usize; 3]; 256];
+        for p in 0..width * height {
+            let of = &mut sizes[usize::from(found[p])];
+            of[0] += 1;
+            of[1] += usize::from(values[p] == 0 && ground);
+            of[2] += usize::from(values[p] != 0 && values[p] != NOTHING_SAID && values[p] != found[p]);
+        }
+        for (number, outline) in said.outlines() {
+            let outline = at_working_size(&outline, NOTHING_SAID, self.size()[0], size, self.working_step());
+            for p in (0..width * height).filter(|&p| outline[p] == number && found[p] != number) {
+                sizes[usize::from(found[p])][2] += usize::from(values[p] == NOTHING_SAID);
+            }
+        }
+        sizes
     }
 }
 
-/// Labels of full size at a working size: what is said at the centre of each pixel, or anywhere in it.
-fn at_size(said: &[u8], full_width: usize, [width, height]: [usize; 2], step: usize) -> Vec<u8> {
-    let mut working = vec![NOTHING_SAID; width * height];
-    for (p, &label) in said.iter().enumerate().filter(|(_, label)| **label != NOTHING_SAID) {
+/// What is said of full-size pixels at the size of a look: at the centre of each pixel, or anywhere in it.
+fn at_size<T: Copy + PartialEq>(said: &[T], nothing: T, full_width: usize, look: &Look) -> Vec<T> {
+    at_working_size(said, nothing, full_width, look.size, look.step)
+}
+
+fn at_working_size<T: Copy + PartialEq>(
+    said: &[T],
+    nothing: T,
+    full_width: usize,
+    [width, height]: [usize; 2],
+    step: usize,
+) -> Vec<T> {
+    let mut working = vec![nothing; width * height];
+    for (p, &label) in said.iter().enumerate().filter(|(_, label)| **label != nothing) {
         let (x, y) = (p % full_width, p / full_width);
         let here = &mut working[(y / step).min(height - 1) * width + (x / step).min(width - 1)];
-        if *here == NOTHING_SAID || (x % step, y % step) == (step / 2, step / 2) {
+        if *here == nothing || (x % step, y % step) == (step / 2, step / 2) {
             *here = label;
         }
     }

@@ -44,6 +44,11 @@ impl Runs {
         self.each().try_fold(0usize, |sum, (_, length)| sum.checked_add(length)) == Some(pixels)
     }
 
+    /// Whether any pixel has a value.
+    pub(crate) fn names(&self, value: u8) -> bool {
+        self.each().any(|(own, _)| own == value)
+    }
+
     /// Every value with the length of its run.
     pub(crate) fn each(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
         let mut bytes = self.0.iter();

@@ -1,11 +1,13 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use super::correction::{ClipCorrection, Prompt, outline};
+use super::annotation::{Accepted, Annotations, Said};
+use super::changes::Changes;
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
 use super::identity::{Identities, Parting};
-use super::layer::{Layer, SaidFrame, Spread};
+use super::job::ClipJob;
+use super::layer::Layer;
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
@@ -64,7 +66,7 @@ saved!(FramePairs { origin, pairs });
 
 /// The bytes of [`FramePairs`] and of a [`SegmentedClip`].
 const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR5 ", env!("CARGO_PKG_VERSION"), "\n") };
-const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n") };
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP5 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 impl FramePairs {
     /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
@@ -172,8 +174,8 @@ impl ClipSegmenter {
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         let stream = look_ahead.is_some();
         let ClipSegmenter { hashes, frames, .. } = self;
-        let locked = vec![false; 256];
-        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, hashes, frames }
+        let [locked, named] = [(); 2].map(|()| vec![false; 256]);
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, hashes, frames }
     }
 
     /// Divides what was one object before it was two.
@@ -218,29 +220,33 @@ pub struct SegmentedClip {
     dropped: usize,
     /// The number that each object is given, itself unless it was merged or removed.
     numbers: Vec<u8>,
-    /// Whether no correction of others changes the object of a number.
+    /// Whether nothing changes the object of a number.
     pub(super) locked: Vec<bool>,
+    /// Whether only what is said of itself changes the object of a number.
+    pub(super) named: Vec<bool>,
     /// Of every frame as it was segmented.
     hashes: Vec<u64>,
     pub(super) frames: Vec<FrameState>,
 }
 
-saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, hashes, frames });
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, hashes, frames });
 
 /// A frame of a segmented clip.
 #[derive(Clone, Debug)]
 pub(super) struct FrameState {
     /// As the clip was segmented, working size.
     found: Labelling,
-    pub(super) said: Option<SaidFrame>,
+    pub(super) said: Option<Said>,
     pub(super) layer: Option<Layer>,
+    /// Whether a person finds the frame right: its layer has all its labels.
+    pub(super) accepted: bool,
     /// To the next frame of the scene.
     onward: Option<KeptFlow>,
     /// To the frame before.
     pub(super) back: Option<KeptFlow>,
 }
 
-saved!(FrameState { found, said, layer, onward, back });
+saved!(FrameState { found, said, layer, accepted, onward, back });
 
 /// Labels with their odds.
 #[derive(Clone, Debug)]
@@ -257,6 +263,7 @@ impl FrameState {
             found: Labelling::of(&labels, &odds),
             said: None,
             layer: None,
+            accepted: false,
             onward: record.onward.as_ref().filter(|_| goes_on).map(KeptFlow::of),
             back: record.back.as_ref().map(KeptFlow::of),
         }
@@ -265,7 +272,7 @@ impl FrameState {
     fn is_valid(&self, pixels: usize, full: usize) -> bool {
         self.found.labels.is_valid(pixels)
             && self.found.odds.is_valid(pixels)
-            && self.said.as_ref().is_none_or(|said| said.labels.is_valid(full))
+            && self.said.as_ref().is_none_or(|said| said.is_valid(full))
             && self.layer.as_ref().is_none_or(|layer| layer.labels.is_valid(full) && layer.odds.is_valid(pixels))
             && [&self.onward, &self.back].into_iter().flatten().all(|flow| flow.is_valid(pixels))
     }
@@ -347,7 +354,8 @@ impl SegmentedClip {
             return Ok(working(&labels, &odds, self.mark_unknown));
         }
         let found = working(&labels, &odds, false).labels;
-        let full = self.overlaid(index, &found, &persons, &|label| self.numbers[usize::from(label)]);
+        let full: Vec<u8> =
+            self.overlaid(index, &found, &persons).into_iter().map(|label| self.numbers[usize::from(label)]).collect();
         let [w, h] = self.working_size();
         let step = self.working_step();
         let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h)).zip(self.above(index));
@@ -379,30 +387,18 @@ impl SegmentedClip {
 
     /// The labels of a frame with what persons say, without other numbers.
     pub(super) fn layered(&self, index: usize, luminance: &Plane) -> Vec<u8> {
-        self.overlaid(index, &self.found_full(index, luminance), &self.persons_in(index), &|label| label)
+        self.overlaid(index, &self.found_full(index, luminance), &self.persons_in(index))
     }
 
-    /// Full-size labels with the layer of a frame over them, by the `number` of each.
-    fn overlaid(&self, index: usize, found: &[u8], persons: &Numbers, number: &dyn Fn(u8) -> u8) -> Vec<u8> {
+    /// Full-size labels that were found with the layer of a frame over them. What was found of an object of a person does not show.
+    pub(super) fn overlaid(&self, index: usize, found: &[u8], persons: &Numbers) -> Vec<u8> {
         let layer = self.above(index);
-        let above = |p: usize| layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
-        // What was found yields to a person's object that has most of it.
-        let mut sizes = [[0usize; 2]; 256];
-        for (p, &label) in found.iter().enumerate() {
-            let above = above(p);
-            sizes[usize::from(label)][0] += 1;
-            sizes[usize::from(label)][1] += usize::from(above > 0 && above != NOTHING_SAID);
-        }
-        let below = |label: u8| {
-            let [all, taken] = sizes[usize::from(label)];
-            let yields = persons[usize::from(label)] || 2 * taken > all && !self.locked[usize::from(label)];
-            if yields { 0 } else { number(label) }
+        let shown = |(p, &found): (usize, &u8)| match layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]) {
+            NOTHING_SAID if persons[usize::from(found)] => 0,
+            NOTHING_SAID => found,
+            label => label,
         };
-        let shown = |p: usize| match above(p) {
-            NOTHING_SAID => below(found[p]),
-            label => number(label),
-        };
-        (0..found.len()).map(shown).collect()
+        found.iter().enumerate().map(shown).collect()
     }
 
     /// The labels of the layer of a frame, if it has one. What was found shows again where objects of a person were deleted.
@@ -431,9 +427,9 @@ impl SegmentedClip {
         let mut persons = [false; 256];
         for t in first..=last {
             let Some(said) = &self.frames[t].said else { continue };
-            let [forward, backward] = said.spread.ways();
-            if t == index || (t < index && forward) || (t > index && backward) {
-                said.speaks_of.iter().for_each(|&label| persons[usize::from(label)] = true);
+            for &label in &said.speaks_of {
+                let [forward, backward] = said.spread_of(label).ways();
+                persons[usize::from(label)] |= t == index || (t < index && forward) || (t > index && backward);
             }
         }
         persons
@@ -448,6 +444,22 @@ impl SegmentedClip {
         persons
     }
 
+    /// Numbers of the objects that only what is said of themselves changes: those that a person locked, named, or accepted in some frame.
+    pub(super) fn kept(&self) -> Numbers {
+        let mut kept: Numbers = std::array::from_fn(|k| self.locked[k] || self.named[k]);
+        for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
+            layer.labels.each().for_each(|(label, _)| kept[usize::from(label)] = true);
+        }
+        kept[0] = false;
+        kept
+    }
+
+    /// Whether a person accepted a frame with an object in it.
+    pub(super) fn accepts(&self, index: usize, number: u8) -> bool {
+        let frame = &self.frames[index];
+        frame.accepted && frame.layer.as_ref().is_some_and(|layer| layer.labels.names(number))
+    }
+
     /// Whether an object was found in a frame.
     pub(super) fn finds(&self, index: usize, number: u8) -> bool {
         self.frames[index].found.labels.each().any(|(label, _)| label == number)
@@ -460,16 +472,10 @@ impl SegmentedClip {
         (0..width * height).map(|p| labels[place(p)]).collect()
     }
 
-    /// Objects that no correction of others changes, by number; all others can be changed from now on.
-    pub fn lock(&mut self, objects: &[u8]) {
-        self.locked = vec![false; 256];
-        objects.iter().for_each(|&object| self.locked[usize::from(object)] = true);
-    }
-
     /// Keeps numbers for objects of a person: what was found automatically under one of them gets the lowest number that is free. Where none
     /// is left it becomes background and counts as [`dropped`](Self::dropped). Objects that a person has spoken of keep theirs. Returns the
     /// indices of the frames that change.
-    pub fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
+    pub(super) fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
         let persons = self.persons();
         let mut is_found = [false; 256];
         for (label, _) in self.frames.iter().flat_map(|frame| frame.found.labels.each()) {
@@ -489,6 +495,7 @@ impl SegmentedClip {
                     new => self.numbers[usize::from(new)] = number,
                 }
                 self.locked.swap(old, usize::from(now[old]));
+                self.named.swap(old, usize::from(now[old]));
             }
         }
         // What was merged into one of them goes along.
@@ -498,6 +505,10 @@ impl SegmentedClip {
         let mut changed = Vec::new();
         for (index, frame) in self.frames.iter_mut().enumerate() {
             let labels = frame.found.labels.map(|label| now[usize::from(label)]);
+            if let Some(layer) = frame.layer.as_mut().filter(|_| frame.accepted) {
+                layer.labels =
+                    layer.labels.map(|label| if persons[usize::from(label)] { label } else { now[usize::from(label)] });
+            }
             if labels != frame.found.labels {
                 frame.found.labels = labels;
                 changed.push(index);
@@ -506,51 +517,46 @@ impl SegmentedClip {
         changed
     }
 
-    /// Begins a correction: `labels` has for every pixel of a frame what is certain there, 0 for the background, the number of an object,
-    /// a new number for a new object, or 255 where nothing is said. A correction replaces an earlier one of the same frame. Numbers are
-    /// those before any [`renumber`](Self::renumber).
+    /// Takes what a person says. It is checked at once, and takes effect as the job takes the frames that it wants.
+    ///
+    /// Nothing that a person named, painted, gave, prompted, accepted or locked changes when something else is said. An object that was found
+    /// automatically changes by the pixels that another one takes from it or gives back.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), or labels that do not fill the frame.
-    pub fn correct(&mut self, index: usize, labels: &[u8], spread: Spread) -> Result<ClipCorrection> {
-        self.check_index(index)?;
-        let [width, height] = self.size;
-        if labels.len() != width * height {
-            let reason = format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len());
-            return Err(Error::InvalidOption { name: "corrections", reason });
-        }
-        Ok(ClipCorrection::new(self, index, labels, spread))
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), labels that do not fill the frame, prompts that are not
+    /// within the frame, and numbers that are not those of objects; [`Error::ObjectLocked`] for what is said of a locked object. Nothing is
+    /// changed then.
+    pub fn annotate(&mut self, annotations: Annotations) -> Result<ClipJob> {
+        ClipJob::new(self, annotations)
     }
 
-    /// What [`correct`](Self::correct) is to be told of a frame when the object of a `number` is where a click or a box points to: the number at
-    /// the object's pixels, 0 where nothing else is, and 255 or what was said before at other objects, which keep what a person has said of
-    /// them. The object may have been found or not. Of a box no pixel outside is the object; of a click its pixel is.
-    ///
-    /// # Errors
-    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), a prompt that is not within the frame, and a number that is
-    /// not one of an object, [`Error::FrameSizeMismatch`], [`Error::OtherFrame`].
-    pub fn outline(&self, index: usize, frame: &Frame, prompt: Prompt, number: u8) -> Result<Vec<u8>> {
-        outline(self, index, frame, prompt, number)
+    /// Gives a frame the labels with which a person accepts it; without them those that it has.
+    pub(super) fn accept(&mut self, frame: &Frame, Accepted { frame: index, labels }: Accepted, changes: &mut Changes) {
+        let shown = self.layered(index, frame.luminance());
+        let labels = labels.unwrap_or_else(|| shown.clone());
+        let [w, h] = self.working_size();
+        let before = self.frames[index].layer.as_ref().map(|layer| (layer.labels.values(), layer.odds.odds(w, h)));
+        let found = self.frames[index].found.odds([w, h]);
+        let odds = |p: usize, at: usize| match &before {
+            Some((labels, odds)) if labels[p] != NOTHING_SAID => odds.values()[at],
+            _ => found.values()[at],
+        };
+        let layer = self.layer_of(&labels, &odds);
+        (self.frames[index].layer, self.frames[index].accepted) = (layer, true);
+        if labels != shown {
+            changes.set(index, &shown, &labels);
+        }
     }
 
-    /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.
-    /// Numbers that no object has change nothing. Returns the indices of the frames that change.
-    ///
-    /// # Errors
-    /// [`Error::InvalidOption`] if either is 255, or `object` 0.
-    pub fn renumber(&mut self, object: u8, number: u8) -> Result<Vec<usize>> {
-        if object == 0 || object == NOTHING_SAID || number == NOTHING_SAID {
-            let reason =
-                format!("object {object} cannot get the number {number}: objects are 1 to 254, the background is 0");
-            return Err(Error::InvalidOption { name: "objects", reason });
-        }
+    /// Gives every pixel of an object another number for the whole clip. Returns the indices of the frames that change.
+    pub(super) fn renumber(&mut self, [object, number]: [u8; 2]) -> Vec<usize> {
         let number = self.numbers[usize::from(number)];
         if number != 0 && self.frames_with(number).is_empty() {
-            return Ok(Vec::new());
+            return Vec::new();
         }
         let changed = self.frames_with(object);
         self.numbers.iter_mut().filter(|given| **given == object).for_each(|given| *given = number);
-        Ok(changed)
+        changed
     }
 
     /// The bytes of this clip, for [`from_bytes`](Self::from_bytes) of the same version.
@@ -569,7 +575,9 @@ impl SegmentedClip {
 
     fn is_valid(&self) -> bool {
         let [width, height] = self.size;
-        if self.numbers.len() != 256 || self.locked.len() != 256 || self.hashes.len() != self.frames.len() {
+        if [self.numbers.len(), self.locked.len(), self.named.len()] != [256; 3]
+            || self.hashes.len() != self.frames.len()
+        {
             return false;
         }
         if self.frames.is_empty() {
@@ -582,7 +590,7 @@ impl SegmentedClip {
         self.frames.iter().all(|frame| frame.is_valid(w * h, width * height))
     }
 
-    fn check_index(&self, index: usize) -> Result<()> {
+    pub(super) fn check_index(&self, index: usize) -> Result<()> {
         let reason = || format!("there is no frame {index} in a clip of {} frames", self.len());
         if index < self.len() { Ok(()) } else { Err(Error::InvalidOption { name: "frame", reason: reason() }) }
     }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use veronese::clip::{ClipFrame, ClipOptions, ClipSegmenter, SegmentedClip, Spread};
+use veronese::clip::{Annotations, ClipFrame, ClipOptions, ClipSegmenter, Painted, SegmentedClip, Spread};
 use veronese::{Frame, Quality, Random, SegmentOptions};
 
 pub const SIZE: [usize; 2] = [160, 120];
@@ -154,11 +154,22 @@ pub fn correct_some(
     labels: &[u8],
     spread: Spread,
 ) -> Vec<usize> {
-    let mut correction = clip.correct(index, labels, spread).unwrap();
-    while let Some(wanted) = correction.wanted() {
-        correction.take(clip, &frames[wanted]).unwrap();
+    let corrections = vec![Painted { frame: index, object: None, labels: labels.to_vec(), spread }];
+    annotate(clip, frames, Annotations { corrections, ..Annotations::default() })
+}
+
+/// Says something of a clip. Returns the frames that change, in ascending order.
+pub fn annotate(clip: &mut SegmentedClip, frames: &[Frame], annotations: Annotations) -> Vec<usize> {
+    let mut job = clip.annotate(annotations).unwrap();
+    while let Some(wanted) = job.wanted() {
+        job.take(clip, &frames[wanted]).unwrap();
     }
-    let mut changed = correction.changed().to_vec();
+    let mut changed = job.changed().to_vec();
     changed.sort_unstable();
     changed
+}
+
+/// Gives an object another number.
+pub fn renumber(clip: &mut SegmentedClip, object: u8, number: u8) -> Vec<usize> {
+    annotate(clip, &[], Annotations { numbers: vec![[object, number]], ..Annotations::default() })
 }

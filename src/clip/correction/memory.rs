@@ -4,7 +4,7 @@
 //! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
 
 use super::look::Look;
-use super::sweep::Said;
+use crate::clip::annotation::Seed;
 use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -152,12 +152,12 @@ impl Memory {
     }
 
     /// Learns what is said of a frame.
-    pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Said]>) {
+    pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Seed]>) {
         let Some(said) = said else { return };
         self.learn(look, centre, Part::Given, 1.0, &|p| match said[p] {
-            Said::Object => 0,
-            Said::Other => 1,
-            Said::Nothing => 2,
+            Seed::Object => 0,
+            Seed::Other => 1,
+            Seed::Nothing => 2,
         });
     }
 

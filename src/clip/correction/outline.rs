@@ -8,17 +8,19 @@
 //! * How far the object of a click reaches is open. Discs of several sizes begin, and the regions with one label or motion that the click
 //!   is in; the masks that come of them vote, each by how well it agrees with the others. What enough votes say begins the last fit.
 //!
-//! What is said of the clip makes no difference to the mask: the same click always points to the same object. What is then said of the frame
-//! is more than the mask: it is ground where nothing else is, which is worth .12 of J through a clip. Others keep what they have.
+//! Clicks that are the object's are in the mask, and those that are not are outside, with the piece around them if it is a separate one.
+//! What is said of the clip makes no difference to the mask: the same prompt always points to the same object, and takes nothing from what
+//! others have.
 
-use crate::clip::model;
 use std::ops::Range;
 
 use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::sweep::{CERTAIN, cut, logit};
+use crate::clip::annotation::{Click, Prompt};
 use crate::clip::evidence::Flow;
+use crate::clip::model;
 use crate::clip::whole::{NOTHING_SAID, SegmentedClip};
 use crate::components::{Connectivity, components};
 use crate::error::{Error, Result};
@@ -28,20 +30,13 @@ use crate::frame::filter::gaussian;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 
-/// Where an object is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Prompt {
-    /// A pixel of it: column and row.
-    Click([usize; 2]),
-    /// A rectangle that has all of it: first column, first row, width and height.
-    Box([usize; 4]),
-}
-
 /// What is seen of a frame.
 struct View<'a> {
     look: &'a Look,
     /// Labels found automatically, and those of the motions to the next frame and the one before.
     found: Vec<Vec<u8>>,
+    /// What clicks say of each pixel: 0 for the object, 1 for ground, 2 for nothing.
+    sure: Vec<u8>,
 }
 
 /// What a fit begins with.
@@ -54,33 +49,46 @@ struct Beginning {
     sides: Vec<u8>,
 }
 
-/// What is said of a frame when the object of a number is where a prompt points to.
-pub(in crate::clip) fn outline(
+/// What is said of a frame when an object is where a prompt points to: its number at its pixels, 0 elsewhere, 255 where an object is that
+/// keeps what it has. `shown` are the labels of the frame.
+pub(super) fn outline(
     clip: &SegmentedClip,
     index: usize,
     frame: &Frame,
-    prompt: Prompt,
-    number: u8,
-) -> Result<Vec<u8>> {
-    clip.check(index, frame)?;
-    check(prompt, clip.size())?;
-    if number == 0 || number == NOTHING_SAID {
-        let reason = format!("{number} is no number of an object: these are 1 to 254");
-        return Err(Error::InvalidOption { name: "label", reason });
+    look: &Look,
+    shown: &[u8],
+    prompt: &Prompt,
+) -> Vec<u8> {
+    let width = frame.width();
+    let mut labels = vec![NOTHING_SAID; shown.len()];
+    if !prompt.points() {
+        return labels;
     }
-    let (look, width) = (Look::new(frame), frame.width());
     let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(look.size).labels);
-    let labels = clip.found_at(index, look.size);
-    let found = [Some(labels), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
-    let view = View { look: &look, found };
-    let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
-    let mask = match prompt {
-        Prompt::Click([x, y]) => {
-            let mut mask = full(&view.clicked(look.pixel(y * width + x, width)));
-            mask[y * width + x] = 1;
-            mask
+    let own = clip.found_at(index, look.size);
+    let found = [Some(own), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
+    let mut view = View { look, found, sure: vec![2; look.pixels()] };
+    let clicks: Vec<(usize, bool)> =
+        prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
+    for (at, inside) in &clicks {
+        let centre = view.place(look.pixel(*at, width));
+        for p in 0..look.pixels() {
+            if view.square(p, centre, [model().near; 2]) < 1.0 {
+                view.sure[p] = u8::from(!inside);
+            }
         }
-        Prompt::Box([x, y, columns, rows]) => {
+    }
+    let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
+    let mut mask = match prompt.within {
+        None => {
+            let mut mask = vec![0; look.pixels()];
+            for (at, _) in clicks.iter().filter(|(_, inside)| *inside) {
+                let own = view.clicked(look.pixel(*at, width));
+                mask.iter_mut().zip(own).for_each(|(mask, own)| *mask |= own);
+            }
+            full(&mask)
+        }
+        Some([x, y, columns, rows]) => {
             let area = Area { columns: x..x + columns, rows: y..y + rows };
             let found = full(&view.boxed(&area));
             let is_empty = !area.pixels(width).any(|p| found[p] > 0);
@@ -90,48 +98,47 @@ pub(in crate::clip) fn outline(
             mask
         }
     };
-    Ok(said_of(clip, index, &clip.layered(index, frame.luminance()), &mask, number))
-}
-
-/// An object with its mask, and ground where nothing else is shown and was said.
-fn said_of(clip: &SegmentedClip, index: usize, shown: &[u8], mask: &[u8], number: u8) -> Vec<u8> {
-    let persons = clip.persons_in(index);
-    let ([width, _], [w, h]) = (clip.size(), clip.working_size());
-    let (step, (found, _)) = (clip.working_step(), clip.found(index));
-    let before = clip.frames[index].said.as_ref().map(|said| said.labels.values());
-    let mut sizes = [[0usize; 2]; 256];
-    for (&label, &inside) in shown.iter().zip(mask) {
-        let [all, taken] = &mut sizes[usize::from(label)];
-        *all += 1;
-        *taken += usize::from(inside);
-    }
-    // Ground in a part of what was found is a correction of that, so none is said in any pixel of it.
-    let found = |p: usize| found[(p / width / step).min(h - 1) * w + (p % width / step).min(w - 1)];
-    let others = |label: u8| label != 0 && label != NOTHING_SAID && label != number;
-    // What was found yields to an object that has most of it.
-    let is_left = |label: u8| 2 * sizes[usize::from(label)][1] <= sizes[usize::from(label)][0];
-    let said = |p: usize| match before.as_ref().map_or(NOTHING_SAID, |before| before[p]) {
-        label if others(label) => label,
-        _ if others(shown[p]) && persons[usize::from(shown[p])] => NOTHING_SAID,
-        _ if mask[p] > 0 => number,
-        0 => 0,
-        _ if [shown[p], found(p)].into_iter().any(|label| others(label) && is_left(label)) => NOTHING_SAID,
-        _ => 0,
+    clicks.iter().for_each(|&(at, inside)| mask[at] = u8::from(inside));
+    let (persons, kept) = (clip.persons_in(index), clip.kept());
+    let is_others = |label: u8| {
+        label != prompt.object
+            && (persons[usize::from(label)] || kept[usize::from(label)] || clip.frames[index].accepted && label != 0)
     };
-    (0..mask.len()).map(said).collect()
+    for (p, label) in labels.iter_mut().enumerate().filter(|(p, _)| !is_others(shown[*p])) {
+        *label = if mask[p] > 0 { prompt.object } else { 0 };
+    }
+    labels
 }
 
-fn check(prompt: Prompt, [width, height]: [usize; 2]) -> Result<()> {
+/// Whether a prompt is within a frame, and says something that can be.
+pub(in crate::clip) fn check(prompt: &Prompt, [width, height]: [usize; 2]) -> Result<()> {
+    let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
+    if prompt.object == 0 || prompt.object == NOTHING_SAID {
+        return invalid("label", format!("{} is no number of an object: these are 1 to 254", prompt.object));
+    }
     let fits = |from: usize, count: usize, side: usize| count > 0 && from < side && count <= side - from;
-    let (name, [x, y, columns, rows]) = match prompt {
-        Prompt::Click([x, y]) => ("click", [x, y, 1, 1]),
-        Prompt::Box(sides) => ("box", sides),
+    let outside = |name, [x, y, columns, rows]: [usize; 4]| {
+        let what =
+            format!("{columns}×{rows} pixels from ({x}, {y}) on are not within a frame of {width}×{height} pixels");
+        invalid(name, what)
     };
-    if fits(x, columns, width) && fits(y, rows, height) {
-        return Ok(());
+    for Click { at: [x, y], inside } in &prompt.clicks {
+        if *x >= width || *y >= height {
+            return outside("click", [*x, *y, 1, 1]);
+        }
+        if let Some([left, top, columns, rows]) = prompt.within
+            && *inside
+            && !(fits(x.wrapping_sub(left), 1, columns) && fits(y.wrapping_sub(top), 1, rows))
+        {
+            return invalid("click", format!("({x}, {y}) is to be the object's, but is not within its box"));
+        }
     }
-    let what = format!("{columns}×{rows} pixels from ({x}, {y}) on are not within a frame of {width}×{height} pixels");
-    Err(Error::InvalidOption { name, reason: what })
+    match prompt.within {
+        Some(sides @ [x, y, columns, rows]) if !fits(x, columns, width) || !fits(y, rows, height) => {
+            outside("box", sides)
+        }
+        _ => Ok(()),
+    }
 }
 
 impl View<'_> {
@@ -142,13 +149,30 @@ impl View<'_> {
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
         let centre = [middle(&area.columns), middle(&area.rows)];
         let radii = [area.width(), area.height()].map(|side| 0.5 * side as f32);
-        self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &|_| false)
+        self.without_pieces(self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY])))
+    }
+
+    /// A mask without the pieces around clicks that are not the object's, if there is something else of it.
+    fn without_pieces(&self, mut mask: Vec<u8>) -> Vec<u8> {
+        let touched: Vec<u8> =
+            mask.iter().zip(&self.sure).map(|(&inside, &sure)| u8::from(inside > 0 || sure == 1)).collect();
+        let parts = components(&touched, self.look.size[0], Connectivity::Four);
+        let (mut is_kept, mut is_cut) = (vec![false; parts.list.len()], vec![false; parts.list.len()]);
+        for (p, sure) in self.sure.iter().enumerate() {
+            is_kept[parts.of[p] as usize] |= *sure == 0;
+            is_cut[parts.of[p] as usize] |= *sure == 1;
+        }
+        let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max().unwrap_or(0);
+        for (p, inside) in mask.iter_mut().enumerate() {
+            let part = parts.of[p] as usize;
+            *inside &= u8::from(is_kept[part] || !is_cut[part] || parts.list[part].size == largest);
+        }
+        mask
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
         let (pixels, [width, height]) = (self.look.pixels(), self.look.size);
         let centre = self.place(click);
-        let near = |p: usize| self.square(p, centre, [model().near; 2]) < 1.0;
         let whole = 1.0 - model().part;
         let disc = |radius: f32| {
             let area = self.around(&Area::of(&[click], width).grown(radius as usize, width, height));
@@ -162,7 +186,7 @@ impl View<'_> {
         let discs = radii.take_while(|radius| 3.0 * *radius < longest).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let beginnings = discs.chain(regions);
-        let masks: Vec<Vec<u8>> = beginnings.map(|from| self.part_of(click, self.fitted(from, &near))).collect();
+        let masks: Vec<Vec<u8>> = beginnings.map(|from| self.part_of(click, self.fitted(from))).collect();
         let mut votes = vec![0.0f32; pixels];
         let mut total = 0.0;
         for mask in &masks {
@@ -171,12 +195,17 @@ impl View<'_> {
             total += others * others;
         }
         votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
-        let agreed: Vec<usize> = (0..pixels).filter(|&p| votes[p] > model().part || near(p)).collect();
+        let agreed: Vec<usize> = (0..pixels)
+            .filter(|&p| match self.sure[p] {
+                2 => votes[p] > model().part,
+                sure => sure == 0,
+            })
+            .collect();
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
         let odds = votes.iter().map(|votes| 2.0 * model().guess * (votes - model().part)).collect();
         let area = self.around(&Area::of(&agreed, self.look.size[0]));
-        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near))
+        self.part_of(click, self.fitted(Beginning { area, odds, sides }))
     }
 
     /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
@@ -214,9 +243,10 @@ impl View<'_> {
     }
 
     /// Learns from a mask what the object looks like, cuts the next one, and so on.
-    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool) -> Vec<u8> {
+    fn fitted(&self, from: Beginning) -> Vec<u8> {
         let (look, [width, height]) = (self.look, self.look.size);
         let Beginning { area, odds: prior, mut sides } = from;
+        sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
         let seen = area.grown(model().margin, width, height);
         for _ in 0..model().rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
@@ -232,7 +262,11 @@ impl View<'_> {
                 self.found.iter().map(|found| Evidence::of(found, &sides, &seen, width)).collect();
             let odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
-                if is_sure(p) { CERTAIN } else { prior[p] + logit(remembered) + found }
+                match self.sure[p] {
+                    0 => CERTAIN,
+                    1 => -CERTAIN,
+                    _ => prior[p] + logit(remembered) + found,
+                }
             };
             let odds: Vec<f32> = area.pixels(width).zip(remembered).map(odds).collect();
             let mask = cut(look, &area, &odds);

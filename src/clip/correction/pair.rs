@@ -5,8 +5,8 @@
 //! side to the other, and all others keep their labels.
 
 use super::still::Still;
-use super::sweep::Said;
 use crate::answer::UNLABELLED;
+use crate::clip::annotation::Seed;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
@@ -235,16 +235,16 @@ impl<'a> Working<'a> {
     /// Which pixels are on which side of a division.
     fn divide(&self, Division { object, others }: Division, labels: &mut [u8]) {
         let size @ [columns, rows] = self.still.size();
-        let mut said = vec![Said::Nothing; columns * rows];
+        let mut said = vec![Seed::Nothing; columns * rows];
         let mut found = vec![0usize; columns * rows];
         for (p, (&allowed, &label)) in self.correction.allowed.iter().zip(&*labels).enumerate() {
             let here = self.pixel(p);
             found[here] += usize::from(is_in(label, object));
             match [allowed & object, allowed & others] {
                 _ if allowed == 0 => {}
-                [own, 0] if own != 0 => said[here] = Said::Object,
+                [own, 0] if own != 0 => said[here] = Seed::Object,
                 // Where strokes contradict each other inside a pixel, it is the object's.
-                [0, _] if said[here] == Said::Nothing => said[here] = Said::Other,
+                [0, _] if said[here] == Seed::Nothing => said[here] = Seed::Other,
                 _ => {}
             }
         }

@@ -2,7 +2,8 @@
 
 use super::look::Look;
 use super::memory::{Memory, Part};
-use super::sweep::{Said, centre_of, logit, solved};
+use super::sweep::{centre_of, logit, solved};
+use crate::clip::annotation::Seed;
 use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::components::{Components, Connectivity, components};
 use crate::frame::filter::gaussian;
@@ -35,9 +36,9 @@ impl Still {
 
     /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is
     /// connected with something said changes.
-    pub(crate) fn mask(&self, said: &[Said], found: &[bool], motion: &Plane) -> Vec<u8> {
+    pub(crate) fn mask(&self, said: &[Seed], found: &[bool], motion: &Plane) -> Vec<u8> {
         let look = &self.0;
-        let shown = look.plane(&|p| if said[p] == Said::Nothing { found[p] } else { said[p] == Said::Object });
+        let shown = look.plane(&|p| if said[p] == Seed::Nothing { found[p] } else { said[p] == Seed::Object });
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let mut memory = Memory::of(&shown);
         memory.learn_said(look, centre, Some(said));
@@ -65,22 +66,22 @@ impl Still {
 }
 
 /// Takes back changes that nothing connects with what is said.
-fn keep_near(mask: &mut [u8], said: &[Said], found: &[bool], width: usize) {
-    let changed = |p: usize| u8::from(said[p] != Said::Nothing || (mask[p] > 0) != found[p]);
+fn keep_near(mask: &mut [u8], said: &[Seed], found: &[bool], width: usize) {
+    let changed = |p: usize| u8::from(said[p] != Seed::Nothing || (mask[p] > 0) != found[p]);
     let changes: Vec<u8> = (0..mask.len()).map(changed).collect();
     let Components { of, list } = components(&changes, width, Connectivity::Eight);
     let mut is_said = vec![false; list.len()];
-    (0..mask.len()).filter(|&p| said[p] != Said::Nothing).for_each(|p| is_said[of[p] as usize] = true);
+    (0..mask.len()).filter(|&p| said[p] != Seed::Nothing).for_each(|p| is_said[of[p] as usize] = true);
     for (p, inside) in mask.iter_mut().enumerate().filter(|(p, _)| !is_said[of[*p] as usize]) {
         *inside = u8::from(found[p]);
     }
 }
 
 /// How far what was found is trusted where it is doubted: from 1, where what is said agrees with it there, to −1.
-fn trust(said: &[Said], found: &[bool], is_doubted: &[bool]) -> f32 {
+fn trust(said: &[Seed], found: &[bool], is_doubted: &[bool]) -> f32 {
     let [mut sum, mut all] = [0.0f32; 2];
-    for p in (0..said.len()).filter(|&p| is_doubted[p] && said[p] != Said::Nothing) {
-        sum += if found[p] == (said[p] == Said::Object) { 1.0 } else { -1.0 };
+    for p in (0..said.len()).filter(|&p| is_doubted[p] && said[p] != Seed::Nothing) {
+        sum += if found[p] == (said[p] == Seed::Object) { 1.0 } else { -1.0 };
         all += 1.0;
     }
     if all > 0.0 { sum / all } else { 1.0 }
@@ -108,10 +109,10 @@ mod tests {
                 Some(_) => [200, 190, 60],
                 None => [110, 120, 115],
             });
-        let mut said = vec![Said::Nothing; width * height];
+        let mut said = vec![Seed::Nothing; width * height];
         for row in 37..47 {
-            said[row * width + 50..row * width + 66].fill(Said::Object);
-            said[row * width + 86..row * width + 102].fill(Said::Other);
+            said[row * width + 50..row * width + 66].fill(Seed::Object);
+            said[row * width + 86..row * width + 102].fill(Seed::Other);
         }
         let unknown = Plane::filled(width, height, 0.0);
         let found: Vec<bool> = (0..width * height).map(|p| inside(p, 10) || inside(p, 82)).collect();

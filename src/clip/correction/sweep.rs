@@ -10,6 +10,7 @@ use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::placing::{Placed, Whole};
+use crate::clip::annotation::Seed;
 use crate::clip::evidence::Flow;
 use crate::clip::model;
 use crate::frame::Plane;
@@ -18,14 +19,6 @@ use crate::frame::filter::gaussian;
 use crate::frame::warp::Footprint;
 use crate::labelling::solver::Solver;
 
-/// What is said of a pixel: nothing, or whether it belongs to the object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Said {
-    Nothing,
-    Other,
-    Object,
-}
-
 /// Odds of what is said, nats: more than all borders of a pixel cost.
 pub(super) const CERTAIN: f32 = 99.0;
 
@@ -33,7 +26,7 @@ pub(super) const CERTAIN: f32 = 99.0;
 #[derive(Clone, Copy)]
 pub(super) struct Given<'a> {
     /// What is said of each pixel, if anything.
-    pub(super) said: Option<&'a [Said]>,
+    pub(super) said: Option<&'a [Seed]>,
     /// Whether what is said speaks of the object. Else it counts only where it contradicts the sweep.
     pub(super) speaks: bool,
     /// Whether that is for all frames.
@@ -119,7 +112,7 @@ impl Sweep {
     }
 
     /// Learns what is said in some frame for all frames.
-    pub(super) fn hear(&mut self, look: &Look, said: &[Said], found: &[u8], number: u8) {
+    pub(super) fn hear(&mut self, look: &Look, said: &[Seed], found: &[u8], number: u8) {
         let shown = shown(look, Some(said), found, number);
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let memory = self.memory.get_or_insert_with(|| Memory::of(&shown));
@@ -142,7 +135,7 @@ impl Sweep {
         };
         let mut odds: Vec<f32> = (0..look.pixels()).map(unsaid).collect();
         let shown = shown(look, given.said, given.found, number);
-        let partly = given.said.is_none_or(|said| said.contains(&Said::Nothing));
+        let partly = given.said.is_none_or(|said| said.contains(&Seed::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let knows = self.knows(given);
         let memory = self.memory.get_or_insert_with(|| Memory::of(&shown));
@@ -153,7 +146,7 @@ impl Sweep {
         if partly {
             if !is_found {
                 // Most of what nothing is said of is ground.
-                let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Said::Nothing);
+                let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Seed::Nothing);
                 memory.learn(look, centre, Part::Recent, model().few, &|p| if is_said(p) { 2 } else { 1 });
             }
             let remembered = memory.read(look, &area, centre);
@@ -249,9 +242,9 @@ impl Sweep {
     pub(super) fn step(&mut self, look: &Look, given: &Given<'_>, expected: Expected) -> Claim {
         let Expected { area, odds, centre, placed, .. } = expected;
         let solve = |said| solved(look, area.clone(), odds.clone(), said);
-        let contradicts = |claim: &Claim, said: &[Said]| {
+        let contradicts = |claim: &Claim, said: &[Seed]| {
             let mut pixels = claim.area.pixels(look.size[0]).zip(&claim.mask);
-            pixels.any(|(p, &inside)| inside > 0 && said[p] == Said::Other)
+            pixels.any(|(p, &inside)| inside > 0 && said[p] == Seed::Other)
         };
         // The claim of this frame, and what goes on from it if that is something else.
         let (claim, goes_on) = match given.said {
@@ -298,10 +291,10 @@ impl Sweep {
 }
 
 /// The object in a frame that speaks of it: what is said, and what was found of it elsewhere.
-fn shown(look: &Look, said: Option<&[Said]>, found: &[u8], number: u8) -> Plane {
-    look.plane(&|p| match said.map_or(Said::Nothing, |said| said[p]) {
-        Said::Nothing => found[p] == number,
-        said => said == Said::Object,
+fn shown(look: &Look, said: Option<&[Seed]>, found: &[u8], number: u8) -> Plane {
+    look.plane(&|p| match said.map_or(Seed::Nothing, |said| said[p]) {
+        Seed::Nothing => found[p] == number,
+        said => said == Seed::Object,
     })
 }
 
@@ -351,20 +344,20 @@ pub(super) fn logit(p: f32) -> f32 {
 }
 
 /// The mask of least energy, with what is said of the frame.
-pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>) -> Claim {
+pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Seed]>) -> Claim {
     let Some(said) = said else {
         let mask = cut(look, &area, &odds);
         return Claim { area, odds, mask };
     };
     let odds: Vec<f32> = (0..look.pixels())
         .map(|p| match said[p] {
-            Said::Nothing => odds_at(&area, &odds, p, look.size[0]),
-            Said::Other => -CERTAIN,
-            Said::Object => CERTAIN,
+            Seed::Nothing => odds_at(&area, &odds, p, look.size[0]),
+            Seed::Other => -CERTAIN,
+            Seed::Object => CERTAIN,
         })
         .collect();
     let area = look.area();
-    let mask = if said.contains(&Said::Nothing) {
+    let mask = if said.contains(&Seed::Nothing) {
         cut(look, &area, &odds)
     } else {
         odds.iter().map(|&z| u8::from(z > 0.0)).collect()

@@ -3,8 +3,7 @@
 
 use super::look::Look;
 use super::sweep::{Claim, Expected, Given, Sweep, cut};
-use super::world::of_object;
-use crate::clip::layer::Spread;
+use crate::clip::annotation::{Seed, Spread};
 use crate::frame::area::Area;
 
 /// A frame that speaks of an object, and where that spreads.
@@ -65,10 +64,9 @@ impl Track {
     }
 
     /// Learns what is said for all frames, before any sweep begins.
-    pub(super) fn hear(&mut self, look: &Look, said: &[u8], found: &[u8]) {
-        let said = of_object(said, self.number);
+    pub(super) fn hear(&mut self, look: &Look, seeds: &[Seed], found: &[u8]) {
         for sweep in [&mut self.forward, &mut self.backward] {
-            sweep.hear(look, &said, found, self.number);
+            sweep.hear(look, seeds, found, self.number);
         }
     }
 

@@ -2,8 +2,9 @@
 
 use super::look::Look;
 use super::placing::Placed;
-use super::sweep::{Claim, Expected, Given, Said, odds_at};
+use super::sweep::{Claim, Expected, Given, odds_at};
 use super::track::{Track, Way};
+use crate::clip::annotation::{Seed, Spread};
 use crate::clip::evidence::Flow;
 use crate::clip::model;
 use crate::frame::Plane;
@@ -11,8 +12,8 @@ use crate::order::sort_few;
 
 /// What is known of a frame besides its pixels.
 pub(super) struct Known<'a> {
-    /// What is said of each full-size pixel, at the working size, and where that spreads.
-    pub(super) said: Option<(&'a [u8], [bool; 2])>,
+    /// What is said of each pixel about the object of a number, if anything is, and where that spreads.
+    pub(super) seeds: &'a dyn Fn(u8) -> Option<(Vec<Seed>, Spread)>,
     pub(super) found: &'a [u8],
     /// From this frame to the one before in the direction of the sweep, and from that one to this.
     pub(super) flows: Option<[&'a Flow; 2]>,
@@ -41,17 +42,17 @@ impl World {
         look: &Look,
         known: &Known<'_>,
     ) -> Vec<(u8, Option<Claim>)> {
-        let said: Vec<Option<Vec<Said>>> =
-            self.tracks.iter().map(|track| known.said.map(|(said, _)| of_object(said, track.number))).collect();
+        let seeds: Vec<Option<(Vec<Seed>, Spread)>> =
+            self.tracks.iter().map(|track| (known.seeds)(track.number)).collect();
         let given: Vec<Given<'_>> = self
             .tracks
             .iter()
-            .zip(&said)
-            .map(|(track, said)| Given {
-                said: said.as_deref(),
+            .zip(&seeds)
+            .map(|(track, seeds)| Given {
+                said: seeds.as_ref().map(|(seeds, _)| &seeds[..]),
                 speaks: track.speaks(t),
                 is_for_all: track.is_for_all(t),
-                spreads: known.said.is_none_or(|(_, spreads)| spreads[way as usize]),
+                spreads: seeds.as_ref().is_none_or(|(_, spread)| spread.ways()[way as usize]),
                 found: known.found,
                 flows: known.flows,
             })
@@ -120,24 +121,23 @@ fn compete(expected: &mut [Option<Expected>], width: usize) {
     }
 }
 
-/// What is said about one object.
-pub(super) fn of_object(said: &[u8], number: u8) -> Vec<Said> {
-    let of = |&label: &u8| match label {
-        crate::clip::whole::NOTHING_SAID => Said::Nothing,
-        label if label == number => Said::Object,
-        _ => Said::Other,
-    };
-    said.iter().map(of).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Random;
-    use crate::clip::layer::Spread;
     use crate::motion::AffineMotion;
 
     const SIZE: [usize; 2] = [96, 64];
+
+    /// What a label map that names an object says about it.
+    fn of_object(said: &[u8], number: u8) -> Vec<Seed> {
+        let of = |&label: &u8| match label {
+            crate::clip::whole::NOTHING_SAID => Seed::Nothing,
+            label if label == number => Seed::Object,
+            _ => Seed::Other,
+        };
+        said.iter().map(of).collect()
+    }
 
     #[test]
     fn two_rivals_share_no_pixel() {
@@ -157,8 +157,9 @@ mod tests {
         let mut world = World { tracks, decides: vec![1, 2] };
         let found = vec![0; look.pixels()];
         for t in 0..3 {
-            let said = (t == 0).then_some((&said[..], [true; 2]));
-            let claims = world.visit(t, Way::Forward, false, &look, &Known { said, found: &found, flows: None });
+            let seeds = |number: u8| (t == 0).then(|| (of_object(&said, number), Spread::Both));
+            let known = Known { seeds: &seeds, found: &found, flows: None };
+            let claims = world.visit(t, Way::Forward, false, &look, &known);
             let mut owners = vec![0; look.pixels()];
             for (number, claim) in claims {
                 let claim = claim.unwrap();
@@ -191,10 +192,11 @@ mod tests {
         let shares = [false, true].map(|hears| {
             let mut track = Track::new(1, vec![(0, Spread::Both), (3, Spread::Both)], 4);
             for said in [&here, &later].into_iter().filter(|_| hears) {
-                track.hear(&look, said, &found);
+                track.hear(&look, &of_object(said, 1), &found);
             }
             let mut world = World { tracks: vec![track], decides: vec![1] };
-            let known = Known { said: Some((&here, [true; 2])), found: &found, flows: None };
+            let seeds = |number: u8| Some((of_object(&here, number), Spread::Both));
+            let known = Known { seeds: &seeds, found: &found, flows: None };
             let claims = world.visit(0, Way::Forward, true, &look, &known);
             let claim = claims[0].1.as_ref().unwrap();
             let of = |part: usize| {
@@ -234,7 +236,7 @@ mod tests {
         for t in 0..16 {
             let truth: Vec<u8> = (0..SIZE[0] * SIZE[1]).map(|p| owner(t, p % SIZE[0], p / SIZE[0])).collect();
             let look = look(t);
-            let said = (t == 0).then_some((&truth[..], [true; 2]));
+            let seeds = |number: u8| (t == 0).then(|| (of_object(&truth, number), Spread::Both));
             // As pairs of frames measure it: to the frame before, and from there.
             let flow = |t: usize, step: f64| Flow {
                 width: SIZE[0],
@@ -244,7 +246,7 @@ mod tests {
             };
             let flows = [flow(t, -4.0), flow(t.saturating_sub(1), 4.0)];
             let flows = (t > 0).then_some([&flows[0], &flows[1]]);
-            let known = Known { said, found: &found, flows };
+            let known = Known { seeds: &seeds, found: &found, flows };
             for (number, claim) in world.visit(t, Way::Forward, false, &look, &known) {
                 let claim = claim.unwrap();
                 let mut own = vec![false; truth.len()];

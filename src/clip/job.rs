@@ -1,0 +1,244 @@
+//! The one place where all that a person says of a clip meets, in one order: numbers that are kept free, locks and names, accepted frames,
+//! what is painted, prompts, and edits of whole objects.
+
+use std::collections::VecDeque;
+
+use super::annotation::{Accepted, Annotations, Change, Painted};
+use super::changes::{Changed, Changes};
+use super::correction::{FrameCorrection, check};
+use super::whole::{NOTHING_SAID, SegmentedClip};
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+
+/// Annotations that take effect in a [`SegmentedClip`]. A job asks for the frames that it needs:
+///
+/// ```
+/// use veronese::Frame;
+/// use veronese::clip::{Annotations, ClipOptions, ClipSegmenter, Painted, Spread};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let frames = [(); 3].map(|()| Frame::from_rgba(64, 48, [90; 4 * 64 * 48].as_slice()).expect("a frame"));
+/// let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+/// for frame in &frames {
+///     segmenter.push(frame.clone())?;
+/// }
+/// let mut clip = segmenter.conclude();
+///
+/// // The left half of frame 1 is object 7; nothing is said of the rest.
+/// let labels = (0..64 * 48).map(|p| if p % 64 < 32 { 7 } else { 255 }).collect();
+/// let corrections = vec![Painted { frame: 1, object: None, labels, spread: Spread::Both }];
+/// let mut job = clip.annotate(Annotations { corrections, ..Annotations::default() })?;
+/// while let Some(index) = job.wanted() {
+///     job.take(&mut clip, &frames[index])?;
+/// }
+/// assert!(job.changed().contains(&1));
+/// assert_eq!(clip.frame(1, &frames[1])?.labels[0], 7);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct ClipJob {
+    steps: VecDeque<Step>,
+    correction: Option<FrameCorrection>,
+    /// Objects and their new numbers, when all steps are done.
+    numbers: Vec<[u8; 2]>,
+    changes: Changes,
+}
+
+#[derive(Clone, Debug)]
+enum Step {
+    Accept(Accepted),
+    Correct(usize, Change),
+}
+
+impl ClipJob {
+    pub(super) fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
+        check_all(clip, &annotations)?;
+        let Annotations { masks, corrections, mut prompts, locked, named, accepted, numbers } = annotations;
+        let mut job = ClipJob { steps: VecDeque::new(), correction: None, numbers, changes: Changes::default() };
+        let mut given: Vec<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
+        given.sort_unstable();
+        given.dedup();
+        if !given.is_empty() {
+            clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
+        }
+        for (set, now) in [(&mut clip.locked, locked), (&mut clip.named, named)] {
+            if let Some(objects) = now {
+                set.fill(false);
+                objects.iter().for_each(|&object| set[usize::from(object)] = true);
+            }
+        }
+        if let Some(accepted) = accepted {
+            for (index, frame) in clip.frames.iter_mut().enumerate() {
+                frame.accepted &= accepted.iter().any(|of| of.frame == index);
+            }
+            let is_new = |of: &Accepted| !clip.frames[of.frame].accepted || of.labels.is_some();
+            let accept = accepted.into_iter().filter(is_new).map(Step::Accept);
+            if !masks.is_empty() && !corrections.is_empty() {
+                // What is accepted is seen after the masks.
+                job.steps.extend(painted(&masks, &[]));
+            }
+            job.steps.extend(accept);
+        }
+        job.steps.extend(painted(&masks, &corrections));
+        prompts.sort_by_key(|prompt| (prompt.frame, prompt.object));
+        job.steps.extend(prompts.into_iter().map(|prompt| Step::Correct(prompt.frame, Change::Prompt(prompt))));
+        job.renumber(clip);
+        Ok(job)
+    }
+
+    /// Index of the frame to [`take`](Self::take) next; none when all has taken effect.
+    pub fn wanted(&self) -> Option<usize> {
+        let of_correction = self.correction.as_ref().and_then(FrameCorrection::wanted);
+        of_correction.or_else(|| match self.steps.front()? {
+            Step::Accept(accepted) => Some(accepted.frame),
+            Step::Correct(index, _) => Some(*index),
+        })
+    }
+
+    /// The frames changed so far, each once, in the order in which they changed first. A frame may change again.
+    pub fn changed(&self) -> &[usize] {
+        self.changes.frames()
+    }
+
+    /// What objects gained and lost so far, by frame, then by object; without what [`Annotations::numbers`] change.
+    pub fn changes(&self) -> Vec<Changed> {
+        self.changes.list()
+    }
+
+    /// Takes the frame that is [`wanted`](Self::wanted).
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`], [`Error::OtherFrame`]; the job can continue with the right frame.
+    pub fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame) -> Result<()> {
+        if self.correction.is_none() {
+            let Some(wanted) = self.wanted() else { return Ok(()) };
+            clip.check(wanted, frame)?;
+            match self.steps.pop_front() {
+                Some(Step::Accept(accepted)) => clip.accept(frame, accepted, &mut self.changes),
+                Some(Step::Correct(index, change)) => self.correction = Some(FrameCorrection::new(clip, index, change)),
+                None => {}
+            }
+        }
+        if let Some(correction) = &mut self.correction {
+            correction.take(clip, frame, &mut self.changes)?;
+            if correction.wanted().is_none() {
+                self.correction = None;
+            }
+        }
+        self.renumber(clip);
+        Ok(())
+    }
+
+    /// Gives objects their new numbers once all else is done.
+    fn renumber(&mut self, clip: &mut SegmentedClip) {
+        if self.wanted().is_none() {
+            for numbers in std::mem::take(&mut self.numbers) {
+                clip.renumber(numbers).into_iter().for_each(|frame| self.changes.add(frame));
+            }
+        }
+    }
+}
+
+/// A step for each frame in which something is painted: a correction goes before the mask of its frame where it says anything.
+fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
+    let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
+    for painted in masks.iter().chain(corrections) {
+        let at = frames.iter().position(|(index, _)| *index == painted.frame).unwrap_or_else(|| {
+            frames.push((painted.frame, Vec::new()));
+            frames.len() - 1
+        });
+        let of_frame = &mut frames[at].1;
+        match of_frame.iter_mut().find(|before| before.object == painted.object) {
+            None => of_frame.push(painted.clone()),
+            Some(mask) => {
+                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != NOTHING_SAID);
+                said.for_each(|(mask, label)| *mask = *label);
+                mask.spread = painted.spread;
+            }
+        }
+    }
+    frames.into_iter().map(|(index, painted)| Step::Correct(index, Change::Painted(painted))).collect()
+}
+
+fn check_all(clip: &SegmentedClip, annotations: &Annotations) -> Result<()> {
+    let Annotations { masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
+    let [width, height] = clip.size();
+    let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
+    let is_object = |number: u8| number != 0 && number != NOTHING_SAID;
+    let fill = |name, labels: &[u8]| match labels.len() == width * height {
+        true => Ok(()),
+        false => {
+            let reason = format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len());
+            invalid(name, reason)
+        }
+    };
+    for (name, painted) in [("masks", masks), ("corrections", corrections)] {
+        for Painted { frame, object, labels, .. } in painted {
+            clip.check_index(*frame)?;
+            fill(name, labels)?;
+            let Some(object) = *object else { continue };
+            if !is_object(object) || labels.iter().any(|label| ![0, object, NOTHING_SAID].contains(label)) {
+                return invalid(
+                    name,
+                    format!("what is said of object {object} alone has the labels 0, {object} and 255"),
+                );
+            }
+        }
+    }
+    for prompt in prompts {
+        clip.check_index(prompt.frame)?;
+        check(prompt, clip.size())?;
+        if !prompt.points() && !prompt.clicks.is_empty() {
+            let reason = format!("object {} needs a box or a click that is its own", prompt.object);
+            return invalid("prompts", reason);
+        }
+    }
+    for Accepted { frame, labels } in accepted.iter().flatten() {
+        clip.check_index(*frame)?;
+        labels.as_ref().map_or(Ok(()), |labels| fill("accepted", labels))?;
+    }
+    if let Some([object, number]) =
+        numbers.iter().find(|[object, number]| !is_object(*object) || *number == NOTHING_SAID)
+    {
+        let reason =
+            format!("object {object} cannot get the number {number}: objects are 1 to 254, the background is 0");
+        return invalid("objects", reason);
+    }
+    for object in locked.iter().chain(named).flatten() {
+        if !is_object(*object) {
+            return invalid("locked", format!("{object} is no number of an object: these are 1 to 254"));
+        }
+    }
+    let is_locked = |object: u8| match locked {
+        Some(locked) => locked.contains(&object),
+        None => clip.locked[usize::from(object)],
+    };
+    match said_of_locked(clip, annotations, &is_locked) {
+        Some(object) => Err(Error::ObjectLocked { object }),
+        None => Ok(()),
+    }
+}
+
+/// A locked object of which something new is said.
+fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations, is_locked: &dyn Fn(u8) -> bool) -> Option<u8> {
+    let Annotations { corrections, prompts, numbers, .. } = annotations;
+    let before = |frame: usize| clip.frames[frame].said.clone().unwrap_or_default();
+    for painted in corrections {
+        let (before, mut said) = (before(painted.frame), before(painted.frame));
+        said.paint(painted);
+        let changed = |object: &u8| is_locked(*object) && !said.agrees(&before, *object);
+        if let Some(object) = (1..NOTHING_SAID).find(changed) {
+            return Some(object);
+        }
+    }
+    let prompted = prompts
+        .iter()
+        .find(|prompt| is_locked(prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt));
+    let deleted = || {
+        let deletes =
+            |[object, number]: &&[u8; 2]| *number == 0 && is_locked(*object) && !clip.frames_with(*object).is_empty();
+        numbers.iter().find(deletes).map(|[object, _]| *object)
+    };
+    prompted.map(|prompt| prompt.object).or_else(deleted)
+}
