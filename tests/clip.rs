@@ -216,12 +216,12 @@ fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
         assert!(matches!(SegmentedClip::from_bytes(bytes), Err(Error::InvalidOption { name: "state", .. })));
     };
     damaged(&bytes).iter().for_each(|damaged| refused(damaged));
-    let old = [b"VERCLIP3", &bytes[MARK..bytes.len() - 8]].concat();
+    let old = [b"VERCLIP4", &bytes[MARK..bytes.len() - 8]].concat();
     assert!(SegmentedClip::from_bytes(&old).unwrap_err().to_string().contains("not of this version"));
 }
 
 /// Length of the mark before what is kept.
-const MARK: usize = concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n").len();
+const MARK: usize = concat!("VERCLIP5 ", env!("CARGO_PKG_VERSION"), "\n").len();
 
 /// Bytes with one bit changed, cut off, left out, added.
 fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
@@ -238,7 +238,8 @@ fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
 fn a_clip_knows_its_frames() {
     let (frames, _) = moving_and_resting();
     let mut clip = moving_and_resting_clip();
-    let mut correction = clip.correct(3, &[1; 160 * 120], Spread::Both).unwrap();
+    let corrections = vec![Painted { frame: 3, object: None, labels: vec![1; 160 * 120], spread: Spread::Both }];
+    let mut correction = clip.annotate(Annotations { corrections, ..Annotations::default() }).unwrap();
     assert!(matches!(clip.frame(3, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     assert!(matches!(correction.take(&mut clip, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     correction.take(&mut clip, &frames[3]).unwrap();

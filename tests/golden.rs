@@ -5,7 +5,7 @@
 use std::fs;
 
 use serde_json::{Value, json};
-use veronese::clip::{ClipFrame, ClipOptions, ClipSegmenter, Spread, StreamSegmenter};
+use veronese::clip::{Annotations, ClipFrame, ClipOptions, ClipSegmenter, Painted, Spread, StreamSegmenter};
 use veronese::codecs::decode_image;
 use veronese::{
     AffineMotion, Correction, FitOptions, Frame, Measurements, Method, MotionCount, Quality, SegmentOptions,
@@ -108,7 +108,9 @@ fn clip(frames: &[Frame], asked: &Value) -> Answer {
         let mut clip = pairs.conclude();
         for said in asked["corrections"].as_array().into_iter().flatten() {
             let labels = filled(&frames[0], &said["box"], said["label"].as_u64().unwrap() as u8, 255);
-            let mut correction = clip.correct(said["frame"].as_u64().unwrap() as usize, &labels, Spread::Both).unwrap();
+            let frame = said["frame"].as_u64().unwrap() as usize;
+            let corrections = vec![Painted { frame, object: None, labels, spread: Spread::Both }];
+            let mut correction = clip.annotate(Annotations { corrections, ..Annotations::default() }).unwrap();
             while let Some(wanted) = correction.wanted() {
                 correction.take(&mut clip, &frames[wanted]).unwrap();
             }

@@ -133,13 +133,15 @@ pub(super) struct Said {
     prompts: Vec<Outlined>,
     /// By object, ascending: 0 at separate pieces that strokes have taken away, 255 elsewhere.
     pieces: Vec<(u8, Runs)>,
+    /// By object, ascending: 1 where it was when strokes were first drawn in the frame.
+    bases: Vec<(u8, Runs)>,
     /// Objects that the frame speaks of: they are followed from here.
     pub(super) speaks_of: Vec<u8>,
     /// Other objects of a person that labels which name none take pixels from.
     pub(super) takes_from: Vec<u8>,
 }
 
-saved!(Said { painted, prompts, pieces, speaks_of, takes_from });
+saved!(Said { painted, prompts, pieces, bases, speaks_of, takes_from });
 
 /// What is painted: a label of each full-size pixel, or 255 for nothing.
 #[derive(Clone, Debug, PartialEq)]
@@ -178,7 +180,7 @@ impl Said {
 
     pub(super) fn is_valid(&self, pixels: usize) -> bool {
         let painted = self.painted.iter().map(|strokes| &strokes.labels);
-        let pieces = self.pieces.iter().map(|(_, labels)| labels);
+        let pieces = self.pieces.iter().chain(&self.bases).map(|(_, labels)| labels);
         painted.chain(self.prompts.iter().map(|of| &of.labels)).chain(pieces).all(|labels| labels.is_valid(pixels))
     }
 
@@ -281,6 +283,26 @@ impl Said {
             let at = self.pieces.partition_point(|(of, _)| *of < object);
             self.pieces.insert(at, (object, Runs::of(&piece)));
         }
+    }
+
+    /// Keeps where objects are before strokes change them, by the labels that the frame shows.
+    pub(super) fn keep_bases(&mut self, shown: &[u8]) {
+        let mut is_shown = [false; 256];
+        shown.iter().for_each(|&label| is_shown[usize::from(label)] = true);
+        let is_stroked = |k: u8| {
+            self.strokes(k).is_some() || self.map_of(k).is_some() && (is_shown[usize::from(k)] || self.names_in_map(k))
+        };
+        let base = |k: u8| {
+            let known = self.bases.iter().find(|(of, _)| *of == k).map(|(_, base)| base.clone());
+            let now = || Runs::of(&shown.iter().map(|&label| u8::from(label == k)).collect::<Vec<u8>>());
+            (k, known.unwrap_or_else(now))
+        };
+        self.bases = (1..NOTHING_SAID).filter(|&k| is_stroked(k)).map(base).collect();
+    }
+
+    /// Where an object was before strokes were drawn: 1 at its pixels. There is none without strokes.
+    pub(super) fn base(&self, object: u8) -> Option<Vec<u8>> {
+        self.bases.iter().find(|(of, _)| *of == object).map(|(_, base)| base.values())
     }
 
     fn names_in_map(&self, object: u8) -> bool {

@@ -58,8 +58,8 @@ pub(super) struct FrameCorrection {
     alone: Vec<usize>,
     /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
-    /// What the corrected frame said and showed before.
-    before: (Said, Runs),
+    /// What the corrected frame showed before.
+    before: Runs,
     /// Which objects of each frame of the scene were a person's.
     persons: Vec<Numbers>,
 }
@@ -167,6 +167,7 @@ impl FrameCorrection {
             }
         }
         said.drop_pieces(&before, &now, clip.size()[0]);
+        said.keep_bases(&now);
         let persons = clip.persons_in(self.index);
         let mut touched = [false; 256];
         let mut touch = |number: u8| touched[usize::from(number)] = true;
@@ -187,7 +188,7 @@ impl FrameCorrection {
         let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
         let is_new = !said.is_same(&before);
         clip.frames[self.index].said = (!said.is_empty()).then_some(said);
-        self.before = (before, Runs::of(&now));
+        self.before = Runs::of(&now);
         self.speak(clip);
         let starts: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
         let is_touched = |k: &u8| {
@@ -286,7 +287,7 @@ impl FrameCorrection {
 
     /// The corrected frame at once, from what it shows now.
     fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, changes: &mut Changes) {
-        let now = at_size(&self.before.1.values(), NOTHING_SAID, clip.size()[0], look);
+        let now = at_size(&self.before.values(), NOTHING_SAID, clip.size()[0], look);
         let seeds = |number: u8| clip.seeds_at(self.index, number, look);
         let known = Known { seeds: &seeds, found: &now, flows: None };
         let mut claims = Vec::new();
@@ -423,36 +424,49 @@ impl FrameCorrection {
             }
         }
         let said = clip.frames[t].said.clone().unwrap_or_default();
+        let hand = said.by_hand().unwrap_or_default();
         let mut best = vec![0.0f32; width * height];
         for (number, claim) in claims {
-            let Some(claim) = claim.as_ref().filter(|claim| claim.mask.contains(&1)) else { continue };
-            let mut mask = vec![0u8; look.pixels()];
-            claim.area.pixels(look.size[0]).zip(&claim.mask).for_each(|(p, &inside)| mask[p] = inside);
-            let mut full = upsample(&mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
-            if t == self.index {
-                local::keep(&mut full, *number, &self.before.1.values(), [&self.before.0, &said], width);
+            let claim = claim.as_ref().filter(|claim| claim.mask.contains(&1));
+            let (base, seeds) = (said.base(*number), said.seeds(*number));
+            let mut full = vec![0; width * height];
+            if let Some(claim) = claim {
+                let mut mask = vec![0u8; look.pixels()];
+                claim.area.pixels(look.size[0]).zip(&claim.mask).for_each(|(p, &inside)| mask[p] = inside);
+                full = upsample(&mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
+            } else if seeds.is_none() {
+                continue;
             }
-            for p in (0..full.len()).filter(|&p| full[p] > 0 && !held[p]) {
-                let odds = claim.at(look.pixel(p, width), look.size[0]).max(f32::MIN_POSITIVE);
+            for (inside, seed) in full.iter_mut().zip(seeds.iter().flatten()) {
+                match seed {
+                    Seed::Nothing => {}
+                    Seed::Other => *inside = 0,
+                    Seed::Object => *inside = 1,
+                }
+            }
+            if let Some((base, seeds)) = base.zip(seeds.as_ref()) {
+                local::keep(&mut full, &base, seeds, width);
+            }
+            // What a label map says to be ground stays it, but for objects that were there.
+            let is_free = |p: usize| !held[p] && (hand.get(p) != Some(&0) || shown[p] == *number);
+            for p in (0..full.len()).filter(|&p| full[p] > 0 && is_free(p)) {
+                let odds =
+                    claim.map_or(0.0, |claim| claim.at(look.pixel(p, width), look.size[0])).max(f32::MIN_POSITIVE);
                 if odds > best[p] {
                     (best[p], labels[p]) = (odds, *number);
                 }
             }
         }
         let certain = 2.0 * model().certain;
-        for (number, outline) in said.outlines().filter(|(number, _)| decided(*number)) {
-            for p in (0..outline.len()).filter(|&p| outline[p] == number && !held[p]) {
-                (best[p], labels[p]) = (certain, number);
-            }
-        }
         let shown_here = |p: usize| match shown[p] {
             NOTHING_SAID => 0,
             label => label,
         };
         let erases = said.names_none();
-        for (p, hand) in said.by_hand().unwrap_or_default().into_iter().enumerate() {
+        for (p, hand) in hand.into_iter().enumerate() {
             let is_locked = held[p] && (clip.locked[usize::from(shown_here(p))] || shown[p] == NOTHING_SAID);
-            if hand == NOTHING_SAID || is_locked || hand == 0 && held[p] && !erases {
+            // Ground of a label map is that of the objects that it names.
+            if hand == NOTHING_SAID || is_locked || hand == 0 && labels[p] != NOTHING_SAID && !erases {
                 continue;
             }
             (best[p], labels[p], held[p]) = (certain, hand, false);
