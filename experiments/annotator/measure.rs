@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use veronese::clip::Prompt;
+use veronese::clip::{Click, Prompt, Spread};
 
 use crate::cases::{Case, Data};
 use crate::overlap::{between, each, masks, mean, of_label, worst};
@@ -130,7 +130,7 @@ fn truths_of(data: &Data) -> Vec<Vec<bool>> {
 fn given<'a>(automatic: &Session<'a>, truths: &[Vec<bool>]) -> Result<(Session<'a>, f64), Failure> {
     let mut session = automatic.clone();
     let given: Vec<u8> = truths[0].iter().map(|&object| if object { GIVEN } else { 0 }).collect();
-    session.correct(0, &given)?;
+    session.paint(0, &given)?;
     let mask = between(&masks(&session.labels, GIVEN), truths);
     Ok((session, mask))
 }
@@ -159,7 +159,7 @@ fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Option
         let said = said.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
         View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, said);
         let before = session.effort.time;
-        session.correct(worst, said)?;
+        session.paint(worst, said)?;
         seconds.push((session.effort.time - before).as_secs_f64());
         rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
         dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
@@ -175,14 +175,16 @@ fn prompts(mask: &[bool], width: usize) -> [Prompt; 2] {
     let (top, bottom) = (inside.first().map_or(0, |p| p / width), inside.last().map_or(0, |p| p / width));
     let depths = depths(mask, width);
     let deepest = (0..mask.len()).rev().max_by_key(|&p| depths[p]).unwrap_or(0);
-    [Prompt::Box([left, top, right + 1 - left, bottom + 1 - top]), Prompt::Click([deepest % width, deepest / width])]
+    let within = Some([left, top, right + 1 - left, bottom + 1 - top]);
+    let click = Click { at: [deepest % width, deepest / width], inside: true };
+    let nothing = Prompt { frame: 0, object: GIVEN, clicks: Vec::new(), within: None, spread: Spread::Both };
+    [Prompt { within, ..nothing.clone() }, Prompt { clicks: vec![click], ..nothing }]
 }
 
 fn pointed(automatic: &Session<'_>, prompt: Prompt, truths: &[Vec<bool>]) -> Result<Pointed, Failure> {
     let mut session = automatic.clone();
-    let (said, took) = session.outline(0, prompt, GIVEN)?;
-    let at_once = each(&[of_label(&said, GIVEN)], &truths[..1])[0];
-    session.correct(0, &said)?;
+    let (shown, took) = session.point(prompt)?;
+    let at_once = each(&[of_label(&shown, GIVEN)], &truths[..1])[0];
     let through = between(&masks(&session.labels, GIVEN), truths);
     Ok(Pointed { at_once, through, milliseconds: 1e3 * took.as_secs_f64() })
 }

@@ -67,7 +67,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let mut session = Session::open(&data.frames, options.quality, &options.pairs(case))?;
     let given: Vec<u8> = data.truths[0].iter().map(|&label| if label > 0 { GIVEN + label } else { 0 }).collect();
-    session.correct(0, &given)?;
+    session.paint(0, &given)?;
     dump::write(options, case, "masks", &data, &session.labels)?;
     let frame_milliseconds = session.effort.per_frame();
 
@@ -101,7 +101,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         };
         View { width, truth: &truths[worst], found: &found }.draw(GIVEN + number, free, &mut said);
         let mut corrected = session.clone();
-        corrected.correct(worst, &said)?;
+        corrected.paint(worst, &said)?;
         dump::write(options, case, &format!("strokes-{number}"), &data, &corrected.labels)?;
         let pixels = session.labels.iter().flatten().zip(corrected.labels.iter().flatten());
         let changed = |&(&a, &b): &(&u8, &u8)| a != b && (is_other(a, number) || is_other(b, number));

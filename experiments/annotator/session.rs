@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, Prompt, SegmentedClip};
+use veronese::clip::{
+    Annotations, ClipJob, ClipOptions, ClipSegmenter, FramePairs, Painted, Prompt, SegmentedClip, Spread,
+};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use crate::Failure;
@@ -63,22 +65,37 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// What is to be said of a frame where a prompt points to an object, and how long it took to find that out.
-    pub(crate) fn outline(&self, index: usize, prompt: Prompt, number: u8) -> Result<(Vec<u8>, Duration)> {
+    /// Paints a frame, and lets that spread through the clip.
+    pub(crate) fn paint(&mut self, frame: usize, labels: &[u8]) -> Result<()> {
+        let painted = Painted { frame, object: None, labels: labels.to_vec(), spread: Spread::Both };
         let start = Instant::now();
-        let said = self.clip.outline(index, &self.frames[index], prompt, number)?;
-        Ok((said, start.elapsed()))
+        let job = self.clip.annotate(Annotations { corrections: vec![painted], ..Annotations::default() })?;
+        self.effort.time += start.elapsed();
+        self.spread(job)
     }
 
-    /// Corrects a frame and lets that spread through the clip.
-    pub(crate) fn correct(&mut self, index: usize, said: &[u8]) -> Result<()> {
+    /// Points to an object, and lets that spread through the clip. Returns what the frame shows at once, and how long that took.
+    pub(crate) fn point(&mut self, prompt: Prompt) -> Result<(Vec<u8>, Duration)> {
+        let index = prompt.frame;
         let start = Instant::now();
-        let mut correction = self.clip.correct(index, said, veronese::clip::Spread::Both)?;
-        while let Some(wanted) = correction.wanted() {
-            correction.take(&mut self.clip, &self.frames[wanted])?;
+        let mut job = self.clip.annotate(Annotations { prompts: vec![prompt], ..Annotations::default() })?;
+        if job.wanted() == Some(index) {
+            job.take(&mut self.clip, &self.frames[index])?;
+        }
+        let took = start.elapsed();
+        self.effort.time += took;
+        let labels = self.clip.frame(index, &self.frames[index])?.labels;
+        self.spread(job)?;
+        Ok((labels, took))
+    }
+
+    fn spread(&mut self, mut job: ClipJob) -> Result<()> {
+        let start = Instant::now();
+        while let Some(wanted) = job.wanted() {
+            job.take(&mut self.clip, &self.frames[wanted])?;
         }
         self.effort.time += start.elapsed();
-        self.effort.frames += correction.changed().len();
+        self.effort.frames += job.changed().len();
         self.look()
     }
 }
