@@ -14,6 +14,7 @@ mod golden;
 mod literal;
 mod paper;
 mod pipeline;
+mod promises;
 mod properties;
 mod support;
 mod synthetic;

@@ -466,10 +466,18 @@ impl FrameCorrection {
         for (p, hand) in hand.into_iter().enumerate() {
             let is_locked = held[p] && (clip.locked[usize::from(shown_here(p))] || shown[p] == NOTHING_SAID);
             // Ground of a label map is that of the objects that it names.
-            if hand == NOTHING_SAID || is_locked || hand == 0 && labels[p] != NOTHING_SAID && !erases {
+            let is_others = if hand == 0 { labels[p] != NOTHING_SAID && !erases } else { !decided(hand) };
+            if hand == NOTHING_SAID || is_locked || is_others {
                 continue;
             }
             (best[p], labels[p], held[p]) = (certain, hand, false);
+        }
+        for (p, label) in labels.iter_mut().enumerate().filter(|(_, label)| **label == NOTHING_SAID) {
+            let below = usize::from(found[p]);
+            if shown[p] != NOTHING_SAID && kept[below] && !persons[below] && !decided(found[p]) {
+                // Nothing is given back to what is kept as it is.
+                *label = 0;
+            }
         }
         let [w, h] = clip.working_size();
         let old = before.map(|layer| layer.odds.odds(w, h));
