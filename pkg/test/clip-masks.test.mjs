@@ -69,11 +69,17 @@ test('the square is found by itself', () => {
   assert.deepEqual(idsOf(whole), ALL.map(() => [1]));
 });
 
-test('what is merged into a locked object is locked with it', () => {
-  const lockedBy = (options) => asked(list, options).locked;
-  assert.deepEqual(lockedBy({ edits: { merge: [[2, 5], [6, 7]], names: { 2: 'car' } } }), Uint8Array.of(2, 5));
-  assert.deepEqual(lockedBy({ locked: [3], edits: { locked: [4, 3] } }), Uint8Array.of(3, 4));
-  assert.deepEqual([lockedBy({ locked: [] }), lockedBy({ edits: {} })], [new Uint8Array(), undefined]);
+test('what is merged into a locked object is locked with it, and what into a named one is named', () => {
+  const found = (options) => {
+    const { locked, edits: { named } } = asked(list, options);
+    return { locked: locked && [...locked], named: named && [...named] };
+  };
+  const merge = [[2, 5], [6, 7]];
+  assert.deepEqual(found({ edits: { merge, names: { 2: 'car' } } }), { locked: undefined, named: [2, 5] });
+  assert.deepEqual(found({ locked: [3], edits: { merge, locked: [6, 3] } }), { locked: [3, 6, 7], named: undefined });
+  assert.deepEqual(found({ edits: { merge, locked: [2] } }), { locked: [2, 5], named: undefined });
+  assert.deepEqual(found({ locked: [], edits: { names: {} } }), { locked: [], named: [] });
+  assert.deepEqual(found({ edits: {} }), { locked: undefined, named: undefined });
 });
 
 for (const [way, segment] of WAYS) {

@@ -37,22 +37,27 @@ describe('clips in the module', () => {
     glue.beginClip(clip, true, { quality: 'fast' });
     const pairs = [0, 1, 2].map((t) => glue.pushClip(clip, frame(t, SIZE)));
     assert.ok(pairs.every((pair) => pair instanceof Uint8Array));
-    const nothing = new Uint8Array(64 * 48).fill(255);
-    const early = () => [glue.saveClip(clip), glue.previewClip(again), glue.clipFrame(clip, 0, frame(0, SIZE)), glue.correctClip(clip, 0, nothing, true, true), glue.takeCorrection(clip, frame(0, SIZE)), glue.renumberClip(clip, 1, 2), glue.reserveClip(clip, nothing), glue.lockClip(clip, nothing), glue.pushClip(again, frame(0, SIZE)), glue.concludeClip(again)];
-    assert.deepEqual(early(), Array(10).fill(null));
+    const left = new Uint8Array(64 * 48).fill(255).fill(9, 0, 999);
+    const said = (frame, labels = left) => ({ masks: [], corrections: [{ frame, labels, propagate: 'none' }], prompts: [], numbers: new Uint8Array() });
+    const early = () => [glue.saveClip(clip), glue.previewClip(again), glue.clipFrame(clip, 0, frame(0, SIZE)), glue.annotateClip(clip, said(0)), glue.takeAnnotations(clip, frame(0, SIZE)), glue.pushClip(again, frame(0, SIZE)), glue.concludeClip(again)];
+    assert.deepEqual(early(), Array(7).fill(null));
     const summary = { length: 3, ...SIZE, dropped: 0 };
     assert.deepEqual(glue.concludeClip(clip), summary);
     assert.equal(glue.pushClip(clip, frame(3, SIZE)), null, 'it is concluded');
     assert.equal(glue.previewClip(clip), null);
-    assert.equal(glue.takeCorrection(clip, frame(0, SIZE)), null, 'no correction has begun');
+    assert.equal(glue.takeAnnotations(clip, frame(0, SIZE)), null, 'nothing was said');
     const saved = glue.saveClip(clip);
     assert.throws(() => glue.clipFrame(clip, 3, frame(3, SIZE)), { code: 'invalid-option' });
-    assert.throws(() => glue.correctClip(clip, 3, nothing, true, true), { code: 'invalid-option' });
-    assert.throws(() => glue.correctClip(clip, 0, nothing.slice(1), true, true), { code: 'invalid-option' });
-    assert.throws(() => glue.renumberClip(clip, 0, 1), { code: 'invalid-option' });
+    assert.throws(() => glue.annotateClip(clip, said(3)), { code: 'invalid-option' });
+    assert.throws(() => glue.annotateClip(clip, said(0, left.slice(1))), { code: 'invalid-option' });
+    assert.throws(() => glue.annotateClip(clip, { ...said(0), numbers: Uint8Array.of(0, 1) }), { code: 'invalid-option' });
+    assert.throws(() => glue.annotateClip(clip, { ...said(0), locked: Uint8Array.of(9) }), { code: 'object-locked', message: /object 9 is locked/ });
+    assert.deepEqual(glue.saveClip(clip), saved, 'nothing has changed');
 
-    glue.correctClip(clip, 1, nothing.fill(9, 0, 999), false, false);
-    assert.deepEqual(glue.takeCorrection(clip, frame(1, SIZE)).changed, [1], 'it changes where it is said');
+    assert.deepEqual(glue.annotateClip(clip, said(1)), { changed: [], wanted: 1 });
+    const { changed, changes } = glue.takeAnnotations(clip, frame(1, SIZE));
+    assert.deepEqual(changed, [1], 'it changes where it is said');
+    assert.ok(changes.find(({ object }) => object === 9).gained >= 999);
     glue.restoreClip(clip, saved, false);
 
     glue.beginClip(again, true, { quality: 'fast' });

@@ -1,6 +1,6 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
 
 /** A frame: a URL, a file, a bitmap, or pixels. */
 export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
@@ -47,8 +47,11 @@ export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, key
   error: CustomEvent<VeroneseError>;
 }
 
-/** An object that a box or a click points to. */
-export type ElementPrompt = { label: number; box: readonly [x: number, y: number, width: number, height: number] } | { label: number; click: readonly [x: number, y: number] };
+/** An object that clicks and a box point to, as a {@link ClipPrompt} without its frame. */
+export type ElementPrompt =
+  | { object: number; clicks?: readonly ClipClick[] | undefined; box?: readonly [x: number, y: number, width: number, height: number] | undefined }
+  | { label: number; box: readonly [x: number, y: number, width: number, height: number] }
+  | { label: number; click: readonly [x: number, y: number] };
 
 /**
  * Segments two frames or a clip, and shows the masks over the frames.
@@ -105,12 +108,14 @@ export class VeroneseSegmenterElement extends HTMLElement {
    * resolves to the indices of the frames that change. The event `veronese-correction` comes first, and stops it if its default is
    * prevented. Corrections are made one after another; the frame that is shown follows at once. When one has spread, the event `frame` comes
    * for each frame that it has changed, then `tracks`. Where it fails or is stopped ({@link abort}), nothing has changed. To undo one, say
-   * what was said of the frame before; labels that are all 255 take everything back. Instead of labels, a box or a click points to an
-   * object, as a {@link ClipPrompt} does.
+   * what was said of the frame before; labels that are all 255 take back what was painted. With `object` the labels are about that one alone.
+   * Instead of labels, clicks and a box point to an object, as a {@link ClipPrompt} does.
    */
-  correct(frame: number, labels: Uint8Array | ElementPrompt, options?: { propagate?: ClipPropagation | undefined }): Promise<number[]>;
-  /** Objects of the clip that later corrections of others do not change, as the option `locked` of a clip; all others can be changed. */
+  correct(frame: number, labels: Uint8Array | ElementPrompt, options?: { propagate?: ClipPropagation | undefined; object?: number | undefined }): Promise<number[]>;
+  /** Objects of the clip of which no later correction changes a pixel, as the option `locked` of a clip; all others can be changed. */
   lock(objects: readonly number[]): void;
+  /** Frames of the clip in which later corrections of other frames change nothing, as the option `accepted` of a clip; no others. */
+  accept(frames: readonly number[]): void;
   /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */
   abort(): void;
   /** One number per pixel of what is shown: labels, or groups if the element is `grouped`; of a clip, objects. 255 is unlabelled. */

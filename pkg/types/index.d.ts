@@ -213,40 +213,63 @@ export interface ClipProgress {
 /** Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere. */
 export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
 
-/** Labels of one frame of a clip that a person is certain of. */
+/** What a person is certain of in one frame of a clip, painted. */
 export interface ClipCorrection {
-  /** Index of the frame, from 0. Each frame has one correction at most. */
+  /** Index of the frame, from 0. Each frame has one correction of each object at most, and one label map. */
   frame: number;
-  /** Default: `'both'`. */
+  /**
+   * The object that it is about, 1 to 254; nothing is said of others. Without it the labels are a map: it is about the objects that it names,
+   * and what it calls background is none of these. A map that names none says of all objects where they are not, as an eraser does.
+   */
+  object?: number | undefined;
+  /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
   propagate?: ClipPropagation | undefined;
   /**
-   * One label per pixel, row by row: 0 for the background, the number of an object, a number that no object has for a new object, or 255
-   * where nothing is certain.
+   * One label per pixel, row by row: the number of an object, a number that no object has for a new object, 0 where none of the objects is
+   * that it is about, or 255 where nothing is certain. With `object` there are the labels 0, 255 and its number. It replaces what was painted in
+   * the frame of the same object, or as a map; one that is 255 everywhere takes it back.
    */
   labels: Uint8Array;
 }
 
+/** A pixel, and whether it belongs to the object: 1 if it does, -1 if not. */
+export type ClipClick = readonly [x: number, y: number, sign: 1 | -1];
+
 /**
- * Points to an object in one frame of a clip: its mask there is found at once, and the object is followed through the clip. A frame may have
- * several, of different objects, and a {@link ClipCorrection}. They are added to what is said of the frame, after all other corrections.
+ * Points to an object in one frame of a clip: its mask there is found at once, and the object is followed through the clip. Clicks and a box
+ * together describe one object; it needs a box or a click that is its own. A prompt stays one: the next of the same object and frame
+ * replaces it, and one without clicks and box takes it back. It says nothing of other objects.
  */
 export type ClipPrompt = {
-  /** Index of the frame, from 0. */
+  /** Index of the frame, from 0. Each frame has one prompt of each object at most. */
   frame: number;
-  /** Default: that of a correction of the frame, otherwise `'both'`. */
+  /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
   propagate?: ClipPropagation | undefined;
-  /** The number of the object, 1 to 254; one that no object has makes a new object. */
-  label: number;
 } & (
   | {
+      /** The number of the object, 1 to 254; one that no object has makes a new object. */
+      object: number;
+      /** Pixels that belong to the object or do not; those that do are in the box, if there is one. */
+      clicks?: readonly ClipClick[] | undefined;
       /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
+      box?: readonly [x: number, y: number, width: number, height: number] | undefined;
+    }
+  // in short
+  | {
+      /** The number of the object. */
+      label: number;
       box: readonly [x: number, y: number, width: number, height: number];
     }
   | {
+      /** The number of the object. */
+      label: number;
       /** Column and row of a pixel of the object. */
       click: readonly [x: number, y: number];
     }
 );
+
+/** A frame that a person finds right: its index, or with all its labels as the person saw them, one per pixel, row by row. */
+export type ClipAccepted = number | { frame: number; labels: Uint8Array };
 
 /**
  * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
@@ -286,7 +309,10 @@ export interface ClipEdits {
   delete?: readonly number[] | undefined;
   /** The same as `delete`. */
   background?: readonly number[] | undefined;
-  /** Names by number, for {@link ClipTrack.name}. Objects with a name are locked. */
+  /**
+   * Names by number, for {@link ClipTrack.name}. Only what is said of an object itself changes one that has a name. Where this is given, it
+   * replaces the names of a `state`.
+   */
   names?: Readonly<Record<number, string>> | undefined;
   /** As the option `locked`. */
   locked?: readonly number[] | undefined;
@@ -309,29 +335,40 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    */
   masks?: readonly ClipMask[] | undefined;
   /**
-   * Corrections of some frames, with the numbers of an earlier run. They hold there to the pixel, and the objects that they name are followed
-   * from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it says
-   * anything.
+   * What is painted in some frames, with the numbers of an earlier run. It holds there to the pixel, and the objects that it is about are
+   * followed from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it
+   * says anything.
+   *
+   * Nothing that a person painted, gave, prompted, named, accepted or locked changes when something else is said; an object that was found
+   * automatically changes by the pixels that another one takes from it or gives back.
    */
   corrections?: readonly (ClipCorrection | ClipPrompt)[] | undefined;
+  /** Clicks and boxes that point to objects in some frames, after what is painted. They may be among the corrections as well. */
+  prompts?: readonly ClipPrompt[] | undefined;
+  /**
+   * Frames that are right. From then on only what is painted or pointed to in such a frame changes labels there, and the objects in it are
+   * followed from it as from a correction. Without `labels` a frame has those of now: as masks and a `state` have it, before corrections. Where
+   * this is given, it replaces what a `state` has accepted; frames that stay accepted stay as they are.
+   */
+  accepted?: readonly ClipAccepted[] | undefined;
   /** Changes of whole objects, after the corrections. */
   edits?: ClipEdits | undefined;
   /**
-   * Numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of. Where this or a
-   * name is given, it replaces what a `state` has locked.
+   * Numbers of objects of which nothing changes a pixel. Who says anything new of one, or deletes it, gets the error `object-locked`. Where this
+   * or that of the edits is given, it replaces what a `state` has locked.
    */
   locked?: readonly number[] | undefined;
   /**
    * The bytes that {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
-   * `motions`, `quality` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
-   * nothing takes it back); corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
+   * `motions`, `quality` and `lookAhead` are those of the state. What was said stays until it is replaced or taken back;
+   * corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */
   state?: Uint8Array | undefined;
-  /** Returns only the frames that `masks`, `corrections` and `edits` change. Default: false. */
+  /** Returns only the frames that `masks`, `corrections`, `prompts`, `accepted` and `edits` change. Default: false. */
   changesOnly?: boolean | undefined;
   /**
-   * Called with the index of each frame that masks, corrections and edits change, as soon as they do: the frame that is spoken of first, then
+   * Called with the index of each frame that masks, corrections, prompts and edits change, as soon as they do: the frame that is spoken of first, then
    * those to which it spreads. A frame may change again before it is returned; the clip returns frames in order, afterwards. `segmented`
    * gives the frame as it is now, until what the call returns is settled, and the clip waits for that. If it throws, the clip ends with that
    * exception.
@@ -407,6 +444,18 @@ export interface ClipTracks {
   dropped: number;
 }
 
+/** Pixels of an object in a frame that what was said has changed. */
+export interface ClipChange {
+  /** Index of the frame, from 0. */
+  frame: number;
+  /** The number of the object, 0 for the background. */
+  object: number;
+  /** Number of pixels that it has now and had not. */
+  gained: number;
+  /** Number of pixels that it had and has no more. */
+  lost: number;
+}
+
 /**
  * The frames of a clip, in order, as they are finished. Leaving the loop or calling `return()` frees what the clip holds, some megabytes
  * and its worker. An iterator that is dropped before its end does so when it is collected as garbage; its source is not closed then.
@@ -419,6 +468,11 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
    * package. Undefined before the first frame has been returned, and for a stream.
    */
   state(): Promise<Uint8Array | undefined>;
+  /**
+   * What masks, corrections, prompts and accepted labels have changed, by frame, then by object, with the numbers before any edit; edits are not
+   * counted. Empty before the first frame has been returned, and for a stream.
+   */
+  changes(): Promise<ClipChange[]>;
 }
 
 /** The source of the WebAssembly module. */
@@ -453,6 +507,7 @@ export type ErrorCode =
   | 'not-finite'
   | 'invalid-option'
   | 'invalid-input'
+  | 'object-locked' // something new is said of a locked object of a clip
   | 'unreadable-image'
   // the environment
   | 'wasm-load-failed'

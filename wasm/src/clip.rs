@@ -1,22 +1,22 @@
 //! Calls on clips. What there is of a clip stays in the module between calls; the caller gives it a number.
 //!
 //! A stream is pushed frame by frame until it is finished. A whole clip is pushed, then concluded (or restored from its saved state); after
-//! that it gives labels of any frame and takes corrections. All calls return `null` if there is no such clip, or it is not that far.
+//! that it gives labels of any frame and takes what a person says. All calls return `null` if there is no such clip, or it is not that far.
 //!
 //! The handle is a number, not an exported object, because the package replaces the instance after a panic: a pointer into the old instance
 //! would be used in the new one. A number that is used only once is simply not found there.
 
 use std::cell::RefCell;
 
-use js_sys::Uint8Array;
+use js_sys::{Array, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 use crate::frames::{frame_from_pixels, pair_option};
 use crate::plain::{Record, list, numbers};
 use crate::{Failure, entries, invalid};
 use veronese::clip::{
-    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Prompt,
-    SegmentedClip, Spread, StreamSegmenter,
+    Accepted, Annotations, Changed, Click, ClipFrame, ClipJob, ClipObject, ClipOptions, ClipSegmenter, FramePairs,
+    MAX_LOOK_AHEAD, Painted, Prompt, SegmentedClip, Spread, StreamSegmenter,
 };
 use veronese::{AffineMotion, Error, Frame};
 
@@ -31,7 +31,7 @@ enum Clip {
     Pairs(ClipSegmenter),
     Segmented {
         clip: SegmentedClip,
-        correction: Option<ClipCorrection>,
+        job: Option<ClipJob>,
         /// Whether it came as bytes.
         restored: bool,
     },
@@ -145,85 +145,35 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
     segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
 }
 
-/// Keeps numbers of a concluded clip for objects of a person: those that were found get others. Returns the indices of the frames that
-/// change.
-#[wasm_bindgen(js_name = reserveClip)]
-pub fn reserve_clip(clip: u32, numbers: &[u8]) -> Result<JsValue, JsValue> {
-    segmented(clip, &mut |clip, _| Ok(indices(&clip.reserve(numbers))))
-}
-
-/// The objects of a concluded clip that no correction of others changes; all others can be changed from now on.
-#[wasm_bindgen(js_name = lockClip)]
-pub fn lock_clip(clip: u32, objects: &[u8]) -> Result<JsValue, JsValue> {
-    segmented(clip, &mut |clip, _| {
-        clip.lock(objects);
-        Ok(JsValue::UNDEFINED)
-    })
-}
-
-/// Begins a correction of a concluded clip: what is certain of every pixel of a frame, 255 for nothing. It first wants that frame. Where it
-/// spreads is `forward`, `backward`, both or neither.
+/// Begins to apply all that a person says of a concluded clip, as `Annotations` of pkg/src/calls/messages.ts. Returns `{ wanted, changed, changes }`:
+/// the index of the frame to take next, `undefined` at the end, those of the frames that have changed, and at the end what objects have gained
+/// and lost.
 ///
 /// # Errors
-/// A `VeroneseError` of code `invalid-option`.
-#[wasm_bindgen(js_name = correctClip)]
-pub fn correct_clip(clip: u32, index: usize, labels: &[u8], forward: bool, backward: bool) -> Result<JsValue, JsValue> {
-    let spread = match (forward, backward) {
-        (true, true) => Spread::Both,
-        (true, false) => Spread::Forward,
-        (false, true) => Spread::Backward,
-        (false, false) => Spread::None,
-    };
-    segmented(clip, &mut |clip, correction| {
-        *correction = Some(clip.correct(index, labels, spread)?);
-        Ok(JsValue::UNDEFINED)
+/// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
+#[wasm_bindgen(js_name = annotateClip)]
+pub fn annotate_clip(clip: u32, annotations: &JsValue) -> Result<JsValue, JsValue> {
+    let mut given = Some(annotations_of(annotations));
+    segmented(clip, &mut |clip, job| {
+        let begun = job.insert(clip.annotate(given.take().unwrap_or_default())?);
+        Ok(news(begun, 0))
     })
 }
 
-/// What is to be said to [`correct_clip`] of a frame of a concluded clip when the object of a number is where a click (`[x, y]`) or a box
-/// (`[x, y, width, height]`) points to.
+/// Takes the frame that the annotations want. Returns what [`annotate_clip`] does, with the frames that have changed since the call before for
+/// the first time.
 ///
 /// # Errors
 /// As [`frame_of_clip`].
-#[wasm_bindgen(js_name = outlineClip)]
-pub fn outline_clip(clip: u32, index: usize, frame: &JsValue, prompt: &[u32], number: u8) -> Result<JsValue, JsValue> {
+#[wasm_bindgen(js_name = takeAnnotations)]
+pub fn take_annotations(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, &mut |clip, _| {
-        let prompt = match *prompt {
-            [x, y, width, height] => Prompt::Box([x, y, width, height].map(|side| side as usize)),
-            [x, y] => Prompt::Click([x, y].map(|at| at as usize)),
-            _ => return Err(Error::InvalidOption { name: "prompt", reason: "has two or four numbers".into() }),
-        };
-        clip.outline(index, &frame, prompt, number).map(|said| bytes(&said))
+    segmented(clip, &mut |clip, job| {
+        let Some(job) = job else { return Ok(JsValue::NULL) };
+        let known = job.changed().len();
+        job.take(clip, &frame)?;
+        Ok(news(job, known))
     })
-}
-
-/// Takes the frame that the correction wants. Returns `{ wanted, changed }`: the index of the next one, `undefined` at the end, and of the
-/// frames that have changed since the call before for the first time.
-///
-/// # Errors
-/// As [`frame_of_clip`].
-#[wasm_bindgen(js_name = takeCorrection)]
-pub fn take_correction(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
-    let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, &mut |clip, correction| {
-        let Some(under_way) = correction else { return Ok(JsValue::NULL) };
-        let known = under_way.changed().len();
-        under_way.take(clip, &frame)?;
-        let wanted = under_way.wanted().map(|index| index as f64);
-        let changed = indices(&under_way.changed()[known..]);
-        Ok(Record::new().set("wanted", &wanted.into()).set("changed", &changed).into_value())
-    })
-}
-
-/// Gives an object another number, 0 to make it background; numbers that no object has change nothing. Returns the indices of the frames
-/// that change.
-///
-/// # Errors
-/// A `VeroneseError` of code `invalid-option`.
-#[wasm_bindgen(js_name = renumberClip)]
-pub fn renumber_clip(clip: u32, object: u8, number: u8) -> Result<JsValue, JsValue> {
-    segmented(clip, &mut |clip, _| clip.renumber(object, number).map(|changed| indices(&changed)))
 }
 
 /// Ends a clip and frees its memory. Does nothing if there is no such clip.
@@ -244,7 +194,7 @@ fn keep_segmented(number: u32, clip: SegmentedClip, restored: bool) -> JsValue {
         .count("height", height)
         .count("dropped", clip.dropped())
         .into_value();
-    keep(number, Clip::Segmented { clip, correction: None, restored });
+    keep(number, Clip::Segmented { clip, job: None, restored });
     described
 }
 
@@ -264,13 +214,13 @@ fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Err
     Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
 }
 
-/// What is done with a clip that is concluded and with the correction that goes through it.
-type Work<'a> = &'a mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>;
+/// What is done with a clip that is concluded and with what is said of it.
+type Work<'a> = &'a mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipJob>) -> Result<JsValue, Error>;
 
 /// [`step`] for a clip that is concluded. Frames that are not those of a state are the state's fault.
 fn segmented(clip: u32, work: Work<'_>) -> Result<JsValue, JsValue> {
     step(clip, &mut |clip| match clip {
-        Clip::Segmented { clip, correction, restored } => Some(work(clip, correction).map_err(|error| match error {
+        Clip::Segmented { clip, job, restored } => Some(work(clip, job).map_err(|error| match error {
             Error::OtherFrame { .. } if *restored => Error::InvalidOption { name: "state", reason: error.to_string() },
             error => error,
         })),
@@ -284,6 +234,105 @@ fn bytes(bytes: &[u8]) -> JsValue {
 
 fn indices(indices: &[usize]) -> JsValue {
     list(indices, |index| (*index as f64).into())
+}
+
+/// How far a job has come; `known` of its changed frames were told before.
+fn news(job: &ClipJob, known: usize) -> JsValue {
+    let told = Record::new().set("changed", &indices(&job.changed()[known..]));
+    match job.wanted() {
+        Some(index) => told.count("wanted", index),
+        None => told.list("changes", &job.changes(), changed),
+    }
+    .into_value()
+}
+
+fn changed(changed: &Changed) -> JsValue {
+    let Changed { frame, object, gained, lost, .. } = changed;
+    Record::new()
+        .count("frame", *frame)
+        .count("object", usize::from(*object))
+        .count("gained", *gained)
+        .count("lost", *lost)
+        .into_value()
+}
+
+/// The package has checked them.
+fn annotations_of(value: &JsValue) -> Annotations {
+    let frames = |name| -> Option<Vec<Accepted>> {
+        let list = each(value, name)?;
+        Some(
+            list.iter()
+                .map(|entry| Accepted { frame: number(entry, "frame"), labels: bytes_in(entry, "labels") })
+                .collect(),
+        )
+    };
+    let numbers = bytes_in(value, "numbers").unwrap_or_default();
+    Annotations {
+        masks: painted_in(value, "masks"),
+        corrections: painted_in(value, "corrections"),
+        prompts: each(value, "prompts").into_iter().flatten().map(|entry| prompt(&entry)).collect(),
+        locked: bytes_in(value, "locked"),
+        named: bytes_in(value, "named"),
+        accepted: frames("accepted"),
+        numbers: numbers.as_chunks::<2>().0.to_vec(),
+    }
+}
+
+fn painted_in(value: &JsValue, name: &str) -> Vec<Painted> {
+    let painted = |entry: JsValue| Painted {
+        frame: number(&entry, "frame"),
+        object: Some(number(&entry, "object") as u8).filter(|object| *object > 0),
+        labels: bytes_in(&entry, "labels").unwrap_or_default(),
+        spread: spread(&entry),
+    };
+    each(value, name).into_iter().flatten().map(painted).collect()
+}
+
+fn prompt(entry: &JsValue) -> Prompt {
+    let places = |name| -> Vec<usize> {
+        each(entry, name).into_iter().flatten().map(|place| place.as_f64().unwrap_or_default() as usize).collect()
+    };
+    let clicks = places("clicks")
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .map(|&[x, y, inside]| Click { at: [x, y], inside: inside > 0 })
+        .collect();
+    Prompt {
+        frame: number(entry, "frame"),
+        object: number(entry, "object") as u8,
+        clicks,
+        within: places("box").try_into().ok(),
+        spread: spread(entry),
+    }
+}
+
+fn spread(entry: &JsValue) -> Spread {
+    match get(entry, "propagate").and_then(|word| word.as_string()).as_deref() {
+        Some("forward") => Spread::Forward,
+        Some("backward") => Spread::Backward,
+        Some("none") => Spread::None,
+        _ => Spread::Both,
+    }
+}
+
+fn get(value: &JsValue, name: &str) -> Option<JsValue> {
+    Reflect::get(value, &name.into()).ok().filter(|value| !value.is_undefined())
+}
+
+#[inline(never)]
+fn number(value: &JsValue, name: &str) -> usize {
+    get(value, name).and_then(|value| value.as_f64()).unwrap_or_default() as usize
+}
+
+#[inline(never)]
+fn bytes_in(value: &JsValue, name: &str) -> Option<Vec<u8>> {
+    get(value, name).map(|bytes| Uint8Array::new(&bytes).to_vec())
+}
+
+#[inline(never)]
+fn each(value: &JsValue, name: &str) -> Option<Vec<JsValue>> {
+    get(value, name).map(|list| Array::from(&list).to_vec())
 }
 
 fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {

@@ -31,8 +31,8 @@ mod stages;
 
 #[cfg(feature = "frames")]
 pub use clip::{
-    begin_clip, conclude_clip, correct_clip, end_clip, finish_clip, frame_of_clip, lock_clip, outline_clip,
-    preview_clip, push_clip, renumber_clip, reserve_clip, restore_clip, save_clip, take_correction,
+    annotate_clip, begin_clip, conclude_clip, end_clip, finish_clip, frame_of_clip, preview_clip, push_clip,
+    restore_clip, save_clip, take_annotations,
 };
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};

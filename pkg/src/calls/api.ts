@@ -142,11 +142,8 @@ function stepOf(glue: FramesGlue, task: ClipTask): unknown {
   if (task.call === 'beginClip') return glue.beginClip(clip, task.whole, task.settings);
   if (task.call === 'pushClip') return glue.pushClip(clip, task.frame, task.known);
   if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
-  if (task.call === 'reserveClip' || task.call === 'lockClip') return glue[task.call](clip, task.objects);
-  if (task.call === 'correctClip') return glue.correctClip(clip, task.index, task.labels, task.forward, task.backward);
-  if (task.call === 'outlineClip') return glue.outlineClip(clip, task.index, task.frame, task.prompt, task.object);
-  if (task.call === 'takeCorrection') return glue.takeCorrection(clip, task.frame);
-  if (task.call === 'renumberClip') return glue.renumberClip(clip, task.object, task.number);
+  if (task.call === 'annotateClip') return glue.annotateClip(clip, task.annotations);
+  if (task.call === 'takeAnnotations') return glue.takeAnnotations(clip, task.frame);
   if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);
   return glue[task.call](clip);
 }

@@ -13,7 +13,7 @@ import { segmentedTwice } from './clip/whole.js';
 /** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
 export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {
   const told: Told = { tracks: new Tracks() };
-  const rest = { tracks: () => told.tracks.value(), state: async () => told.state?.slice() };
+  const rest = { tracks: () => told.tracks.value(), state: async () => told.state?.slice(), changes: async () => structuredClone(told.changes ?? []) };
   const clip = Object.assign(segmented(frames, options, reserve, told), rest);
   dropped.register(clip, told);
   return clip;

@@ -1,6 +1,6 @@
 // What the page and its worker say to each other.
 
-import type { ClipFrame, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
+import type { ClipChange, ClipFrame, ClipPropagation, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
 import { buffersOf } from './taking.js';
 
@@ -30,11 +30,8 @@ export type CallTask =
 export type ClipStep =
   | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
-  | { call: 'reserveClip' | 'lockClip'; objects: Uint8Array }
-  | { call: 'correctClip'; index: number; labels: Uint8Array; forward: boolean; backward: boolean }
-  | { call: 'outlineClip'; index: number; frame: Pixels; prompt: Uint32Array; object: number }
-  | { call: 'takeCorrection'; frame: Pixels }
-  | { call: 'renumberClip'; object: number; number: number }
+  | { call: 'annotateClip'; annotations: Annotations }
+  | { call: 'takeAnnotations'; frame: Pixels }
   | { call: 'clipFrame'; index: number; frame: Pixels }
   | { call: 'previewClip' | 'finishClip' | 'concludeClip' | 'saveClip' | 'endClip' };
 
@@ -61,14 +58,46 @@ export interface ClipSummary {
   dropped: number;
 }
 
-/** What a step of a correction has changed, and the frame that it wants next. */
-export interface ClipChange {
-  wanted: number | undefined;
+/** All that a person says of a clip at one time; what is undefined is as before. */
+export interface Annotations {
+  masks: readonly Painted[];
+  corrections: readonly Painted[];
+  prompts: readonly Pointed[];
+  accepted: readonly { frame: number; labels?: Uint8Array | undefined }[] | undefined;
+  locked: Uint8Array | undefined;
+  named: Uint8Array | undefined;
+  /** Objects and the numbers that they get, in turn. */
+  numbers: Uint8Array;
+}
+
+/** Labels of a frame: of one object, or a map. */
+export interface Painted {
+  frame: number;
+  object?: number | undefined;
+  labels: Uint8Array;
+  propagate?: ClipPropagation | undefined;
+}
+
+/** What points to an object in a frame. */
+export interface Pointed {
+  frame: number;
+  object: number;
+  /** Column, row and 1 for each pixel that is the object's, 0 for one that is not. */
+  clicks: readonly number[];
+  /** Empty, or four sides. */
+  box: readonly number[];
+  propagate?: ClipPropagation | undefined;
+}
+
+/** What annotations have changed since the step before, the frame that they want next, and when they want none all that they have changed. */
+export interface Annotating {
+  wanted?: number;
   changed: number[];
+  changes?: ClipChange[];
 }
 
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | ClipChange | Uint8Array | number[] | null | undefined;
+export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
@@ -84,8 +113,9 @@ export type Reply<R = Result> =
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
   if ('clip' in task) {
-    const { frame, known, state, labels } = task as Partial<{ frame: Pixels; known: Uint8Array; state: Uint8Array; labels: Uint8Array }>;
-    return buffersOf([frame?.data, known, state, labels]);
+    const { frame, known, state, annotations } = task as Partial<{ frame: Pixels; known: Uint8Array; state: Uint8Array; annotations: Annotations }>;
+    const { masks = [], corrections = [], accepted = [] } = annotations ?? {};
+    return buffersOf([frame?.data, known, state, ...[...masks, ...corrections, ...accepted].map(({ labels }) => labels)]);
   }
   if (!('frames' in task)) return [];
   const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];

@@ -4,8 +4,8 @@ import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
-import { isPropagation, isWithin, type Prompt, promptOf, SPREADS } from '../calls/clip/said.js';
-import { isObject } from '../common/checks.js';
+import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/said.js';
+import { isListOf, isObject, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
@@ -13,20 +13,31 @@ import { sha256 } from './files.js';
 
 export const EDITS = 'edits.json';
 
-/** What a folder says. */
-interface Folder {
-  said: ClipCorrection[];
-  prompts: Prompt[];
+/** What edits.json says. */
+interface Edits {
   edits: ClipEdits;
+  prompts: FullPrompt[];
+  /** Frames, if it says anything of that. */
+  accepted: number[] | undefined;
   /** By frame. */
   propagate: Map<number, ClipPropagation>;
+}
+
+type FullPrompt = Extract<ClipPrompt, { object: number }>;
+
+/** What a folder says. */
+interface Folder extends Edits {
+  said: ClipCorrection[];
   paths: string[];
   sha256: string;
 }
 
 export interface Corrections {
   masks: ClipCorrection[];
-  corrections: (ClipCorrection | ClipPrompt)[];
+  corrections: ClipCorrection[];
+  prompts: ClipPrompt[];
+  /** Frames. */
+  accepted: number[];
   edits: ClipEdits;
   /** The files of all. */
   paths: string[];
@@ -43,17 +54,23 @@ export async function readCorrections(folders: { masks?: string; corrections?: s
   const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
   const spread = <T extends { frame: number }>(said: T[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
-  const prompts = both.flatMap((folder) => folder.prompts.map(clipPrompt));
+  const prompts = both.flatMap((folder) => folder.prompts);
+  const edits = {
+    merge: all(({ merge }) => merge),
+    delete: all((edits) => edits.delete),
+    background: all(({ background }) => background),
+    locked: all(({ locked }) => locked),
+    names: { ...masks?.edits.names, ...corrections?.edits.names },
+  };
+  const { locked } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
+  const pointed = prompts.map((prompt) => promptOf({ ...prompt }, (reason) => new VeroneseError('internal', reason)));
+  checkUnlocked(locked ?? new Uint8Array(), { corrections: corrections?.said ?? [], prompts: pointed });
   return {
     masks: spread(masks?.said),
-    corrections: [...spread(corrections?.said), ...spread(prompts)],
-    edits: {
-      merge: all(({ merge }) => merge),
-      delete: all((edits) => edits.delete),
-      background: all(({ background }) => background),
-      locked: all(({ locked }) => locked),
-      names: { ...masks?.edits.names, ...corrections?.edits.names },
-    },
+    corrections: spread(corrections?.said),
+    prompts: spread(prompts),
+    accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
+    edits,
     paths: both.flatMap(({ paths }) => paths),
     hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
   };
@@ -77,11 +94,13 @@ async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | 
     said.push({ frame, labels });
   }
   said.sort((one, other) => one.frame - other.frame);
-  const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : { edits: {}, prompts: [], propagate: new Map() };
-  if (said.length === 0 && Object.keys(edits.edits).length + edits.prompts.length + edits.propagate.size === 0) return undefined;
+  const none: Edits = { edits: {}, prompts: [], accepted: undefined, propagate: new Map() };
+  const told = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : none;
+  const { edits, prompts, accepted, propagate } = told;
+  if (said.length === 0 && Object.keys(edits).length + prompts.length + propagate.size === 0 && accepted === undefined) return undefined;
   const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
-  const content = [hashes, edits.edits, ...edits.propagate, ...edits.prompts.map(({ frame, label, prompt }) => [frame, label, ...prompt])];
-  return { said, ...edits, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify(content)) };
+  const content = [hashes, edits, ...propagate, prompts, accepted];
+  return { said, ...told, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify(content)) };
 }
 
 function namesIn(folder: string): string[] {
@@ -95,42 +114,52 @@ function namesIn(folder: string): string[] {
   }
 }
 
-/** Edits, what points to objects, and by frame where what is said of it spreads. Frames are called by their names. */
-async function readEdits(path: string, frames: ClipFrames): Promise<Pick<Folder, 'edits' | 'prompts' | 'propagate'>> {
+/** Frames are called by their names. */
+async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['boxes', 'clicks', 'propagate']);
-  const { propagate = {}, boxes = {}, clicks = {}, ...edits } = content as Record<string, unknown>;
+  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'accepted', 'propagate']);
+  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], accepted, ...edits } = content as Record<string, unknown>;
   if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
-  const prompts: Prompt[] = [];
+  const prompts: FullPrompt[] = [];
+  const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
+    const pointed = promptOf(entry, bad);
+    if (!isWithin(pointed, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
+    const before = prompts.find(({ frame, object }) => frame === pointed.frame && object === pointed.object);
+    if (before) throw bad(`has a ${before.box ? 'box' : 'click'} already`);
+    const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = entry;
+    prompts.push({ ...rest, object, clicks } as FullPrompt);
+  };
   for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
     if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
     for (const [name, objects] of Object.entries(value)) {
       const frame = frameOf(list, name);
       if (!isObject(objects)) throw wrong(`'${list}' must have an object for '${name}', from numbers of objects to a ${key} of each`);
       for (const [number, at] of Object.entries(objects)) {
-        const bad = (reason: string) => wrong(`'${list}' of '${name}', object ${number}: ${reason}`);
-        const prompt = promptOf({ frame, label: Number(number), [key]: at }, bad);
-        if (!isWithin(prompt, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
-        if (prompts.some((other) => other.frame === frame && other.label === prompt.label)) throw bad('has a box already');
-        prompts.push(prompt);
+        await add({ frame, label: Number(number), [key]: at ?? [] }, (reason) => wrong(`'${list}' of '${name}', object ${number}: ${reason}`));
       }
     }
   }
+  if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
+  for (const [at, entry] of listed.entries()) {
+    const bad = (reason: string) => wrong(`'prompts', number ${at}: ${reason}`);
+    const unknown = unknownOf(entry, ['frame', 'object', 'clicks', 'box']);
+    if (unknown !== undefined) throw bad(`there is no ${unknown}`);
+    if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+    if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
+    await add({ ...entry, frame: frameOf('prompts', entry['frame']) }, bad);
+  }
+  const isName = (name: unknown): name is string => typeof name === 'string';
+  if (accepted !== undefined && !isListOf(accepted, isName)) throw wrong("'accepted' must be a list of names of frames");
   const spreads = Object.entries(propagate).map(([name, way]): [number, ClipPropagation] => {
     const frame = frameOf('propagate', name);
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];
   });
-  return { edits, prompts, propagate: new Map(spreads) };
-}
-
-function clipPrompt({ frame, label, prompt }: Prompt): ClipPrompt {
-  const [x = 0, y = 0, width, height] = prompt;
-  return width === undefined || height === undefined ? { frame, label, click: [x, y] } : { frame, label, box: [x, y, width, height] };
+  return { edits, prompts, accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
 }

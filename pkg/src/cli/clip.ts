@@ -77,9 +77,11 @@ async function corrected(
   const state = (await known(segmenter, frames, kept)) ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
   const isThere = ({ frame }: { frame: number }) => frame < length;
-  const [masks, corrections] = [said?.masks.filter(isThere), said?.corrections.filter(isThere)];
+  const [masks, corrections, prompts] = [said?.masks.filter(isThere), said?.corrections.filter(isThere), said?.prompts.filter(isThere)];
+  const accepted = said?.accepted.filter((frame) => frame < length);
   const { markUnknown } = options;
-  return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, masks, corrections, edits: said?.edits, onProgress });
+  const all = { masks, corrections, prompts, accepted, edits: said?.edits };
+  return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, ...all, onProgress });
 }
 
 /** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */

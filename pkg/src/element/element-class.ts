@@ -30,8 +30,10 @@ export class VeroneseSegmenterElement extends Base {
   /** The labels of the clip's frame that is shown. */
   #shown: Uint8Array | undefined;
   #failure: VeroneseError | undefined;
-  /** Objects of the clip that no correction of others changes. */
+  /** Objects of the clip that no correction changes. */
   #locked: readonly number[] | undefined;
+  /** Frames of the clip that are right. */
+  #accepted: readonly number[] | undefined;
   /** Settled when the corrections so far have spread. */
   #corrected: Promise<unknown> = Promise.resolve();
   #carries = 0;
@@ -109,8 +111,8 @@ export class VeroneseSegmenterElement extends Base {
    * Corrects a frame of a clip whose frames are all done, when earlier corrections have spread; returns the indices of the frames that
    * change.
    */
-  async correct(frame: number, said: Uint8Array | ElementPrompt, { propagate }: Pick<ClipCorrection, 'propagate'> = {}): Promise<number[]> {
-    const own = said instanceof Uint8Array || !isObject(said) ? { labels: said instanceof Uint8Array ? said.slice() : said } : structuredClone(said);
+  async correct(frame: number, said: Uint8Array | ElementPrompt, { propagate, object }: Pick<ClipCorrection, 'propagate' | 'object'> = {}): Promise<number[]> {
+    const own = said instanceof Uint8Array || !isObject(said) ? { labels: said instanceof Uint8Array ? said.slice() : said, object } : structuredClone(said);
     const correction: ClipCorrection | ClipPrompt = { ...own, frame, propagate };
     if (!this.#tell('veronese-correction', correction, true)) return [];
     const turn = this.#corrected.then(() => this.#correct(correction));
@@ -118,9 +120,14 @@ export class VeroneseSegmenterElement extends Base {
     return turn;
   }
 
-  /** No later correction of others changes these objects of the clip. */
+  /** No later correction changes these objects of the clip. */
   lock(objects: readonly number[]): void {
     this.#locked = [...objects];
+  }
+
+  /** Later corrections of other frames change nothing in these frames of the clip. */
+  accept(frames: readonly number[]): void {
+    this.#accepted = [...frames];
   }
 
   /** Stops at once; the last result stays, as do the frames of a clip that are done. */
@@ -347,7 +354,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#validate();
     const changed: number[] = [];
     try {
-      const options = { ...this.#options(signal), corrections: [correction], locked: this.#locked, changesOnly: true };
+      const options = { ...this.#options(signal), corrections: [correction], locked: this.#locked, accepted: this.#accepted, changesOnly: true };
       const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => {
         if (index === clip.current) await clip.preview(await segmented());
       };
@@ -400,6 +407,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#clip?.close();
     this.#clip = undefined;
     this.#locked = undefined;
+    this.#accepted = undefined;
     this.#shown = undefined;
   }
 

@@ -28,12 +28,8 @@ export interface FramesGlue extends Glue {
   restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;
   saveClip(clip: number): unknown;
   clipFrame(clip: number, index: number, frame: unknown): unknown;
-  reserveClip(clip: number, numbers: Uint8Array): unknown;
-  lockClip(clip: number, objects: Uint8Array): unknown;
-  outlineClip(clip: number, index: number, frame: unknown, prompt: Uint32Array, number: number): unknown;
-  correctClip(clip: number, index: number, labels: Uint8Array, forward: boolean, backward: boolean): unknown;
-  takeCorrection(clip: number, frame: unknown): unknown;
-  renumberClip(clip: number, object: number, number: number): unknown;
+  annotateClip(clip: number, annotations: unknown): unknown;
+  takeAnnotations(clip: number, frame: unknown): unknown;
   endClip(clip: number): void;
 
   paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;

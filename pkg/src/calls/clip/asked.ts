@@ -6,15 +6,15 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
-import { type Edits, editsOf, isObjectNumber, RANGE } from './edits.js';
-import { checkedCorrections, type Corrections } from './said.js';
+import { type Edits, editsOf, isObjectNumber, RANGE, withMerged } from './edits.js';
+import { checkedSaid, checkUnlocked, type SaidOfFrames } from './said.js';
 
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
 const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead'];
 /** Options that need frames which can be read again. */
-const OF_WHOLE = ['masks', 'corrections', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
+const OF_WHOLE = ['masks', 'corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
 
 /** Frames that come once. */
 export interface Stream {
@@ -29,7 +29,7 @@ export interface Whole {
   length: number;
 }
 
-export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
+export interface Asked extends SaidOfFrames, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
@@ -45,7 +45,7 @@ export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChan
 
 export function asked(frames: unknown, options: unknown): Asked {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer'], ['seed']);
-  const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
+  const { masks, corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
   const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
   const source = sourceOf(frames, settings['lookAhead'], name);
@@ -54,6 +54,10 @@ export function asked(frames: unknown, options: unknown): Asked {
     if (listener !== undefined && typeof listener !== 'function') throw invalidOption(name, 'a function', listener);
   }
   const known = editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`));
+  const said = checkedSaid({ corrections, prompts, accepted }, source.length ?? 0);
+  const all = lockedOf(locked, known);
+  // What is known of a clip may have been said of what is locked.
+  if (state === undefined && all) checkUnlocked(all, said);
   return {
     source,
     signal: call.signal,
@@ -61,9 +65,9 @@ export function asked(frames: unknown, options: unknown): Asked {
     transfer,
     settings: { lookAhead: 'read' in source ? 'all' : LOOK_AHEAD_OF_STREAMS, ...settings },
     masks: structuredClone(masks),
-    ...checkedCorrections(corrections, source.length ?? 0),
+    ...said,
     edits: known,
-    locked: lockedOf(locked, known),
+    locked: all,
     state: state === undefined ? undefined : (taken([checkedBytes('the state', state)], false)[0] as Uint8Array),
     changesOnly,
     onChange: onChange as Asked['onChange'],
@@ -97,10 +101,9 @@ function* readEach(frames: { read: (index: number) => unknown }, length: number)
   for (let index = 0; index < length; index++) yield frames.read(index);
 }
 
-/** Objects that are named, and what is merged into one of these, are locked as well. */
-function lockedOf(option: unknown, { numbers, names, locked }: Edits): Uint8Array | undefined {
-  if (option !== undefined && !isListOf(option, isObjectNumber)) throw invalidOption('locked', `a list of objects, ${RANGE}`, option);
-  const all = new Set([...(option ?? []), ...locked, ...names.keys()]);
-  for (const [object, number] of numbers) if (all.has(number)) all.add(object);
-  return option === undefined && all.size === 0 ? undefined : Uint8Array.from(all);
+/** Those of the option and of the edits. */
+function lockedOf(option: unknown, { numbers, locked }: Edits): Uint8Array | undefined {
+  if (option === undefined) return locked;
+  if (!isListOf(option, isObjectNumber)) throw invalidOption('locked', `a list of objects, ${RANGE}`, option);
+  return withMerged([...option, ...(locked ?? [])], numbers);
 }

@@ -7,7 +7,9 @@ export interface Edits {
   /** Each object that gets another number, 0 for the background, and that number. */
   numbers: Map<number, number>;
   names: Map<number, string>;
-  locked: number[];
+  /** With what is merged into them, which these numbers are of as well. Undefined if nobody says. */
+  named: Uint8Array | undefined;
+  locked: Uint8Array | undefined;
 }
 
 /** Checks edits; `wrong` makes the error. Numbers that no object has are no mistake: they change nothing. `more` may be there as well. */
@@ -17,7 +19,7 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   if (unknown !== undefined) throw wrong(`there is no edit ${unknown}`);
   // What an object inherits, such as the methods of a map, was not given.
   const given: Record<string, unknown> = { ...value };
-  const { merge = [], names = {}, locked = [] } = given;
+  const { merge = [], names = {}, locked } = given;
   const isMerged = (list: unknown): list is number[] => isListOf(list, isObjectNumber) && list.length >= 2;
   if (!isListOf(merge, isMerged)) throw wrong(`'merge' must be lists of two or more objects, ${RANGE}`);
   const numbers = new Map<number, number>();
@@ -38,8 +40,20 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
     if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number))) throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
     if (typeof name !== 'string' || name === '') throw wrong(`'names' must have a text for object ${number}`);
   }
-  if (!isListOf(locked, isObjectNumber)) throw wrong(`'locked' must be a list of objects, ${RANGE}`);
-  return { numbers, names: new Map(named.map(([number, name]) => [Number(number), name as string])), locked };
+  if (locked !== undefined && !isListOf(locked, isObjectNumber)) throw wrong(`'locked' must be a list of objects, ${RANGE}`);
+  return {
+    numbers,
+    names: new Map(named.map(([number, name]) => [Number(number), name as string])),
+    named: given['names'] === undefined ? undefined : withMerged(named.map(([number]) => Number(number)), numbers),
+    locked: locked && withMerged(locked, numbers),
+  };
+}
+
+/** Some objects, and those that are merged into one of them. */
+export function withMerged(objects: readonly number[], numbers: ReadonlyMap<number, number>): Uint8Array {
+  const all = new Set(objects);
+  for (const [object, number] of numbers) if (all.has(number)) all.add(object);
+  return Uint8Array.from(all);
 }
 
 export const RANGE = `numbers from 1 to ${UNLABELLED - 1}`;

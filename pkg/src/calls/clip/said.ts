@@ -1,79 +1,125 @@
 // What a person says of frames, checked.
 
+import type { ClipPropagation } from '../../../types/index.js';
 import { checkAttached, invalidOption, isArrayOf, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
+import type { Annotations, Painted, Pointed } from '../messages.js';
 import { taken } from '../taking.js';
 import { isObjectNumber, RANGE } from './edits.js';
 
-/** What is said of a frame. */
-export interface Said {
-  frame: number;
-  labels: Uint8Array;
+/** What is painted in a frame. */
+export interface Said extends Painted {
   /** Of masks that say how wide they are. */
   width?: number | undefined;
-  /** `both` if nobody says. */
-  propagate?: Propagation | undefined;
 }
 
-/** A box, x, y, width and height, or a click, x and y, that points to an object in a frame. */
-export interface Prompt extends Omit<Said, 'labels' | 'width'> {
-  prompt: readonly number[];
-  label: number;
+/** What points to an object in a frame. */
+export interface Prompt extends Pointed {
+  /** The option that it came with. */
+  option: 'corrections' | 'prompts';
 }
 
 export const PROPAGATIONS = ['both', 'forward', 'backward', 'none'] as const;
-export type Propagation = (typeof PROPAGATIONS)[number];
 
 /** Makes an error about an entry of a list. */
 export type Wrong = (reason: string) => VeroneseError;
 
-export interface Corrections {
+export interface SaidOfFrames {
   corrections: Said[];
-  /** By frame, then by object: in which order they come makes no difference. */
   prompts: Prompt[];
+  /** Undefined if nobody says. */
+  accepted: Annotations['accepted'];
 }
 
-export function checkedCorrections(given: unknown, length: number): Corrections {
-  const form = '{ frame, labels }, { frame, label, box } or { frame, label, click }';
+/** Checks what is said of frames, whose size is not known yet. */
+export function checkedSaid(given: { [option in keyof SaidOfFrames]: unknown }, length: number): SaidOfFrames {
+  const form = '{ frame, object, clicks, box }';
   const prompts: Prompt[] = [];
-  const corrections = checkedList('corrections', form, given, length, ({ labels, ...entry }, wrong) => {
-    if (labels === undefined && (entry['box'] !== undefined || entry['click'] !== undefined)) {
-      const prompt = promptOf(entry, wrong);
-      if (prompts.some(({ frame, label }) => frame === prompt.frame && label === prompt.label)) {
-        throw wrong(`points to object ${prompt.label} in frame ${prompt.frame}, as one before does`);
-      }
-      prompts.push(prompt);
-      return undefined;
-    }
-    return { labels: bytesOf(labels, 'labels', wrong) };
-  });
-  prompts.sort((one, other) => one.frame - other.frame || one.label - other.label);
-  return { corrections, prompts };
+  const read = (option: Prompt['option']) => (entry: Record<string, unknown>, wrong: Wrong) => {
+    const isPrompt = entry['labels'] === undefined && ['box', 'click', 'clicks'].some((name) => entry[name] !== undefined);
+    if (option === 'corrections' && !isPrompt) return painted(entry, wrong);
+    const isShort = option === 'corrections' && entry['object'] === undefined;
+    const { frame, object, ...prompt } = promptOf(isShort ? inFull(entry, wrong) : entry, wrong);
+    if (prompts.some((other) => frame === other.frame && object === other.object)) throw wrong(`points to object ${object} in frame ${frame}, as one before does`);
+    prompts.push({ frame, object, ...prompt, option });
+    return undefined;
+  };
+  const corrections = checkedList('corrections', `{ frame, labels } or ${form}`, given.corrections ?? [], length, read('corrections'));
+  checkedList('prompts', form, given.prompts ?? [], length, read('prompts'));
+  return { corrections, prompts, accepted: given.accepted === undefined ? undefined : checkedAccepted(given.accepted, length) };
 }
 
-/** Of an entry whose frame and propagation are checked. */
-export function promptOf({ frame, label, box, click, propagate }: Record<string, unknown>, wrong: Wrong): Prompt {
+function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omit<Said, 'frame'> {
+  const own = bytesOf(labels, 'labels', wrong);
+  if (object === undefined) return { labels: own };
+  if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}, or none`);
+  if (own.some((label) => label !== 0 && label !== object && label !== UNLABELLED)) throw wrong(`must have the labels 0, ${object} and ${UNLABELLED}: it is about object ${object} alone`);
+  return { labels: own, object };
+}
+
+/** Of an entry whose frame and propagation are checked. Without clicks and box it takes back. */
+export function promptOf(entry: Record<string, unknown>, wrong: Wrong): Pointed {
+  const { frame, propagate, object, clicks = [], box } = entry['label'] === undefined && entry['click'] === undefined ? entry : inFull(entry, wrong);
+  if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}`);
+  if (!isListOf(clicks, isClick)) throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
+  if (box !== undefined && !isBox(box)) throw wrong('must have a box, the whole numbers [x, y, width, height]');
+  const inside = clicks.filter(([, , sign]) => sign === 1);
+  if (!box && clicks.length > 0 && inside.length === 0) throw wrong(`must have a box or a click that belongs to object ${object}`);
+  const [left = 0, top = 0, columns = 0, rows = 0] = box ?? [];
+  const stray = box && inside.find(([x, y]) => x < left || x >= left + columns || y < top || y >= top + rows);
+  if (stray) throw wrong(`has a click at ${stray[0]}, ${stray[1]} that belongs to object ${object} and is not in its box`);
+  return { frame: frame as number, object, clicks: clicks.flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]), box: [...(box ?? [])], propagate: propagate as ClipPropagation | undefined };
+}
+
+/** What a label and a box or a click say. */
+function inFull({ label, box, click, ...rest }: Record<string, unknown>, wrong: Wrong): Record<string, unknown> {
   if (!isObjectNumber(label)) throw wrong(`must have a label, ${RANGE}`);
   if (box !== undefined && click !== undefined) throw wrong('must have a box or a click, not both');
-  const [prompt, sides] = box === undefined ? [click, 2] : [box, 4];
-  const isPrompt = isListOf(prompt, (side): side is number => isWhole(side, 0, LONGEST_SIDE)) && prompt.length === sides && prompt.slice(2).every((side) => side > 0);
-  if (!isPrompt) throw wrong(box === undefined ? 'must have a click, the whole numbers [x, y]' : 'must have a box, the whole numbers [x, y, width, height]');
-  return { frame: frame as number, label, prompt: [...prompt], propagate: propagate as Propagation | undefined };
+  if (box !== undefined) return { ...rest, object: label, box };
+  if (!isPlaces(click) || click.length !== 2) throw wrong('must have a click, the whole numbers [x, y]');
+  return { ...rest, object: label, clicks: [[...click, 1]] };
 }
 
-export function isWithin({ prompt: [x = 0, y = 0, columns = 1, rows = 1] }: Prompt, { width, height }: { width: number; height: number }): boolean {
-  return x + columns <= width && y + rows <= height;
+function isPlaces(value: unknown): value is number[] {
+  return isListOf(value, (side): side is number => isWhole(side, 0, LONGEST_SIDE));
 }
 
-/** What is said of each frame: a correction goes before the mask of its frame where it says anything. */
-export function together(masks: readonly Said[], corrections: readonly Said[]): Said[] {
-  const said = new Map(masks.map((mask) => [mask.frame, mask]));
-  for (const { frame, labels, propagate } of corrections) {
-    const mask = said.get(frame);
-    const both = mask ? labels.map((label, p) => (label === UNLABELLED ? (mask.labels[p] as number) : label)) : labels;
-    said.set(frame, { frame, labels: both, propagate: propagate ?? mask?.propagate });
-  }
-  return [...said.values()];
+function isBox(value: unknown): value is number[] {
+  return isPlaces(value) && value.length === 4 && value.slice(2).every((side) => side > 0);
+}
+
+function isClick(value: unknown): value is [x: number, y: number, sign: 1 | -1] {
+  return Array.isArray(value) && value.length === 3 && isPlaces(value.slice(0, 2)) && (value[2] === 1 || value[2] === -1);
+}
+
+export function isWithin({ clicks, box }: Pointed, { width, height }: { width: number; height: number }): boolean {
+  const [x = 0, y = 0, columns = 0, rows = 0] = box;
+  return x + columns <= width && y + rows <= height && clicks.every((place, at) => at % 3 === 2 || place < (at % 3 === 0 ? width : height));
+}
+
+function checkedAccepted(list: unknown, length: number): NonNullable<SaidOfFrames['accepted']> {
+  const isFrame = (entry: unknown): entry is number => typeof entry === 'number';
+  const isEntry = (entry: unknown): entry is number | Record<string, unknown> => isFrame(entry) || isObject(entry);
+  if (!isListOf(list, isEntry)) throw invalidOption('accepted', 'a list of frames or { frame, labels }', list);
+  const entries = list.map((entry) => (isFrame(entry) ? { frame: entry } : entry));
+  const frames = new Set<unknown>();
+  return entries.map(({ frame, labels }: Record<string, unknown>, at) => {
+    const wrong = (reason: string) => new VeroneseError('invalid-option', `option 'accepted': number ${at} ${reason}`);
+    if (!isWhole(frame, 0, length - 1)) throw wrong(`must have a frame from 0 to ${length - 1}`);
+    if (frames.has(frame)) throw wrong(`is frame ${frame}, as one before is`);
+    frames.add(frame);
+    return { frame, labels: labels === undefined ? undefined : bytesOf(labels, 'labels', wrong) };
+  });
+}
+
+/** Throws where something is said of a locked object, of a clip of which nothing was said before. */
+export function checkUnlocked(locked: Uint8Array, { corrections, prompts }: { corrections: readonly Painted[]; prompts: readonly Pointed[] }): void {
+  const isAbout = (object: number) =>
+    prompts.some((prompt) => prompt.object === object) ||
+    corrections.some((said) => (said.object === undefined ? said.labels.includes(object) : said.object === object && said.labels.some((label) => label !== UNLABELLED)));
+  const object = locked.find(isAbout);
+  // In the core's words.
+  if (object !== undefined) throw new VeroneseError('object-locked', `object ${object} is locked: unlock it to change it`);
 }
 
 /** `read` reads what an entry says, unless it is kept elsewhere; `before` is what an earlier one says of the same frame. */
@@ -85,24 +131,25 @@ export function checkedList(
   read: (entry: Record<string, unknown>, wrong: Wrong, before: Said | undefined) => Omit<Said, 'frame'> | undefined,
 ): Said[] {
   if (!isListOf(list, isObject)) throw invalidOption(option, `a list of ${form}`, list);
-  const said = new Map<number, Said>();
+  const all = new Map<string, Said>();
   for (const [at, entry] of list.entries()) {
     const wrong = (reason: string) => new VeroneseError('invalid-option', `option '${option}': number ${at} ${reason}`);
-    const { frame, propagate } = entry;
+    const { frame, object, propagate } = entry;
     if (!isWhole(frame, 0, length - 1)) throw wrong(`must have a frame from 0 to ${length - 1}`);
-    const before = said.get(frame);
+    const key = option === 'masks' || object === undefined ? `${frame}` : `${frame} ${String(object)}`;
+    const before = all.get(key);
     if (propagate !== undefined && !isPropagation(propagate)) throw wrong(`must propagate ${SPREADS}`);
     const own = read(entry, wrong, before);
     if (own === undefined) continue;
-    if (before && !(option === 'masks' && entry['rle'] !== undefined)) throw wrong(`is of frame ${frame}, as one before is`);
-    said.set(frame, { frame, ...own, propagate: propagate ?? before?.propagate });
+    if (before && !(option === 'masks' && entry['rle'] !== undefined)) throw wrong(`is of ${own.object === undefined ? '' : `object ${own.object} in `}frame ${frame}, as one before is`);
+    all.set(key, { frame, ...own, propagate: propagate ?? before?.propagate });
   }
-  return [...said.values()];
+  return [...all.values()];
 }
 
 export const SPREADS = PROPAGATIONS.map((name) => `'${name}'`).join(', ').replace(/, (?=[^,]*$)/, ' or ');
 
-export function isPropagation(value: unknown): value is Propagation {
+export function isPropagation(value: unknown): value is ClipPropagation {
   return (PROPAGATIONS as readonly unknown[]).includes(value);
 }
 

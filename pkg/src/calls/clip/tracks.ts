@@ -1,12 +1,14 @@
 // The tracks of a clip's objects, collected frame by frame.
 
-import type { ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
+import type { ClipChange, ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
 import type { PlacedClip } from './place.js';
 
 /** What a clip has told besides its frames, and where it is kept until it ends. */
 export interface Told {
   tracks: Tracks;
   state?: Uint8Array;
+  /** What was said has changed. */
+  changes?: ClipChange[];
   clip?: PlacedClip;
 }
 

@@ -1,15 +1,15 @@
 // A clip whose frames can be read again: once for their pairs, where corrections want them, and once for their labels.
 
-import type { ClipFrame } from '../../../types/index.js';
+import type { ClipChange, ClipFrame } from '../../../types/index.js';
 import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import type { ClipChange, ClipSummary } from '../messages.js';
+import type { Annotating, Annotations, ClipSummary } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
-import { isWithin, type Said, together } from './said.js';
+import { isWithin, type Prompt, type Said } from './said.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
@@ -23,8 +23,9 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: A
   const { read, length: of } = task.source as Whole;
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
-  const changed = await edited(clip, frames, task, length);
+  const { changed, changes } = await annotated(clip, frames, task, length);
   told.state = await clip.step<Uint8Array>({ call: 'saveClip' });
+  told.changes = changes;
   told.tracks.dropped = dropped;
   told.tracks.names = task.edits.names;
   const indices = [...upTo(length)].filter((index) => !task.changesOnly || changed.has(index));
@@ -96,13 +97,14 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
   return summary;
 }
 
-/** Applies masks, corrections and edits; returns the indices of the frames that they change. */
-async function edited(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Set<number>> {
-  const { source, masks, corrections, prompts, edits, locked, onProgress, onChange } = task;
+/** Applies all that is said; returns the indices of the frames that change, and what objects gain and lose. */
+async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<{ changed: Set<number>; changes: ClipChange[] }> {
+  const { source, onProgress, onChange } = task;
   const { read } = source as Whole;
   const changed = new Set<number>();
-  const tell = async (indices: readonly number[]) => {
-    for (const index of indices) {
+  let step = await clip.step<Annotating>({ call: 'annotateClip', annotations: annotationsOf(task, length) });
+  for (;;) {
+    for (const index of step.changed) {
       changed.add(index);
       if (!onChange) continue;
       let isCalled = true;
@@ -113,33 +115,28 @@ async function edited(clip: PlacedClip, frames: Frames, task: Task, length: numb
       await clip.wait(onChange(index, segmented));
       isCalled = false;
     }
-  };
-  const numbers = new Set(masks.flatMap(({ labels }) => [...new Set(labels)]));
-  if (numbers.size > 0) await tell(await clip.step<number[]>({ call: 'reserveClip', objects: Uint8Array.from(numbers) }));
-  if (locked) await clip.step({ call: 'lockClip', objects: locked });
-  // The source may have failed before it came to a corrected frame.
-  const isThere = ({ frame }: { frame: number }) => frame < length;
-  const correct = async ({ frame: index, labels, propagate = 'both' }: Said) => {
-    const [forward, backward] = ['forward', 'backward'].map((way) => propagate === 'both' || propagate === way) as [boolean, boolean];
-    await clip.step({ call: 'correctClip', index, labels, forward, backward });
-    for (let next: number | undefined = index; next !== undefined; ) {
-      onProgress?.({ frame: next, of: source.length, stage: 'corrections' });
-      const frame = await frames.one(read, next);
-      const { wanted, changed }: ClipChange = await clip.step<ClipChange>({ call: 'takeCorrection', frame });
-      await tell(changed);
-      next = wanted;
-    }
-  };
-  const said = together(masks, corrections).filter(isThere);
-  for (const each of said) await correct(each);
-  // What a box or a click points to depends on what else is there.
-  for (const { frame: index, label: object, prompt, propagate } of prompts.filter(isThere)) {
-    const frame = await frames.one(read, index);
-    const labels = await clip.step<Uint8Array>({ call: 'outlineClip', index, frame, prompt: Uint32Array.from(prompt), object });
-    await correct({ frame: index, labels, propagate: propagate ?? said.find((each) => each.frame === index)?.propagate });
+    const { wanted, changes = [] } = step;
+    if (wanted === undefined) return { changed, changes };
+    onProgress?.({ frame: wanted, of: source.length, stage: 'corrections' });
+    step = await clip.step<Annotating>({ call: 'takeAnnotations', frame: await frames.one(read, wanted) });
   }
-  for (const [object, number] of edits.numbers) await tell(await clip.step<number[]>({ call: 'renumberClip', object, number }));
-  return changed;
+}
+
+/** The source may have failed before it came to a frame of which something is said. */
+function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }: Task, length: number): Annotations {
+  const isThere = ({ frame }: { frame: number }) => frame < length;
+  const maps = [...masks, ...corrections].filter(({ object, propagate }) => object === undefined && propagate !== undefined);
+  const ways = new Map(maps.map(({ frame, propagate }) => [frame, propagate]));
+  const spread = <T extends Said | Prompt>(said: readonly T[]) => said.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
+  return {
+    masks: spread(masks),
+    corrections: spread(corrections),
+    prompts: spread(prompts),
+    accepted: accepted?.filter(isThere),
+    locked,
+    named: edits.named,
+    numbers: Uint8Array.from([...edits.numbers].flat()),
+  };
 }
 
 /** Numbers from 0, one by one: a source may claim any length. */
@@ -147,16 +144,16 @@ function* upTo(length: number): Generator<number, void, undefined> {
   for (let index = 0; index < length; index++) yield index;
 }
 
-function checkSizes({ masks, corrections, prompts }: Task, size: { width: number; height: number }): void {
-  for (const [option, said] of Object.entries({ masks, corrections })) {
+function checkSizes({ masks, corrections, prompts, accepted = [] }: Task, size: { width: number; height: number }): void {
+  for (const [option, said] of Object.entries({ masks, corrections, accepted }) as [string, readonly Partial<Said>[]][]) {
     for (const { frame, labels, width = size.width } of said) {
-      if (labels.length === size.width * size.height && width === size.width) continue;
+      if (labels === undefined || (labels.length === size.width * size.height && width === size.width)) continue;
       const sentence = `that of frame ${frame} has ${labels.length} labels, a frame has ${size.width}×${size.height} pixels`;
       throw new VeroneseError('invalid-option', `option '${option}': ${sentence}`);
     }
   }
   const outside = prompts.find((prompt) => !isWithin(prompt, size));
   if (outside === undefined) return;
-  const sentence = `what points to object ${outside.label} in frame ${outside.frame} is not within ${size.width}×${size.height} pixels`;
-  throw new VeroneseError('invalid-option', `option 'corrections': ${sentence}`);
+  const sentence = `what points to object ${outside.object} in frame ${outside.frame} is not within ${size.width}×${size.height} pixels`;
+  throw new VeroneseError('invalid-option', `option '${outside.option}': ${sentence}`);
 }
