@@ -269,7 +269,7 @@ export type ClipPrompt = {
 );
 
 /** A frame that a person finds right: its index, or with all its labels as the person saw them, one per pixel, row by row. */
-export type ClipAccepted = number | { frame: number; labels: Uint8Array };
+export type ClipAccepted = number | { frame: number; labels?: Uint8Array | undefined };
 
 /**
  * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame

@@ -62,9 +62,9 @@ export async function readCorrections(folders: { masks?: string; corrections?: s
     locked: all(({ locked }) => locked),
     names: { ...masks?.edits.names, ...corrections?.edits.names },
   };
-  const { locked } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
+  const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
   const pointed = prompts.map((prompt) => promptOf({ ...prompt }, (reason) => new VeroneseError('internal', reason)));
-  checkUnlocked(locked ?? new Uint8Array(), { corrections: corrections?.said ?? [], prompts: pointed });
+  checkUnlocked(locked, { corrections: corrections?.said ?? [], prompts: pointed, numbers });
   return {
     masks: spread(masks?.said),
     corrections: spread(corrections?.said),

@@ -1,8 +1,9 @@
-// What an unfinished clip has found out about its frames, and what a finished one knows of them: so that pairs are solved once. A file
-// begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
+// What an unfinished clip has found out about its frames, and what a finished one knows of them: so that pairs are solved once, and that
+// accepted frames stay what they were. A file begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
 
 import { readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { deflateRawSync, inflateRawSync } from 'node:zlib';
 import { HIDDEN } from './clip-folder.js';
 import type { FrameFile } from './clip-store.js';
 import { readWritten, sha256, writing } from './files.js';
@@ -10,7 +11,8 @@ import { type Ledger, temporary } from './ledger.js';
 
 const STATE = 'state';
 const PAIRS = '.pairs';
-const OURS = /^state$|\.pairs$/;
+const ACCEPTED = '.accepted';
+const OURS = /^state$|\.(pairs|accepted)$/;
 /** Length of the hash in front, bytes. */
 const HASH = 32;
 
@@ -18,6 +20,7 @@ export class KeptClip {
   readonly #ledger: Ledger;
   readonly #out: string;
   readonly #folder: string;
+  readonly #frames: readonly FrameFile[];
   /** For each frame a hash of the settings, of its content and of that of the frames before it. */
   readonly #keys: string[] = [];
 
@@ -26,6 +29,7 @@ export class KeptClip {
     this.#ledger = ledger;
     this.#out = out;
     this.#folder = join(out, HIDDEN);
+    this.#frames = frames;
     let key = sha256(JSON.stringify(settings));
     for (const frame of frames) this.#keys.push((key = sha256(key + frame.sha256)));
   }
@@ -36,11 +40,11 @@ export class KeptClip {
   }
 
   pairs(index: number): Uint8Array | undefined {
-    return this.#read(nameOf(index), this.#keys[index]);
+    return this.#read(nameOf(index, PAIRS), this.#keys[index]);
   }
 
   keepPairs(index: number, pairs: Uint8Array): Promise<void> {
-    return this.#write(nameOf(index), this.#keys[index], pairs);
+    return this.#write(nameOf(index, PAIRS), this.#keys[index], pairs);
   }
 
   state(): Uint8Array | undefined {
@@ -51,6 +55,19 @@ export class KeptClip {
   async keepState(state: Uint8Array): Promise<void> {
     await this.#write(STATE, this.#keys.at(-1), state);
     await this.#remove(/\.pairs$/);
+  }
+
+  /** The labels with which a frame was accepted, whatever the settings were. */
+  accepted(index: number): Uint8Array | undefined {
+    const packed = this.#read(nameOf(index, ACCEPTED), this.#frames[index]?.sha256);
+    return packed && new Uint8Array(inflateRawSync(packed));
+  }
+
+  /** Keeps labels of accepted frames, by index, and of no others. */
+  async keepAccepted(labels: ReadonlyMap<number, Uint8Array>): Promise<void> {
+    for (const [index, own] of labels) await this.#write(nameOf(index, ACCEPTED), this.#frames[index]?.sha256, deflateRawSync(own));
+    const names = new Set([...labels.keys()].map((index) => nameOf(index, ACCEPTED)));
+    await this.#remove(/\.accepted$/, names);
   }
 
   clear(): Promise<void> {
@@ -80,19 +97,19 @@ export class KeptClip {
     });
   }
 
-  #remove(isOld: RegExp): Promise<void> {
+  #remove(isOld: RegExp, kept: ReadonlySet<string> = new Set()): Promise<void> {
     let names: string[] = [];
     try {
       names = readdirSync(this.#folder);
     } catch {
       // There is no folder.
     }
-    return writing(this.#out, () => names.filter((name) => isOld.test(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
+    return writing(this.#out, () => names.filter((name) => isOld.test(name) && !kept.has(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
   }
 }
 
-function nameOf(index: number): string {
-  return String(index).padStart(5, '0') + PAIRS;
+function nameOf(index: number, ending: string): string {
+  return String(index).padStart(5, '0') + ending;
 }
 
 function hashOf(key: string | undefined, content: Uint8Array): Buffer {

@@ -2,7 +2,7 @@
 
 import { rmdirSync } from 'node:fs';
 import { join } from 'node:path';
-import type { ClipTracks } from '../../types/index.js';
+import type { ClipChange, ClipTracks } from '../../types/index.js';
 import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { readWritten, sha256, writing } from './files.js';
 import { idsOf, isUnchanged, type Ledger } from './ledger.js';
@@ -18,6 +18,8 @@ export interface Record extends ClipTracks {
   frames: string[];
   /** Names of the frames' own files. */
   files: string[];
+  /** What corrections have changed, where they have. */
+  changes?: ClipChange[];
   settings: object;
   /** Hashes of the images. */
   images: { [path: string]: string };
@@ -48,11 +50,16 @@ export class ClipStore {
 
   /** The record of a finished run on the same frames with the same settings, if nothing of it has changed. */
   async finished(frames: readonly FrameFile[]): Promise<Record | undefined> {
+    return this.before(frames, (settings) => JSON.stringify(settings) === JSON.stringify(this.#settings));
+  }
+
+  /** The record of a finished run on the same frames, with any settings or some, if nothing of it has changed. */
+  async before(frames: readonly FrameFile[], hasSettings: (settings: object) => boolean = () => true): Promise<Record | undefined> {
     try {
       const text = readWritten(join(this.#out, TRACKS))?.toString() ?? '';
       const { job: _, ...content } = JSON.parse(text) as Record;
-      const record = sealed(content, this.#jobOf(frames));
-      if (jsonLine(record) !== text) return undefined;
+      const record = sealed(content, jobOf(content.settings, frames));
+      if (jsonLine(record) !== text || !hasSettings(content.settings)) return undefined;
       for (const [path, hash] of Object.entries(record.images)) if (!(await isUnchanged(join(this.#out, path), hash))) return undefined;
       return record;
     } catch {
@@ -85,21 +92,16 @@ export class ClipStore {
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the record. */
-  async end(frames: readonly FrameFile[], { width, height }: { width: number; height: number }, tracks: ClipTracks): Promise<void> {
+  async end(frames: readonly FrameFile[], { width, height }: { width: number; height: number }, tracks: ClipTracks, changes: ClipChange[]): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const images = Object.fromEntries(this.#images);
-    const content = { version: 1 as const, width, height, ...names, ...tracks, settings: this.#settings, images };
+    const content = { version: 1 as const, width, height, ...names, ...tracks, ...(changes.length > 0 && { changes }), settings: this.#settings, images };
     await writing(this.#out, async () => {
       this.#ledger.remove(await this.#ledger.old((path) => /^(labels|overlay)\//.test(path)));
-      await this.#ledger.write(TRACKS, jsonLine(sealed(content, this.#jobOf(frames))));
+      await this.#ledger.write(TRACKS, jsonLine(sealed(content, jobOf(this.#settings, frames))));
       this.#removeIfEmpty(HIDDEN);
       this.#ledger.settle();
     });
-  }
-
-  /** Hash of the settings, names and contents. */
-  #jobOf(frames: readonly FrameFile[]): string {
-    return sha256(JSON.stringify({ settings: this.#settings, frames: frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));
   }
 
   #removeIfEmpty(folder: string): void {
@@ -109,6 +111,11 @@ export class ClipStore {
       // It is not empty, or does not exist.
     }
   }
+}
+
+/** Hash of the settings, names and contents. */
+function jobOf(settings: object, frames: readonly FrameFile[]): string {
+  return sha256(JSON.stringify({ settings, frames: frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));
 }
 
 /** Adds the hash that detects changes. */

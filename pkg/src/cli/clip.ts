@@ -1,6 +1,7 @@
 // `clip`: writes the labels of each frame, prints a line of JSON for each, and writes the tracks at the end.
 
-import type { Clip, ClipFrame, ClipProgress, Segmenter as SegmenterType } from '../../types/index.js';
+import { join } from 'node:path';
+import type { Clip, ClipChange, ClipFrame, ClipProgress, Segmenter as SegmenterType } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
@@ -9,11 +10,13 @@ import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
 import { SegmenterPool } from '../entries/node.js';
 import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
+import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
 import { ClipStore, type Record } from './clip-store.js';
 import { checkFolder } from './files.js';
 import type { Io } from './io.js';
+import { readLabels } from './label-files.js';
 import { Ledger } from './ledger.js';
 import { jsonLine } from './pair.js';
 import { print, ProgressBar, warn } from './terminal.js';
@@ -38,12 +41,15 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
 
     const kept = new KeptClip(ledger, out, { ...options, markUnknown: undefined, software }, frames.files);
     await kept.check();
+    const accepted = await acceptedAsSeen(out, said, frames, { store, kept });
+    // If this run is interrupted, the next one has them.
+    await kept.keepAccepted(accepted);
     await store.begin(frames.files, wanted, [...frames.paths, ...(said?.paths ?? [])]);
     const streams = options.lookAhead !== 'all' && !said;
     const onProgress = progress.listener;
     const segmented = streams
       ? segmenter.segmentClip(frames, { ...options, onProgress })
-      : await corrected(segmenter, frames, command, said, kept, onProgress);
+      : await corrected(segmenter, frames, command, said && { ...said, seen: accepted }, kept, onProgress);
     for await (const frame of segmented) {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted));
@@ -53,9 +59,10 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     if (frames.failure) throw frames.failure.thrown;
     const tracks = segmented.tracks();
     if (streams) await kept.clear();
-    await store.end(frames.files, frames.size as { width: number; height: number }, tracks);
+    const changes = await segmented.changes();
+    await store.end(frames.files, frames.size as { width: number; height: number }, tracks, changes);
     if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
-    await print(io, lastLine(tracks.objects));
+    await print(io, lastLine(tracks.objects, changes));
   } catch (thrown) {
     segmenter.close();
     throw thrown;
@@ -70,7 +77,7 @@ async function corrected(
   segmenter: SegmenterType,
   frames: ClipFrames,
   { options }: ClipCommand,
-  said: Corrections | undefined,
+  said: (Corrections & { seen: ReadonlyMap<number, Uint8Array> }) | undefined,
   kept: KeptClip,
   onProgress: (progress: ClipProgress) => void,
 ): Promise<Clip> {
@@ -78,10 +85,31 @@ async function corrected(
   const length = frames.failure?.index ?? frames.length;
   const isThere = ({ frame }: { frame: number }) => frame < length;
   const [masks, corrections, prompts] = [said?.masks.filter(isThere), said?.corrections.filter(isThere), said?.prompts.filter(isThere)];
-  const accepted = said?.accepted.filter((frame) => frame < length);
+  const accepted = said?.accepted.map((frame) => ({ frame, labels: said.seen.get(frame) })).filter(isThere);
   const { markUnknown } = options;
   const all = { masks, corrections, prompts, accepted, edits: said?.edits };
   return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, ...all, onProgress });
+}
+
+/**
+ * The labels of accepted frames as the person saw them: those of the last run that was finished here, or of one that was begun after it. A
+ * frame without is accepted as it is found.
+ */
+async function acceptedAsSeen(
+  out: string,
+  said: Corrections | undefined,
+  frames: ClipFrames,
+  { store, kept }: { store: ClipStore; kept: KeptClip },
+): Promise<Map<number, Uint8Array>> {
+  const seen = new Map<number, Uint8Array>();
+  if (!said || said.accepted.length === 0) return seen;
+  const before = await store.before(frames.files);
+  for (const frame of said.accepted) {
+    const stem = before?.frames[frame];
+    const labels = stem === undefined ? kept.accepted(frame) : (await readLabels(join(out, LABELS, `${stem}.png`))).labels;
+    if (labels) seen.set(frame, labels);
+  }
+  return seen;
 }
 
 /** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */
@@ -148,14 +176,23 @@ async function images(frames: ClipFrames, { index, labels }: ClipFrame, withOver
 }
 
 /** Prints what the run that wrote the record printed. */
-async function report({ frames, objects }: Record, io: Io): Promise<void> {
+async function report({ frames, objects, changes = [] }: Record, io: Io): Promise<void> {
   for (const [frame, name] of frames.entries()) {
     const seen = objects.filter((object) => object.frames.some((entry) => entry.frame === frame));
     await print(io, jsonLine({ frame, name, objects: seen.map(({ id }) => id) }));
   }
-  await print(io, lastLine(objects));
+  await print(io, lastLine(objects, changes));
 }
 
-function lastLine(objects: Record['objects']): string {
-  return jsonLine({ done: true, objects: objects.length });
+/** With the frames that corrections have changed, and what each object has gained and lost in all of them, if they have. */
+function lastLine(objects: Record['objects'], changes: readonly ClipChange[]): string {
+  const done = { done: true, objects: objects.length };
+  if (changes.length === 0) return jsonLine(done);
+  const of = new Map<number, { id: number; gained: number; lost: number }>();
+  for (const { object: id, gained, lost } of changes) {
+    const before = of.get(id) ?? { id, gained: 0, lost: 0 };
+    of.set(id, { id, gained: before.gained + gained, lost: before.lost + lost });
+  }
+  const frames = [...new Set(changes.map(({ frame }) => frame))];
+  return jsonLine({ ...done, changed: { frames, objects: [...of.values()].sort((one, other) => one.id - other.id) } });
 }

@@ -57,7 +57,7 @@ export function asked(frames: unknown, options: unknown): Asked {
   const said = checkedSaid({ corrections, prompts, accepted }, source.length ?? 0);
   const all = lockedOf(locked, known);
   // What is known of a clip may have been said of what is locked.
-  if (state === undefined && all) checkUnlocked(all, said);
+  if (state === undefined) checkUnlocked(all, { ...said, ...known });
   return {
     source,
     signal: call.signal,

@@ -112,12 +112,16 @@ function checkedAccepted(list: unknown, length: number): NonNullable<SaidOfFrame
   });
 }
 
-/** Throws where something is said of a locked object, of a clip of which nothing was said before. */
-export function checkUnlocked(locked: Uint8Array, { corrections, prompts }: { corrections: readonly Painted[]; prompts: readonly Pointed[] }): void {
+/** Throws where something is said of a locked object, or it is deleted, in a clip of which nothing was said before. */
+export function checkUnlocked(
+  locked: Uint8Array | undefined,
+  { corrections, prompts, numbers }: { corrections: readonly Painted[]; prompts: readonly Pointed[]; numbers: ReadonlyMap<number, number> },
+): void {
+  const isNamed = (said: Painted, object: number) =>
+    said.object === undefined ? said.labels.includes(object) : said.object === object && said.labels.some((label) => label !== UNLABELLED);
   const isAbout = (object: number) =>
-    prompts.some((prompt) => prompt.object === object) ||
-    corrections.some((said) => (said.object === undefined ? said.labels.includes(object) : said.object === object && said.labels.some((label) => label !== UNLABELLED)));
-  const object = locked.find(isAbout);
+    numbers.get(object) === 0 || prompts.some((prompt) => prompt.object === object) || corrections.some((said) => isNamed(said, object));
+  const object = locked?.find(isAbout);
   // In the core's words.
   if (object !== undefined) throw new VeroneseError('object-locked', `object ${object} is locked: unlock it to change it`);
 }
@@ -136,7 +140,7 @@ export function checkedList(
     const wrong = (reason: string) => new VeroneseError('invalid-option', `option '${option}': number ${at} ${reason}`);
     const { frame, object, propagate } = entry;
     if (!isWhole(frame, 0, length - 1)) throw wrong(`must have a frame from 0 to ${length - 1}`);
-    const key = option === 'masks' || object === undefined ? `${frame}` : `${frame} ${String(object)}`;
+    const key = option === 'corrections' && typeof object === 'number' ? `${frame} ${object}` : `${frame}`;
     const before = all.get(key);
     if (propagate !== undefined && !isPropagation(propagate)) throw wrong(`must propagate ${SPREADS}`);
     const own = read(entry, wrong, before);
