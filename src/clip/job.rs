@@ -54,7 +54,7 @@ enum Step {
 impl ClipJob {
     pub(super) fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
         check_all(clip, &annotations)?;
-        let Annotations { masks, corrections, mut prompts, locked, named, accepted, numbers } = annotations;
+        let Annotations { mut masks, corrections, mut prompts, locked, named, accepted, numbers } = annotations;
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, numbers, changes: Changes::default() };
         let mut given: Vec<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
         given.sort_unstable();
@@ -73,12 +73,13 @@ impl ClipJob {
                 frame.accepted &= accepted.iter().any(|of| of.frame == index);
             }
             let is_new = |of: &Accepted| !clip.frames[of.frame].accepted || of.labels.is_some();
-            let accept = accepted.into_iter().filter(is_new).map(Step::Accept);
-            if !masks.is_empty() && !corrections.is_empty() {
+            let accept: Vec<Step> = accepted.into_iter().filter(is_new).map(Step::Accept).collect();
+            if !accept.is_empty() {
                 // What is accepted is seen after the masks.
                 job.steps.extend(painted(&masks, &[]));
+                job.steps.extend(accept);
+                masks.retain(|mask| corrections.iter().any(|painted| painted.frame == mask.frame));
             }
-            job.steps.extend(accept);
         }
         job.steps.extend(painted(&masks, &corrections));
         prompts.sort_by_key(|prompt| (prompt.frame, prompt.object));
