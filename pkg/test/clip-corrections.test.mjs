@@ -15,15 +15,17 @@ import { KeptClip } from '../build/cli/clip-kept.js';
 import { Ledger } from '../build/cli/ledger.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { frame, png } from './support/frames.mjs';
+import * as three from './support/three.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 96, height: 72 };
 const PIXELS = SIZE.width * SIZE.height;
 const clipFrame = (k) => frame(k / 2, SIZE);
+const halfSteps = clipFrame;
 
 /** A folder of frames, one for corrections, one for masks, and places for results. */
-function clip(t, count = COUNT) {
+function clip(t, count = COUNT, clipFrame = halfSteps) {
   const folder = temporaryFolder(t);
   for (const name of ['frames', 'said', 'masks']) mkdirSync(folder.path(name));
   for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k)));
@@ -192,6 +194,20 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"boxes": {"f1": {"1": [9, 3, 9, 9]}}, "clicks": {"f1": {"1": [2, 3]}}}', 'invalid-input', /'clicks' of 'f1', object 1: has a box already/],
       ['edits.json', '{"propagate": ["f1"]}', 'invalid-input', /edits\.json': 'propagate' must be an object/],
       ['edits.json', '{"propagate": {"g1": "none"}}', 'invalid-input', /edits\.json': 'propagate' has 'g1', the name of no frame/],
+      ['edits.json', '{"accepted": "f1"}', 'invalid-input', /edits\.json': 'accepted' must be a list of names of frames/],
+      ['edits.json', '{"accepted": ["g1"]}', 'invalid-input', /edits\.json': 'accepted' has 'g1', the name of no frame/],
+      ['edits.json', '{"prompts": {"f1": 1}}', 'invalid-input', /edits\.json': 'prompts' must be a list of \{ frame, object, clicks, box \}/],
+      ['edits.json', '{"prompts": [{"frame": 1, "object": 3, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: must have a frame, the name of one/],
+      ['edits.json', '{"prompts": [{"frame": "g1", "object": 3, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts' has 'g1', the name of no frame/],
+      ['edits.json', '{"prompts": [{"frame": "f1", "object": 3}]}', 'invalid-input', /'prompts', number 0: must have clicks, a box, or both/],
+      ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "label": 3, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: there is no 'label'; there are frame, object, clicks, box/],
+      ['edits.json', '{"prompts": [{"frame": "f1", "object": 0, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: must have an object/],
+      ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 3]]}]}', 'invalid-input', /'prompts', number 0: must have clicks/],
+      ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: is not within the frame/],
+      ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: has a box already/],
+      ['edits.json', '{"locked": [3], "clicks": {"f1": {"3": [2, 3]}}}', 'object-locked', /object 3 is locked: unlock it to change it/],
+      ['edits.json', '{"locked": [3], "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'object-locked', /object 3 is locked/],
+      ['edits.json', '{"locked": [3], "delete": [3]}', 'object-locked', /object 3 is locked/],
       ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],
     ];
     for (const [name, content, code, message] of cases) {
@@ -311,6 +327,114 @@ describe('veronese clip --masks', () => {
     assert.ok((await changed('{}')) > 0);
     assert.equal(await changed('{"locked": [1]}'), 0);
     assert.equal(await changed('{"names": {"1": "square"}}'), 0);
+  });
+});
+
+describe('what a person said through the command line', () => {
+  const { box, changedOf, labelled, middle } = three;
+  const all = (out) => Array.from({ length: COUNT }, (_, k) => labelsOf(out, k));
+
+  const CASES = {
+    'painted and named': { files: { 'f1.png': labelled(2, 1, 2) }, edits: { names: { 1: 'square' } } },
+    'prompted and locked': { edits: { prompts: [{ frame: 'f1', object: 2, clicks: [[...middle(2, 1), 1]], box: box(2, 1) }], locked: [1] } },
+    'given, and accepted': { given: { 'f0.png': labelled(2, 0, 2, 0) }, edits: { accepted: ['f1'] } },
+  };
+  for (const [name, { files = {}, given: masks = {}, edits }] of Object.entries(CASES)) {
+    test(`${name}: boxes and clicks for others change none of it by a pixel`, async (t) => {
+      const { frames, corrections, said, given, masks: folder, out } = clip(t, COUNT, three.frame);
+      for (const [file, labels] of Object.entries(files)) said(file, await mask(labels));
+      for (const [file, labels] of Object.entries(masks)) given(file, await mask(labels));
+      const labels = async (more) => {
+        said('edits.json', JSON.stringify({ ...edits, ...more, prompts: [...(edits.prompts ?? []), ...(more.prompts ?? [])] }));
+        await run([frames, '--corrections', corrections, '--masks', folder, '--out', out]);
+        return all(out);
+      };
+      const before = await labels({});
+      for (const more of [
+        { boxes: { f4: { 9: box(3, 4) } } },
+        { clicks: { f0: { 9: middle(3, 0) } } },
+        { prompts: [{ frame: 'f3', object: 9, clicks: [[...middle(3, 3), 1], [90, 70, -1]], box: box(3, 3) }] },
+        { boxes: { f4: { 9: box(2, 4) } } },
+      ]) {
+        const after = await labels(more);
+        for (const id of [1, 2]) assert.equal(changedOf(before, after, id), 0, `${id}: ${JSON.stringify(more)}`);
+        assert.equal(changedOf(before, after, 3, (_, now) => now === 9), 0);
+      }
+    });
+  }
+
+  test('a line says what it changes, and so do tracks.json and the next run', async (t) => {
+    const { frames, corrections, said, out } = clip(t, COUNT, three.frame);
+    await run([frames, '--out', out]);
+    const before = all(out);
+    assert.equal(tracksOf(out).changes, undefined);
+    said('edits.json', JSON.stringify({ boxes: { f3: { 9: box(3, 3) } }, propagate: { f3: 'forward' } }));
+    const args = [frames, '--corrections', corrections, '--out', out];
+    const { lines, stdout } = await run(args);
+    const count = (labels, of) => labels.flatMap((own, k) => [...own].filter((label, p) => of(label, before[k][p]))).length;
+    const after = all(out);
+    const { changed } = lines.at(-1);
+    assert.deepEqual(changed.frames, [3, 4, 5]);
+    for (const { id, gained, lost } of changed.objects) {
+      assert.equal(gained, count(after, (now, then) => now === id && then !== id));
+      assert.equal(lost, count(after, (now, then) => now !== id && then === id));
+    }
+    assert.deepEqual(changed.objects.map(({ id }) => id).filter((id) => id > 0), [3, 9]);
+    const { changes } = tracksOf(out);
+    assert.equal(changes.filter(({ object }) => object === 9).reduce((sum, { gained }) => sum + gained, 0), changed.objects.at(-1).gained);
+    assert.equal((await run(args)).stdout, stdout, 'nothing is done again');
+  });
+
+  test('accepted frames stay as they were seen, run after run, while strokes in others spread', async (t) => {
+    const { frames, corrections, said, out, path } = clip(t, COUNT, three.frame);
+    const args = [frames, '--corrections', corrections, '--out', out];
+    const stroke = (square, k, label) => labelled(square, k, label).map((own, p) => (p % SIZE.width < middle(square, k)[0] ? own : 255));
+    said('f3.png', await mask(stroke(2, 3, 9)));
+    await run(args);
+    const seen = labelsOf(out, 1);
+    assert.ok(seen.includes(9));
+    // What was seen is no longer what is said.
+    said('edits.json', '{"accepted": ["f1"]}');
+    said('f3.png', await mask(stroke(1, 3, 8)));
+    await run(args);
+    assert.deepEqual(labelsOf(out, 1), seen);
+    assert.ok(labelsOf(out, 2).includes(8) && !labelsOf(out, 2).includes(9) || labelsOf(out, 3).includes(8));
+    const second = tree(out);
+    said('f4.png', await mask(stroke(3, 4, 7)));
+    await run(args);
+    assert.deepEqual(labelsOf(out, 1), seen);
+    assert.ok(labelsOf(out, 4).includes(7));
+    rmSync(join(corrections, 'f4.png'));
+    await run(args);
+    assert.deepEqual(tree(out), second);
+
+    // A run that was interrupted, and one after the folder was moved.
+    said('f4.png', await mask(stroke(3, 4, 6)));
+    cpSync(out, path('moved'), { recursive: true });
+    for (const folder of [out, path('moved')]) {
+      if (folder === out) rmSync(join(folder, 'tracks.json'));
+      await run([...args.slice(0, -1), folder]);
+      assert.deepEqual(labelsOf(folder, 1), seen);
+    }
+    // A hand in the frame itself changes it.
+    const own = stroke(3, 1, 5);
+    said('f1.png', await mask(own));
+    await run(args);
+    assert.ok(labelsOf(out, 1).every((label, p) => (own[p] === 255 ? label === seen[p] || label === 5 || seen[p] === 3 : label === 5)));
+    for (const name of readdirSync(corrections)) rmSync(join(corrections, name));
+    await run([frames, '--out', out]);
+    await run([frames, '--out', path('straight')]);
+    assert.deepEqual(tree(out), tree(path('straight')), 'nothing is accepted any more');
+  });
+
+  test('in a new folder frames are accepted as they are found', async (t) => {
+    const { frames, corrections, said, out, path } = clip(t, COUNT, three.frame);
+    await run([frames, '--out', path('base')]);
+    said('f3.png', await mask(labelled(2, 3, 9)));
+    said('edits.json', '{"accepted": ["f1", "f2"]}');
+    await run([frames, '--corrections', corrections, '--out', out]);
+    for (const k of [1, 2]) assert.deepEqual(labelsOf(out, k), labelsOf(path('base'), k));
+    assert.ok(labelsOf(out, 3).includes(9));
   });
 });
 

@@ -4,6 +4,7 @@ import { join } from 'node:path';
 import type { Clip, ClipChange, ClipFrame, ClipProgress, Segmenter as SegmenterType } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
+import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
 import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
@@ -107,9 +108,19 @@ async function acceptedAsSeen(
   for (const frame of said.accepted) {
     const stem = before?.frames[frame];
     const labels = stem === undefined ? kept.accepted(frame) : (await readLabels(join(out, LABELS, `${stem}.png`))).labels;
-    if (labels) seen.set(frame, labels);
+    const mask = said.masks.find((mask) => mask.frame === frame);
+    if (labels) seen.set(frame, mask ? labelsUnder(mask.labels, labels) : labels);
   }
   return seen;
+}
+
+/** What was seen of a frame, with a mask that may have been given since: it is about the objects that it names. */
+function labelsUnder(mask: Uint8Array, seen: Uint8Array): Uint8Array {
+  const named = new Set(mask);
+  return seen.map((label, p) => {
+    const given = mask[p] as number;
+    return given !== UNLABELLED && (given > 0 || named.has(label)) ? given : label;
+  });
 }
 
 /** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */

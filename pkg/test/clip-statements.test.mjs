@@ -1,0 +1,267 @@
+// What a person says of a clip is said of an object: what it changes, and what it leaves as it is.
+
+import assert from 'node:assert/strict';
+import { after, describe, test } from 'node:test';
+import { segmentClip, Segmenter } from 'veronese';
+import { failure } from './support/shapes.mjs';
+import { box, changedOf, COUNT, frame, labelled, middle, PIXELS, SIZE } from './support/three.mjs';
+
+const list = Array.from({ length: COUNT }, (_, index) => frame(index));
+const source = { length: COUNT, read: (index) => list[index] };
+
+async function run(options, segment = segmentClip) {
+  const clip = segment(source, { quality: 'fast', ...options });
+  const labels = [];
+  for await (const one of clip) labels.push(one.labels);
+  return { labels, tracks: clip.tracks(), state: await clip.state(), changes: await clip.changes() };
+}
+
+const found = await run({});
+const segmenter = new Segmenter();
+after(() => segmenter.close());
+
+const count = (labels, id) => labels.filter((label) => label === id).length;
+const said = (options) => run({ state: found.state, ...options });
+/** Half of a square, from its left. */
+const half = (square, index, label) => labelled(square, index, label).map((own, p) => (p % SIZE.width < middle(square, index)[0] ? own : 255));
+
+test('the three squares are found by themselves, and nothing has changed', () => {
+  for (const id of [1, 2, 3]) assert.ok(found.labels.every((labels, index) => labelled(id, index, 1, 0).filter((inside, p) => inside && labels[p] === id).length > 450), `object ${id}`);
+  assert.deepEqual(found.changes, []);
+});
+
+/** What a person may have said of object 2. */
+const SAID = {
+  painted: { corrections: [{ frame: 1, labels: half(2, 1, 2) }] },
+  'painted alone': { corrections: [{ frame: 1, object: 2, labels: labelled(2, 1, 2, 0) }] },
+  given: { masks: [{ frame: 1, labels: labelled(2, 1, 2, 0) }] },
+  prompted: { prompts: [{ frame: 1, object: 2, box: box(2, 1) }] },
+  named: { edits: { names: { 2: 'square' } } },
+  locked: { locked: [2] },
+  accepted: { accepted: [1] },
+};
+
+describe('nothing else changes when a box or a click points to an object', () => {
+  for (const [name, options] of Object.entries(SAID)) {
+    test(`what was ${name} keeps every pixel, and others lose what becomes the new object`, async () => {
+      const before = await said(options);
+      for (const prompt of [{ frame: 4, object: 9, box: box(3, 4) }, { frame: 4, object: 9, clicks: [[...middle(3, 4), 1]] }, { frame: 4, object: 9, box: box(2, 4) }, { frame: 0, object: 9, clicks: [[...middle(2, 0), 1]] }]) {
+        const { labels } = await run({ state: before.state, prompts: [prompt] });
+        assert.equal(changedOf(before.labels, labels, 2), 0, JSON.stringify(prompt));
+        for (const id of [1, 3]) assert.equal(changedOf(before.labels, labels, id, (_, now) => now === 9), 0, `${id}: ${JSON.stringify(prompt)}`);
+      }
+    });
+  }
+});
+
+describe('a locked object', () => {
+  test('loses no pixel to what is painted over it, until it is unlocked', async () => {
+    const corrections = [{ frame: 3, labels: half(2, 3, 9) }];
+    const free = await said({ corrections });
+    assert.ok(changedOf(found.labels, free.labels, 2) > 200);
+    const locked = await said({ corrections, locked: [2] });
+    assert.equal(changedOf(found.labels, locked.labels, 2), 0);
+    // A state keeps the lock. Said again it is nothing new.
+    const later = await run({ state: locked.state, corrections: [{ frame: 1, labels: half(2, 1, 8) }] });
+    assert.equal(changedOf(found.labels, later.labels, 2), 0);
+    const unlocked = await run({ state: locked.state, corrections: [{ frame: 1, labels: half(2, 1, 8) }], locked: [] });
+    assert.ok(changedOf(found.labels, unlocked.labels, 2) > 200);
+  });
+
+  test('of which something is said is an error, before any pair is solved', async () => {
+    const cases = [
+      { corrections: [{ frame: 3, labels: half(2, 3, 2) }] },
+      { corrections: [{ frame: 3, object: 2, labels: half(2, 3, 0) }] },
+      { corrections: [{ frame: 3, label: 2, box: box(2, 3) }] },
+      { prompts: [{ frame: 3, object: 2, clicks: [[...middle(2, 3), 1]] }] },
+      { edits: { delete: [2] } },
+    ];
+    for (const { edits, ...rest } of cases) {
+      for (const locks of [{ locked: [2], edits }, { edits: { ...edits, locked: [2] } }]) {
+        const stages = [];
+        const onProgress = ({ stage }) => stages.push(stage);
+        for (const state of [undefined, found.state]) {
+          const error = await failure(run({ state, ...rest, ...locks, onProgress }));
+          assert.deepEqual([error.code, error.message, stages], ['object-locked', 'object 2 is locked: unlock it to change it', []]);
+        }
+      }
+    }
+    // What was said before it was locked may be said again.
+    const corrections = [{ frame: 3, labels: half(2, 3, 2) }];
+    const before = await said({ corrections });
+    assert.deepEqual((await run({ state: before.state, corrections, locked: [2] })).labels, before.labels);
+    const other = await failure(run({ state: before.state, corrections: [{ frame: 3, labels: half(2, 3, 2).fill(255, 0, PIXELS / 4) }], locked: [2] }));
+    assert.equal(other.code, 'object-locked');
+  });
+});
+
+describe('an accepted frame', () => {
+  const corrections = [{ frame: 4, labels: half(2, 4, 9) }, { frame: 4, object: 3, labels: half(3, 4, 0) }];
+
+  test('stays as it is to the bit while what is said of others spreads', async () => {
+    const free = await said({ corrections });
+    assert.notDeepEqual(free.labels[2], found.labels[2]);
+    const accepted = await said({ corrections, accepted: [2] });
+    assert.deepEqual(accepted.labels[2], found.labels[2]);
+    assert.notDeepEqual(accepted.labels[4], found.labels[4]);
+    // A state keeps it, until it is no longer accepted.
+    const later = await run({ state: accepted.state, corrections: [{ frame: 0, labels: half(1, 0, 8) }] });
+    assert.deepEqual(later.labels[2], found.labels[2]);
+    const more = await run({ state: accepted.state, corrections: [{ frame: 0, labels: half(1, 0, 8) }], accepted: [2, 4] });
+    assert.deepEqual([more.labels[2], more.labels[4]], [found.labels[2], accepted.labels[4]]);
+    const open = await run({ state: accepted.state, corrections: [{ frame: 1, labels: half(2, 1, 8) }], accepted: [] });
+    assert.notDeepEqual(open.labels[2], found.labels[2]);
+  });
+
+  test('changes by a hand in it alone', async () => {
+    const accepted = await said({ accepted: [2] });
+    const stroke = half(2, 2, 9);
+    const { labels } = await run({ state: accepted.state, corrections: [{ frame: 2, labels: stroke }] });
+    assert.ok(stroke.every((label, p) => label === 255 || labels[2][p] === label));
+    assert.notDeepEqual(labels[2], found.labels[2]);
+    assert.equal(changedOf([found.labels[2]], [labels[2]], 1), 0);
+  });
+
+  test('may come with the labels that were seen', async () => {
+    const seen = found.labels[2].map((label, p) => (p < 500 ? 7 : label === 3 ? 0 : label));
+    const { labels, changes } = await said({ corrections, accepted: [{ frame: 2, labels: seen }, { frame: 1 }] });
+    assert.deepEqual([labels[2], labels[1]], [seen, found.labels[1]]);
+    assert.deepEqual(changes.find(({ frame, object }) => frame === 2 && object === 3), { frame: 2, object: 3, gained: 0, lost: count(found.labels[2], 3) });
+    const again = await said({ corrections, accepted: [{ frame: 2, labels: seen }, { frame: 1 }] });
+    assert.deepEqual(again.labels, labels);
+  });
+
+  test('without labels has those of the masks', async () => {
+    const masks = [{ frame: 0, labels: labelled(2, 0, 7, 0) }];
+    const given = await said({ masks });
+    for (const rest of [{}, { corrections }]) {
+      const { labels } = await said({ masks, accepted: [3], ...rest });
+      assert.deepEqual(labels[3], given.labels[3], Object.keys(rest).join());
+    }
+  });
+});
+
+describe('prompts', () => {
+  const at = middle(2, 3);
+
+  test('of one click or a box are the short forms among the corrections', async () => {
+    for (const [prompt, short] of [[{ box: box(2, 3) }, { box: box(2, 3) }], [{ clicks: [[...at, 1]] }, { click: at }]]) {
+      const one = await said({ prompts: [{ frame: 3, object: 9, ...prompt }] });
+      for (const corrections of [[{ frame: 3, label: 9, ...short }], [{ frame: 3, object: 9, ...prompt }]]) assert.deepEqual((await said({ corrections })).labels, one.labels);
+      assert.ok(one.labels.every((labels) => count(labels, 9) > 400), 'it is followed');
+      const worker = await run({ state: found.state, prompts: [{ frame: 3, object: 9, ...prompt }] }, (...args) => segmenter.segmentClip(...args));
+      assert.deepEqual(worker, one, 'in a worker');
+    }
+  });
+
+  test('of several clicks and a box describe one object', async () => {
+    const [x, y, width, height] = box(2, 3);
+    const without = [x + 3, y + 3];
+    const clicks = [[...at, 1], [x + width - 5, y + height - 5, 1], [...without, -1]];
+    const { labels } = await said({ prompts: [{ frame: 3, object: 9, clicks, box: [x, y, width, height] }] });
+    const is9 = ([column, row]) => labels[3][row * SIZE.width + column] === 9;
+    assert.deepEqual(clicks.map(([column, row]) => is9([column, row])), [true, true, false]);
+    assert.ok(labels[3].every((label, p) => label !== 9 || (p % SIZE.width >= x && p % SIZE.width < x + width && p / SIZE.width >= y && p / SIZE.width < y + height)));
+  });
+
+  test('stay until the next one of the same object and frame, or until they are taken back', async () => {
+    const first = await said({ prompts: [{ frame: 3, object: 9, box: box(2, 3) }] });
+    const second = await run({ state: first.state, prompts: [{ frame: 3, object: 9, box: box(1, 3) }] });
+    assert.deepEqual(second.labels[3], (await said({ prompts: [{ frame: 3, object: 9, box: box(1, 3) }] })).labels[3]);
+    const back = await run({ state: second.state, prompts: [{ frame: 3, object: 9 }] });
+    assert.deepEqual(back.labels, found.labels);
+  });
+
+  test('spread where they are to, or where what else is said of the frame is', async () => {
+    const frames = async (options) => (await said(options)).labels.flatMap((labels, index) => (labels.includes(9) ? [index] : []));
+    const prompt = { frame: 3, object: 9, box: box(2, 3) };
+    assert.deepEqual(await frames({ prompts: [{ ...prompt, propagate: 'none' }] }), [3]);
+    assert.deepEqual(await frames({ prompts: [{ ...prompt, propagate: 'forward' }] }), [3, 4, 5]);
+    const corrections = [{ frame: 3, labels: labelled(1, 3, 1), propagate: 'backward' }];
+    assert.deepEqual(await frames({ prompts: [prompt], corrections }), [0, 1, 2, 3]);
+  });
+});
+
+describe('an eraser', () => {
+  test('of all objects says of what is under it that it is not there', async () => {
+    const { labels } = await said({ corrections: [{ frame: 3, labels: half(2, 3, 0) }] });
+    const erased = half(2, 3, 1).map((label) => label === 1);
+    assert.ok(labels[3].every((label, p) => !erased[p] || label === 0));
+    for (const id of [1, 3]) assert.equal(changedOf(found.labels, labels, id), 0);
+  });
+
+  test('of one object leaves the others', async () => {
+    // It goes over two squares.
+    const both = Uint8Array.from(half(2, 3, 0), (label, p) => Math.min(label, half(3, 3, 0)[p]));
+    const { labels } = await said({ corrections: [{ frame: 3, object: 2, labels: both }] });
+    assert.ok(labels[3].every((label, p) => both[p] === 255 || label !== 2));
+    assert.ok(changedOf(found.labels, labels, 2) > 200);
+    for (const id of [1, 3]) assert.equal(changedOf(found.labels, labels, id), 0);
+    const back = await said({ corrections: [{ frame: 3, object: 2, labels: both }, { frame: 3, object: 3, labels: labelled(3, 3, 255) }] });
+    assert.deepEqual(back.labels, labels, 'a frame takes what is said of several objects');
+  });
+});
+
+test('changes() tells what objects have gained and lost, in the frames that have changed', async () => {
+  const masks = [{ frame: 2, labels: labelled(1, 2, 1, 255), propagate: 'none' }];
+  for (const options of [{ prompts: [{ frame: 3, object: 9, box: box(2, 3) }] }, { corrections: [{ frame: 1, labels: half(2, 1, 0) }] }]) {
+    const { labels, changes } = await said(options);
+    const expected = labels.flatMap((own, index) =>
+      [0, 1, 2, 3, 9].flatMap((object) => {
+        const gained = own.filter((label, p) => label === object && found.labels[index][p] !== object).length;
+        const lost = own.filter((label, p) => label !== object && found.labels[index][p] === object).length;
+        return gained + lost > 0 ? [{ frame: index, object, gained, lost }] : [];
+      }));
+    assert.ok(expected.length > 0);
+    assert.deepEqual(changes, expected);
+  }
+  assert.deepEqual((await said({ edits: { delete: [1] } })).changes, [], 'edits are not counted');
+  assert.equal((await said({ masks })).changes.every(({ frame }) => frame === 2), true);
+  const clip = segmentClip(source, { state: found.state });
+  assert.deepEqual(await clip.changes(), []);
+  const stream = segmentClip(list.values(), { quality: 'fast', lookAhead: 1 });
+  await stream.next();
+  assert.deepEqual(await stream.changes(), []);
+  await stream.return();
+});
+
+test('refuses what it cannot use before any pair is solved', async () => {
+  const prompt = (rest) => ({ prompts: [{ frame: 3, object: 9, ...rest }] });
+  const cases = [
+    [{ prompts: {} }, /'prompts': must be a list of \{ frame, object, clicks, box \}/],
+    [{ prompts: [{ frame: COUNT, object: 9, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have a frame from 0 to 5/],
+    [{ prompts: [{ frame: 3, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have an object, numbers from 1 to 254/],
+    [prompt({ object: 255 }), /number 0 must have an object/],
+    [prompt({ clicks: [[1, 2]] }), /number 0 must have clicks, a list of \[x, y, 1\]/],
+    [prompt({ clicks: [[1, 2, 0]] }), /number 0 must have clicks/],
+    [prompt({ clicks: [1, 2, 1] }), /number 0 must have clicks/],
+    [prompt({ clicks: [[1, 2, -1]] }), /number 0 must have a box or a click that belongs to object 9/],
+    [prompt({ clicks: [[1, 2, 1]], box: [10, 10, 5, 5] }), /number 0 has a click at 1, 2 that belongs to object 9 and is not in its box/],
+    [prompt({ box: [1, 2, 3] }), /number 0 must have a box, the whole numbers/],
+    [prompt({ box: [90, 2, 30, 4] }), /'prompts': what points to object 9 in frame 3 is not within 96×72 pixels/],
+    [prompt({ clicks: [[1, 72, 1]] }), /'prompts': what points to object 9 in frame 3 is not within 96×72 pixels/],
+    [prompt({ clicks: [[1, 2, 1], [96, 1, -1]] }), /'prompts': what points to object 9 in frame 3 is not within/],
+    [prompt({ box: [1, 2, 3, 4], propagate: 'up' }), /number 0 must propagate/],
+    [{ prompts: [{ frame: 3, object: 9 }, { frame: 3, object: 9 }] }, /'prompts': number 1 points to object 9 in frame 3, as one before does/],
+    [{ corrections: [{ frame: 3, label: 9, click: [1, 2] }], ...prompt({ box: [1, 2, 3, 4] }) }, /'prompts': number 0 points to object 9 in frame 3, as one before does/],
+    [{ corrections: [{ frame: 3, object: 0, labels: found.labels[3] }] }, /'corrections': number 0 must have an object, numbers from 1 to 254, or none/],
+    [{ corrections: [{ frame: 3, object: 2, labels: found.labels[3] }] }, /'corrections': number 0 must have the labels 0, 2 and 255: it is about object 2 alone/],
+    [{ corrections: [1, 2].map(() => ({ frame: 3, object: 2, labels: new Uint8Array(PIXELS) })) }, /'corrections': number 1 is of object 2 in frame 3, as one before is/],
+    [{ accepted: 3 }, /'accepted': must be a list of frames or \{ frame, labels \}, not 3/],
+    [{ accepted: ['3'] }, /'accepted': must be a list/],
+    [{ accepted: [0.5] }, /'accepted': number 0 must have a frame from 0 to 5/],
+    [{ accepted: [1, { frame: 1 }] }, /'accepted': number 1 is frame 1, as one before is/],
+    [{ accepted: [{ frame: 1, labels: 'seen' }] }, /'accepted': number 0 must have labels, a Uint8Array/],
+    [{ accepted: [{ frame: 1, labels: new Uint8Array(12) }] }, /'accepted': that of frame 1 has 12 labels, a frame has 96×72 pixels/],
+  ];
+  for (const [options, message] of cases) {
+    const stages = [];
+    const error = await failure(run({ ...options, onProgress: ({ stage }) => stages.push(stage) }));
+    assert.match(error.message, message);
+    assert.deepEqual([error.code, stages], ['invalid-option', []], error.message);
+  }
+  for (const options of [{ prompts: [] }, { accepted: [] }]) {
+    const error = await failure(segmentClip(list.values(), options).next());
+    assert.match(error.message, /needs frames that can be read again/);
+  }
+});
