@@ -1,6 +1,8 @@
 // What a user writes; compiled under strict settings, never run.
 
 import {
+  type ClipAccepted,
+  type ClipChange,
   type ClipCorrection,
   type ClipPrompt,
   type ClipEdits,
@@ -82,6 +84,11 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const state: Uint8Array | undefined = await whole.state();
   const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48), propagate: 'forward' }];
   const prompts: ClipPrompt[] = [{ frame: 1, label: 7, box: [2, 3, 20, 10] }, { frame: 2, label: 8, click: [5, 5], propagate: 'none' }];
+  prompts.push({ frame: 2, object: 9, clicks: [[5, 5, 1], [9, 5, -1]], box: [2, 3, 20, 10] }, { frame: 3, object: 9 });
+  // @ts-expect-error a click is the object's or is not
+  prompts.push({ frame: 2, object: 9, clicks: [[5, 5, 0]] });
+  corrections.push({ frame: 3, object: 2, labels: new Uint8Array(64 * 48) });
+  const accepted: ClipAccepted[] = [4, { frame: 5, labels: new Uint8Array(64 * 48) }];
   // @ts-expect-error a box has four numbers
   prompts.push({ frame: 1, label: 7, box: [2, 3] });
   const masks: ClipMask[] = [
@@ -97,8 +104,9 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
   const pairs = new Map<number, Uint8Array>();
   const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };
-  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), onPreview: ({ objects }) => console.log(objects.length), ...kept });
-  console.log(again.tracks().objects[0]?.name);
+  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], prompts, accepted, edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), onPreview: ({ objects }) => console.log(objects.length), ...kept });
+  const changes: ClipChange[] = await again.changes();
+  console.log(again.tracks().objects[0]?.name, changes[0]?.gained);
   // @ts-expect-error a clip tells the confidence of objects alone
   segmentClip([], { confidence: true });
   return whole.tracks();
