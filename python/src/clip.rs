@@ -1,6 +1,6 @@
 //! Clips: frames in, labelled frames and tracks out.
 //!
-//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where corrections want them, and once for their
+//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where what is said needs them, and once for their
 //! labels. Each step is done in the thread that keeps the clip; frames are read between the steps.
 
 mod kept;
@@ -8,13 +8,13 @@ mod said;
 mod source;
 mod tracks;
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::VecDeque;
 
 use pyo3::exceptions::PyException;
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
-use veronese::clip::{ClipFrame, ClipOptions, MAX_LOOK_AHEAD, Spread};
+use veronese::clip::{Annotations, Changed, ClipFrame, ClipOptions, MAX_LOOK_AHEAD};
 use veronese::{Frame, SegmentOptions};
 
 use crate::errors::Failure;
@@ -22,7 +22,7 @@ use crate::options::{self, LookAhead};
 use crate::results;
 use crate::worker::Worker;
 use kept::{Kept, Step, Summary};
-use said::{Pointed, Said, Word};
+use said::{Given, Said};
 use source::Source;
 use tracks::Tracks;
 
@@ -38,7 +38,10 @@ pub(crate) fn segment_clip(
     look_ahead: Option<&Bound<'_, PyAny>>,
     masks: Option<&Bound<'_, PyAny>>,
     corrections: Option<&Bound<'_, PyAny>>,
+    prompts: Option<&Bound<'_, PyAny>>,
     locked: Option<&Bound<'_, PyAny>>,
+    named: Option<&Bound<'_, PyAny>>,
+    accepted: Option<&Bound<'_, PyAny>>,
     state: Option<Vec<u8>>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Clip> {
@@ -53,7 +56,10 @@ pub(crate) fn segment_clip(
     let needs = [
         ("masks", masks.is_some()),
         ("corrections", corrections.is_some()),
+        ("prompts", prompts.is_some()),
         ("locked", locked.is_some()),
+        ("named", named.is_some()),
+        ("accepted", accepted.is_some()),
         ("state", state.is_some()),
         ("look_ahead", look_ahead == LookAhead::All),
     ];
@@ -71,10 +77,10 @@ pub(crate) fn segment_clip(
         _ if whole => None,
         _ => Some(MAX_LOOK_AHEAD),
     };
-    let masks = masks.map(|masks| said::masks(masks, length)).transpose()?.unwrap_or_default();
-    let (corrections, prompts) =
-        corrections.map(|corrections| said::corrections(corrections, length)).transpose()?.unwrap_or_default();
-    let locked = locked.map(|locked| said::objects("locked", locked)).transpose()?;
+    let said = Said::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
+    if state.is_none() {
+        said.check_unlocked()?;
+    }
     let worker = Worker::<Kept>::start()?;
     worker
         .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
@@ -83,10 +89,10 @@ pub(crate) fn segment_clip(
         source,
         progress,
         mark_unknown,
-        asked: Some(Asked { masks, corrections, prompts, locked, state }),
+        asked: Some(Asked { said, state }),
         size: None,
         place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false } },
-        spreads: BTreeMap::new(),
+        changes: Vec::new(),
         tracks: Tracks::default(),
         failure: None,
     })
@@ -94,10 +100,7 @@ pub(crate) fn segment_clip(
 
 /// What is asked of a whole clip at its beginning.
 struct Asked {
-    masks: Vec<Said>,
-    corrections: Vec<Said>,
-    prompts: Vec<Pointed>,
-    locked: Option<Vec<u8>>,
+    said: Said,
     state: Option<Vec<u8>>,
 }
 
@@ -129,8 +132,8 @@ pub(crate) struct Clip {
     /// Width and height of all frames, once known.
     size: Option<[usize; 2]>,
     place: Place,
-    /// Where what was said of a frame spreads.
-    spreads: BTreeMap<usize, Spread>,
+    /// What was changed by what was said last.
+    changes: Vec<Changed>,
     tracks: Tracks,
     /// What the source raised, or what is wrong with a frame; the frames before it come first.
     failure: Option<PyErr>,
@@ -170,33 +173,25 @@ impl Clip {
         self.told(py, frame)
     }
 
-    /// Says what is certain in a frame of a whole clip, or points to an object there. Returns the indices of the frames that change.
-    fn correct(&mut self, py: Python<'_>, said: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
-        self.prepare(py)?;
-        let (length, size) = (self.length(), self.size.unwrap_or_default());
-        let changed = match said::word("it ", said, length)? {
-            Word::Labels(said) => {
-                said::check_size("corrections", &said, size)?;
-                self.say(py, said)?
-            }
-            Word::Prompt(pointed) => {
-                said::check_within(&pointed, size)?;
-                self.point(py, pointed)?
-            }
-        };
-        Ok(self.changed(changed))
+    /// Says what is certain in frames of a whole clip, or points to objects there. Returns the indices of the frames that change.
+    #[pyo3(signature = (*said))]
+    fn correct(&mut self, py: Python<'_>, said: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
+        self.say(py, &Given { corrections: Some(said), ..Given::default() })
     }
 
-    /// The objects that no correction of others changes; all others can be changed from now on.
+    /// The objects that nothing changes; all others can be changed from now on.
     fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        let objects = said::objects("objects", objects)?;
-        self.prepare(py)?;
-        self.call(py, move |kept| {
-            kept.segmented(|clip| {
-                clip.lock(&objects);
-                Ok(())
-            })
-        })
+        self.say(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
+    }
+
+    /// The objects that only what is said of themselves changes, besides those of which something was said.
+    fn name(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.say(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
+    }
+
+    /// The frames that are right. Returns the indices of those that change.
+    fn accept(&mut self, py: Python<'_>, frames: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+        self.say(py, &Given { accepted: Some(frames), ..Given::default() })
     }
 
     /// Makes objects one, which keeps the number of the first. Returns the indices of the frames that change.
@@ -214,6 +209,12 @@ impl Clip {
     fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
         let objects = said::objects("objects", objects)?;
         self.renumber(py, &objects, 0)
+    }
+
+    /// What objects have gained and lost by what was said last.
+    fn changes<'py>(&mut self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        self.prepare(py)?;
+        self.changes.iter().map(|changed| results::clip_change(py, changed)).collect()
     }
 
     /// What is known of a whole clip, as bytes for the option `state`.
@@ -401,7 +402,8 @@ impl Clip {
         };
         self.tracks.dropped = summary.dropped;
         self.place = Place::Segmented { length: summary.length, next: 0 };
-        self.apply(py, asked, summary.length)
+        // The source may have failed before it came to a frame.
+        self.annotate(py, asked.said.of_first(summary.length)).map(drop)
     }
 
     /// Solves all pairs. Of a source that fails, the frames before are a clip.
@@ -409,7 +411,7 @@ impl Clip {
         let mut index = 0;
         while let Some(frame) = self.read_or_fail(py, index)? {
             if let (0, Some(size)) = (index, self.size) {
-                asked.check(size)?;
+                asked.said.check(size)?;
             }
             self.report(py, "pairs", index)?;
             self.call(py, move |kept| kept.push(frame))?;
@@ -427,109 +429,50 @@ impl Clip {
         }
         if found > 0 {
             self.size = Some(summary.size);
-            asked.check(summary.size)?;
+            asked.said.check(summary.size)?;
         }
         Ok(summary)
     }
 
-    fn apply(&mut self, py: Python<'_>, asked: Asked, length: usize) -> PyResult<()> {
-        let Asked { masks, corrections, prompts, locked, .. } = asked;
-        let numbers: BTreeSet<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
-        if !numbers.is_empty() {
-            let numbers: Vec<u8> = numbers.into_iter().collect();
-            self.call(py, move |kept| kept.segmented(|clip| Ok(clip.reserve(&numbers))))?;
-        }
-        if let Some(locked) = locked {
-            self.call(py, move |kept| {
-                kept.segmented(|clip| {
-                    clip.lock(&locked);
-                    Ok(())
-                })
-            })?;
-        }
-        // The source may have failed before it came to a frame.
-        for said in said::together(masks, corrections).into_iter().filter(|said| said.frame < length) {
-            self.say(py, said)?;
-        }
-        // What a box or a click points to depends on what else is there.
-        for pointed in prompts.into_iter().filter(|pointed| pointed.frame < length) {
-            self.point(py, pointed)?;
-        }
-        Ok(())
-    }
-
-    fn say(&mut self, py: Python<'_>, Said { frame, labels, spread, .. }: Said) -> PyResult<Vec<usize>> {
-        let spread = spread.unwrap_or_default();
-        let changed = self.spread(py, frame, labels, spread)?;
-        self.spreads.insert(frame, spread);
-        Ok(changed)
-    }
-
-    fn point(&mut self, py: Python<'_>, pointed: Pointed) -> PyResult<Vec<usize>> {
-        let Pointed { frame: index, object, prompt, spread } = pointed;
-        let frame = self.read_again(py, index)?;
-        let labels = self.call(py, move |kept| kept.outline(index, &frame, prompt, object))?;
-        let spread = spread.or_else(|| self.spreads.get(&index).copied()).unwrap_or_default();
-        self.spread(py, index, labels, spread)
-    }
-
-    /// Spreads what is said of a frame. What ends that early leaves everything as it was.
-    fn spread(&mut self, py: Python<'_>, index: usize, labels: Vec<u8>, spread: Spread) -> PyResult<Vec<usize>> {
-        let changed = self.spread_through(py, index, labels, spread);
-        if changed.is_err()
-            && let Some(worker) = &self.worker
-        {
-            worker.post(Kept::cancel);
-        }
-        changed
-    }
-
-    fn spread_through(
-        &mut self,
-        py: Python<'_>,
-        index: usize,
-        labels: Vec<u8>,
-        spread: Spread,
-    ) -> PyResult<Vec<usize>> {
-        self.call(py, move |kept| kept.correct(index, &labels, spread))?;
-        let (mut wanted, mut all) = (Some(index), Vec::new());
-        while let Some(next) = wanted {
-            self.report(py, "corrections", next)?;
-            let frame = self.read_again(py, next)?;
-            let step: Step = self.call(py, move |kept| kept.take(&frame))?;
-            all.extend(step.changed);
-            wanted = step.wanted;
-        }
-        Ok(all)
+    fn say(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
+        self.prepare(py)?;
+        let said = Said::of(given, self.length())?;
+        said.check(self.size.unwrap_or_default())?;
+        self.annotate(py, said.annotations)
     }
 
     fn renumber(&mut self, py: Python<'_>, objects: &[u8], number: u8) -> PyResult<Vec<usize>> {
         self.prepare(py)?;
-        let objects: Vec<u8> = objects.iter().copied().filter(|&object| object != number).collect();
-        let changed = self.call(py, move |kept| {
-            kept.segmented(|clip| {
-                let mut changed = Vec::new();
-                for object in objects {
-                    changed.extend(clip.renumber(object, number)?);
+        let others = objects.iter().filter(|&&object| object != number);
+        let numbers = others.map(|&object| [object, number]).collect();
+        self.annotate(py, Annotations { numbers, ..Annotations::default() })
+    }
+
+    /// Applies what is said. Returns the frames that have changed, in order. What ends it early leaves everything as it was.
+    fn annotate(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<Vec<usize>> {
+        let done = self.annotate_through(py, annotations);
+        if let Some(worker) = &self.worker {
+            let holds = done.is_ok();
+            worker.post(move |kept| kept.settle(holds));
+        }
+        let (mut changed, changes) = done?;
+        self.changes = changes;
+        self.tracks.changed(&changed);
+        changed.sort_unstable();
+        Ok(changed)
+    }
+
+    fn annotate_through(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<(Vec<usize>, Vec<Changed>)> {
+        let mut step = self.call(py, move |kept| kept.annotate(annotations))?;
+        loop {
+            match step {
+                Step::Done(changed, changes) => return Ok((changed, changes)),
+                Step::Wants(index) => {
+                    self.report(py, "corrections", index)?;
+                    let frame = self.read_again(py, index)?;
+                    step = self.call(py, move |kept| kept.take(&frame))?;
                 }
-                Ok(changed)
-            })
-        })?;
-        Ok(self.changed(changed))
-    }
-
-    /// The frames that have changed, in order, each once.
-    fn changed(&mut self, frames: Vec<usize>) -> Vec<usize> {
-        self.tracks.changed(&frames);
-        frames.into_iter().collect::<BTreeSet<_>>().into_iter().collect()
-    }
-}
-
-impl Asked {
-    /// Whether what is said fits the frames.
-    fn check(&self, size: [usize; 2]) -> Result<(), Failure> {
-        self.masks.iter().try_for_each(|mask| said::check_size("masks", mask, size))?;
-        self.corrections.iter().try_for_each(|correction| said::check_size("corrections", correction, size))?;
-        self.prompts.iter().try_for_each(|prompt| said::check_within(prompt, size))
+            }
+        }
     }
 }

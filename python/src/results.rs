@@ -4,7 +4,7 @@
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use veronese::clip::{ClipFrame, ClipObject};
+use veronese::clip::{Changed, ClipFrame, ClipObject};
 use veronese::embedding::rank::RankCandidate;
 use veronese::refinement::Report;
 use veronese::{
@@ -144,4 +144,9 @@ pub(crate) fn sighting<'py>(py: Python<'py>, frame: usize, object: &ClipObject) 
     let ClipObject { id: _, pixels, bbox: sides, confidence, matrix: motion, .. } = object;
     let motion = motion.as_ref().map(|motion| matrix(py, motion));
     class(py, "Sighting")?.call1((frame, *pixels, bbox(*sides), *confidence, motion))
+}
+
+pub(crate) fn clip_change<'py>(py: Python<'py>, changed: &Changed) -> PyResult<Value<'py>> {
+    let Changed { frame, object, gained, lost, .. } = *changed;
+    class(py, "ClipChange")?.call1((frame, object, gained, lost))
 }

@@ -11,7 +11,7 @@ from typing import Any, Iterator, List, Tuple
 import numpy as np
 import pytest
 from scenes import Pixels, clip, frame, square_mask, write_image
-from veronese import Clip, ClipFrame, Correction, Mask, Prompt, VeroneseError, segment_clip
+from veronese import Accepted, Clip, ClipChange, ClipFrame, Correction, Mask, Prompt, VeroneseError, segment_clip
 
 COUNT = 6
 FRAMES = clip(COUNT)
@@ -148,12 +148,75 @@ def test_tracks_follow_what_changes() -> None:
     assert [track.id for track in segmented.tracks().objects] == [5]
 
 
-def test_a_click_and_a_box_point_to_an_object() -> None:
-    for prompt in (Prompt(2, 9, click=(45, 36)), Prompt(2, 9, box=(20, 14, 46, 46))):
-        found = list(segment_clip(FRAMES, **FAST, corrections=[prompt]))
+def test_clicks_and_a_box_point_to_an_object() -> None:
+    for prompt in (
+        Prompt(2, 9, click=(45, 36)),
+        Prompt(2, 9, box=(20, 14, 46, 46)),
+        Prompt(2, 9, clicks=[(45, 36, 1), (30, 24, 1), (10, 60, -1)]),
+        Prompt(2, 9, (20, 14, 46, 46), clicks=[(40, 40, 1)]),
+    ):
+        found = list(segment_clip(FRAMES, **FAST, prompts=[prompt]))
+        assert [one.labels.tobytes() for one in found] == labels_of(FRAMES, corrections=[prompt]), "they may be among corrections"
         for index in (0, 2, COUNT - 1):
             now, truth = found[index].labels == 9, square_mask(index / 2, 1, 0) == 1
             assert (now & truth).sum() / (now | truth).sum() > 0.7, (prompt, index)
+
+
+def test_a_prompt_is_replaced_and_taken_back() -> None:
+    segmented = segment_clip(FRAMES, **FAST)
+    before = [segmented.frame(index).labels.tobytes() for index in range(COUNT)]
+    segmented.correct(Prompt(2, 9, click=(5, 5)))
+    segmented.correct(Prompt(2, 9, click=(45, 36)))
+    expected = labels_of(FRAMES, prompts=[Prompt(2, 9, click=(45, 36))])
+    assert [segmented.frame(index).labels.tobytes() for index in range(COUNT)] == expected
+    segmented.correct(Prompt(2, 9))
+    assert [segmented.frame(index).labels.tobytes() for index in range(COUNT)] == before
+
+
+def corner(label: int) -> Pixels:
+    """The top left corner of a frame, which is ground."""
+    said = np.full((72, 96), 255, np.uint8)
+    said[2:14, 2:18] = label
+    return said
+
+
+def test_what_is_said_of_one_object_changes_no_other() -> None:
+    masks = [Mask(0, square_mask(0, 7, 0))]
+    segmented = segment_clip(FRAMES, **FAST, masks=masks)
+    before = [one.labels for one in segmented]
+    own = corner(9)
+    own[18:40, 24:50] = 0
+    wide = np.where(own == 255, np.uint8(0), own)
+    changed = segmented.correct(Correction(1, own, object=9), Prompt(4, 9, box=(0, 0, 40, 40)))
+    assert 1 in changed
+    for said in (wide, corner(9)):
+        for index in range(COUNT):
+            labels = segmented.frame(index).labels
+            assert ((labels == 7) == (before[index] == 7)).all(), index
+        segmented.correct(Correction(1, said, object=9))
+    both = segment_clip(FRAMES, **FAST, masks=masks, corrections=[Correction(1, corner(9), object=9), Correction(1, square_mask(0.5, 7, 255), object=7)])
+    labels = [one.labels for one in both][1]
+    assert (labels[2:14, 2:18] == 9).all() and (labels[square_mask(0.5, 1, 0) == 1] == 7).all()
+
+
+def test_what_changed_is_told() -> None:
+    segmented = segment_clip(FRAMES, **FAST)
+    before = [one.labels for one in segmented]
+    assert segmented.changes() == []
+    changed = segmented.correct(Correction(3, square_mask(1.5, 9, 255)))
+    expected = []
+    for index in range(COUNT):
+        now = segmented.frame(index).labels
+        for number in (0, 1, 9):
+            gained, lost = int(((now == number) & (before[index] != number)).sum()), int(((now != number) & (before[index] == number)).sum())
+            if gained or lost:
+                expected.append(ClipChange(index, number, gained, lost))
+    assert segmented.changes() == expected
+    assert sorted({one.frame for one in expected}) == changed
+    segmented.delete(9)
+    assert segmented.changes() == [], "what is merged or deleted is not counted"
+    at_once = segment_clip(FRAMES, **FAST, corrections=[Correction(3, square_mask(1.5, 9, 255))])
+    assert at_once.changes() == expected
 
 
 def test_locked_objects_keep_every_pixel() -> None:
@@ -162,10 +225,83 @@ def test_locked_objects_keep_every_pixel() -> None:
     free = list(segment_clip(FRAMES, **FAST, corrections=[Correction(2, said)]))
     segmented = segment_clip(FRAMES, **FAST, locked=[1], corrections=[Correction(2, said)])
     kept = [one.labels == 1 for one in segmented]
-    others = [index for index in range(COUNT) if index != 2]
     whole = [np.frombuffer(labels, np.uint8).reshape(72, 96) == 1 for labels in WHOLE]
-    assert all((kept[index] == whole[index]).all() for index in others)
-    assert any((free[index].labels == 1).sum() < whole[index].sum() for index in others), "without the lock it loses pixels"
+    assert all((kept[index] == whole[index]).all() for index in range(COUNT))
+    assert any((free[index].labels == 1).sum() < whole[index].sum() for index in range(COUNT)), "without the lock it loses pixels"
+
+
+def test_of_a_locked_object_nothing_new_is_said() -> None:
+    said = Correction(3, square_mask(1.5, 1, 0))
+    segmented = segment_clip(FRAMES, **FAST, corrections=[said])
+    segmented.lock([1])
+    state = segmented.state()
+
+    def says(*given: Any) -> Any:
+        return lambda: segmented.correct(*given)
+
+    for wrong in (
+        says(Correction(2, square_mask(1, 1, 0))),
+        says(Correction(2, corner(0), object=1)),
+        says(Correction(0, corner(9)), Prompt(2, 1, click=(45, 36))),
+        lambda: segmented.delete(1),
+    ):
+        with pytest.raises(VeroneseError) as caught:
+            wrong()
+        assert caught.value.code == "object-locked" and "object 1 is locked" in str(caught.value)
+        assert segmented.state() == state, "nothing is changed then"
+    assert segmented.correct(said) == [], "it is what was said before"
+    segmented.lock([])
+    assert segmented.delete(1)
+
+    steps: List[Any] = []
+    for options in ({"corrections": [said]}, {"prompts": [Prompt(0, 1, click=(45, 36))]}):
+        with pytest.raises(VeroneseError) as caught:
+            segment_clip(FRAMES, **FAST, locked=[1], progress=lambda *step: steps.append(step), **options)  # type: ignore[arg-type]
+        assert caught.value.code == "object-locked"
+    assert not steps, "no pair is solved before"
+
+
+def test_objects_that_are_named_change_by_what_is_said_of_them_alone() -> None:
+    said = np.full((72, 96), 255, np.uint8)
+    said[18:54, 20:40] = 8
+    by_option = segment_clip(FRAMES, **FAST, named=[1], corrections=[Correction(2, said)])
+    later = segment_clip(FRAMES, **FAST)
+    later.name([1])
+    later.correct(Correction(2, said))
+    for index in range(COUNT):
+        before, labels = np.frombuffer(WHOLE[index], np.uint8).reshape(72, 96), later.frame(index).labels
+        changed = (labels == 1) != (before == 1)
+        assert not changed[said == 255].any() and (index == 2 or not changed.any()), index
+        assert (labels == by_option.frame(index).labels).all()
+    assert later.correct(Correction(2, square_mask(1, 1, 0))), "a name is no lock"
+
+
+def test_accepted_frames_change_by_what_is_said_in_them_alone() -> None:
+    segmented = segment_clip(FRAMES, **FAST)
+    before = [one.labels for one in segmented]
+    assert segmented.accept([1, 4]) == []
+    wide = np.full((72, 96), 255, np.uint8)
+    wide[10:60, 15:40] = 9
+    changed = segmented.correct(Correction(2, wide))
+    assert 2 in changed and not {1, 4} & set(changed)
+    assert all((segmented.frame(index).labels == before[index]).all() for index in (1, 4))
+    assert 4 in segmented.correct(Correction(4, corner(9)))
+    now = segmented.frame(4).labels
+    assert (now[2:14, 2:18] == 9).all() and (now[now != 9] == before[4][now != 9]).all()
+
+    right = square_mask(1.5, 1, 0)
+    given = segment_clip(FRAMES, **FAST, accepted=[Accepted(3, right), 5], corrections=[Correction(2, wide)])
+    assert (given.frame(3).labels == right).all()
+    assert (given.frame(5).labels == before[5]).all()
+    restored = segment_clip(FRAMES, state=given.state(), corrections=[Correction(1, wide)])
+    assert (restored.frame(3).labels == right).all()
+
+
+def test_all_that_is_said_at_once_is_what_is_said_in_any_order() -> None:
+    strokes, own = Correction(3, corner(9)), Correction(3, square_mask(1.5, 1, 255), object=1)
+    prompts = [Prompt(4, 5, box=(60, 5, 30, 20)), Prompt(1, 5, clicks=[(70, 60, 1)])]
+    one = labels_of(FRAMES, corrections=[strokes, own], prompts=prompts)
+    assert labels_of(FRAMES, corrections=[*reversed(prompts), own, strokes]) == one
 
 
 def test_objects_are_merged_and_deleted() -> None:
@@ -214,7 +350,8 @@ def test_what_a_listener_raises_ends_the_clip() -> None:
     assert next(segmented, None) is None
 
 
-def test_a_correction_that_is_interrupted_changes_nothing() -> None:
+@pytest.mark.parametrize("said", [[Correction(3, square_mask(1.5, 9, 255))], [Correction(1, square_mask(0.5, 8, 255)), Prompt(4, 9, click=(5, 5))]])
+def test_what_is_interrupted_changes_nothing(said: List[Any]) -> None:
     steps: List[int] = []
 
     def listener(stage: str, index: int, of: Any) -> None:
@@ -227,9 +364,10 @@ def test_a_correction_that_is_interrupted_changes_nothing() -> None:
     list(segmented)
     before = segmented.state()
     with pytest.raises(KeyboardInterrupt):
-        segmented.correct(Correction(3, square_mask(1.5, 9, 255)))
+        segmented.correct(*said)
     assert segmented.state() == before
-    segmented.correct(Correction(3, square_mask(1.5, 9, 255)))
+    assert segmented.changes() == []
+    segmented.correct(*said)
     assert segmented.state() != before
 
 
@@ -249,14 +387,28 @@ FULL = np.zeros((72, 96), np.uint8)
         {"masks": [FULL]},
         {"masks": 3},
         {"corrections": [Correction(0, FULL, propagate="up")]},  # type: ignore[arg-type]
-        {"corrections": [Prompt(0, 1)]},
-        {"corrections": [Prompt(0, 1, box=(0, 0, 5, 5), click=(1, 1))]},
+        {"corrections": [Correction(0, FULL), Correction(0, FULL)]},
+        {"corrections": [Correction(0, FULL, object=1), Correction(0, FULL, object=1)]},
+        {"corrections": [Correction(0, FULL, object=0)]},
+        {"corrections": [Correction(0, FULL + 2, object=1)]},
+        {"corrections": [Prompt(0, 1, box=(0, 0, 5, 5), click=(7, 1))]},
+        {"corrections": [Prompt(0, 1, clicks=[(1, 1, -1)])]},
+        {"corrections": [Prompt(0, 1, clicks=[(1, 1, 0)])]},  # type: ignore[list-item]
+        {"corrections": [Prompt(0, 1, clicks=[(1, 1)])]},  # type: ignore[list-item]
         {"corrections": [Prompt(0, 1, box=(0, 0, 0, 5))]},
         {"corrections": [Prompt(0, 255, click=(1, 1))]},
         {"corrections": [Prompt(0, 1, click=(96, 1))]},
+        {"prompts": [Prompt(0, 1, clicks=[(1, 1, 1), (1, 72, -1)])]},
+        {"prompts": [Prompt(0, 1, box=(90, 0, 7, 5))]},
+        {"prompts": [Correction(0, FULL)]},
         {"corrections": [Prompt(0, 1, click=(1, 1)), Prompt(0, 1, click=(2, 2))]},
         {"locked": [0]},
         {"locked": [255]},
+        {"named": [0]},
+        {"accepted": [COUNT]},
+        {"accepted": [1, 1]},
+        {"accepted": [Accepted(0, FULL[1:])]},
+        {"accepted": 3},
         {"state": b"something else"},
     ],
 )
@@ -278,7 +430,8 @@ def test_a_state_is_of_its_frames() -> None:
 
 def test_options_for_frames_that_come_once_are_refused() -> None:
     options: Any
-    for options in ({"masks": []}, {"corrections": []}, {"locked": []}, {"state": b""}, {"look_ahead": "all"}):
+    said: Any = [{name: []} for name in ("masks", "corrections", "prompts", "locked", "named", "accepted")]
+    for options in (*said, {"state": b""}, {"look_ahead": "all"}):
         with pytest.raises(VeroneseError, match="read again"):
             segment_clip(iter(FRAMES), **options)
     frames: Any

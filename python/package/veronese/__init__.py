@@ -20,8 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _veronese
 from ._types import (
+    Accepted,
     BackgroundMotion,
     Candidate,
+    ClipChange,
     ClipFrame,
     ClipObject,
     ClipTrack,
@@ -43,9 +45,11 @@ from ._types import (
 from ._veronese import Clip, __version__
 
 __all__ = [
+    "Accepted",
     "BackgroundMotion",
     "Candidate",
     "Clip",
+    "ClipChange",
     "ClipFrame",
     "ClipObject",
     "ClipProgress",
@@ -81,7 +85,7 @@ Progress = Callable[[str, int, int], object]
 
 ClipProgress = Callable[[str, int, Optional[int]], object]
 """Called when work on a frame begins, with the stage (``"pairs"``, ``"corrections"`` or ``"labels"``), the frame's index and the number of
-frames, ``None`` where it is not known. An exception that it raises ends the clip, or the correction."""
+frames, ``None`` where it is not known. An exception that it raises ends the clip, or takes back what is being said."""
 
 
 def segment_pair(
@@ -137,7 +141,10 @@ def segment_clip(
     look_ahead: Union[int, Literal["all"], None] = None,
     masks: Optional[Sequence[Mask]] = None,
     corrections: Optional[Sequence[Union[Correction, Prompt]]] = None,
+    prompts: Optional[Sequence[Prompt]] = None,
     locked: Optional[Sequence[int]] = None,
+    named: Optional[Sequence[int]] = None,
+    accepted: Optional[Sequence[Union[int, Accepted]]] = None,
     state: Optional[bytes] = None,
     progress: Optional[ClipProgress] = None,
 ) -> Clip:
@@ -149,6 +156,9 @@ def segment_clip(
 
     All frames must have one size. If the source raises or a frame is unusable, the frames before it come first, then the error.
 
+    Nothing that was painted, given, prompted, named, accepted or locked changes when something else is said. An object that was found
+    automatically changes by the pixels that another one takes from it or gives back.
+
     :param motions: the number of motions in each pair of consecutive frames.
     :param mark_unknown: gives label 255 to pixels whose evidence does not tell an object from the background.
     :param look_ahead: the number of frames that each frame waits for, 0 to 8, or ``"all"``: as many as matter, of a whole clip. Default: 8
@@ -156,13 +166,19 @@ def segment_clip(
     :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. An object that was found
         under one of their numbers gets the lowest free one.
     :param corrections: what is certain in some frames, with the numbers of an earlier run. A correction of a frame that has a mask goes
-        before it where it says anything. Prompts come after all other corrections.
-    :param locked: numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of.
+        before it where it says anything. All count together, in any order; prompts may be among them.
+    :param prompts: clicks and boxes that point to objects in some frames, after what is painted.
+    :param locked: numbers of objects of which nothing changes a pixel. Saying anything new of one is a mistake, ``object-locked``. Where it is
+        given, it replaces what a ``state`` has; so do the next two.
+    :param named: numbers of objects that only what is said of themselves changes.
+    :param accepted: indices of frames that are right, or :class:`Accepted` with their labels. Only what is painted or pointed to in such a
+        frame changes labels there, and the objects in it are followed from it as from a correction. Without labels it has those of now: as masks
+        and a ``state`` have it, before corrections.
     :param state: what :meth:`Clip.state` gave for the same frames: no pair is solved again. ``motions``, ``quality`` and ``look_ahead`` are
         those of the state then.
     """
-    arguments = (motions, quality, mark_unknown, look_ahead, masks, corrections, locked, state, progress)
-    return _veronese.segment_clip(frames, *arguments)
+    said = (masks, corrections, prompts, locked, named, accepted)
+    return _veronese.segment_clip(frames, motions, quality, mark_unknown, look_ahead, *said, state, progress)
 
 
 def fit_points(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Literal, Optional, Tuple
+from typing import Any, List, Literal, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ Labels = NDArray[np.uint8]
 
 Box = Tuple[int, int, int, int]
 """First column, first row, width and height of a rectangle, pixels."""
+
+Click = Tuple[int, int, Literal[1, -1]]
+"""Column and row of a pixel, and 1 if it belongs to an object, -1 if it does not."""
 
 Propagation = Literal["both", "forward", "backward", "none"]
 """Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere."""
@@ -247,29 +250,57 @@ class Mask:
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """What is certain in one frame of a clip.
+    """What is certain in one frame of a clip, painted.
 
-    0 is the background, other numbers are objects (one that no object has makes a new object), and 255 says nothing. A correction replaces
-    an earlier one of its frame; one that says nothing takes it back.
+    255 says nothing. Without ``object`` the labels are a map: it is about the objects that it names (a number that no object has makes a new
+    one), and 0 is where none of these is. A map that names none says of all objects where they are not, as an eraser does. A correction
+    replaces what was painted in its frame of the same object, or as a map; one that says nothing takes it back.
     """
 
     frame: int
     labels: Labels
     propagate: Optional[Propagation] = None
-    """Default: ``"both"``."""
+    """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
+    object: Optional[int] = None
+    """The object that it is about, 1 to 254: the labels are its number, 0 where it is not, and 255. Nothing is said of others."""
 
 
 @dataclass(frozen=True)
 class Prompt:
     """Points to an object in one frame of a clip, found or not: its mask there is made at once, and the object is followed from there.
 
-    It has either a box, which has all of the object, or a click, the column and row of a pixel of the object.
+    Clicks and a box together describe one object; it needs a box or a click that is its own. A prompt replaces an earlier one of its object
+    and frame; one without clicks and box takes it back. It says nothing of other objects.
     """
 
     frame: int
-    label: int
+    object: int
     """The number of the object, 1 to 254; one that no object has makes a new object."""
     box: Optional[Box] = None
+    """Has all of the object."""
     click: Optional[Tuple[int, int]] = None
+    """Column and row of a pixel of the object: in short for a click ``(x, y, 1)``."""
+    clicks: Sequence[Click] = ()
     propagate: Optional[Propagation] = None
-    """Default: that of a correction of the frame, otherwise ``"both"``."""
+    """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Accepted:
+    """A frame of a clip that is right with these labels, of all its pixels."""
+
+    frame: int
+    labels: Labels
+
+
+@dataclass(frozen=True)
+class ClipChange:
+    """Pixels of an object in a frame that what was said has changed."""
+
+    frame: int
+    object: int
+    """Its number; 0 for the background."""
+    gained: int
+    """Number of pixels that it has now and had not."""
+    lost: int
+    """Number of pixels that it had and has no more."""

@@ -3,7 +3,7 @@ from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._types import ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation, SegmentedMotion
+from ._types import Accepted, ClipChange, ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation, SegmentedMotion
 
 __all__ = ["Clip", "__version__", "fit_points", "relabel", "segment_clip", "segment_pair"]
 
@@ -44,7 +44,10 @@ def segment_clip(
     look_ahead: object,
     masks: object,
     corrections: object,
+    prompts: object,
     locked: object,
+    named: object,
+    accepted: object,
     state: Optional[bytes],
     progress: Optional[Any],
 ) -> Clip: ...
@@ -60,18 +63,25 @@ class Clip:
     def __next__(self) -> ClipFrame: ...
     def frame(self, index: int) -> ClipFrame:
         """A frame of a whole clip as it is now, as often as it is asked for."""
-    def correct(self, said: Union[Correction, Prompt]) -> List[int]:
-        """Says what is certain in a frame of a whole clip, or points to an object there. Returns the indices of the frames that change.
+    def correct(self, *said: Union[Correction, Prompt]) -> List[int]:
+        """Says what is certain in frames of a whole clip, or points to objects there. Returns the indices of the frames that change.
 
-        Other objects that a mask or a correction spoke of keep every pixel. Numbers are those before any :meth:`merge` or :meth:`delete`.
+        Nothing that was said of other objects changes, see :func:`segment_clip`. Numbers are those before any :meth:`merge` or :meth:`delete`.
         What is interrupted changes nothing.
         """
     def lock(self, objects: Sequence[int]) -> None:
-        """The objects that no correction of others changes; all others can be changed from now on."""
+        """The objects of which nothing changes a pixel; all others can be changed from now on."""
+    def name(self, objects: Sequence[int]) -> None:
+        """The objects that only what is said of themselves changes, besides those of which something was said."""
+    def accept(self, frames: Sequence[Union[int, Accepted]]) -> List[int]:
+        """The frames that are right, as they are or with labels; all others are open from now on. Returns the indices of those that change."""
     def merge(self, *objects: int) -> List[int]:
         """Makes objects one, which keeps the number of the first. Returns the indices of the frames that change. It cannot be undone."""
     def delete(self, *objects: int) -> List[int]:
         """Makes objects background. Returns the indices of the frames that change. It cannot be undone."""
+    def changes(self) -> List[ClipChange]:
+        """What objects have gained and lost by what was said last, by frame, then by object: by the options of the clip, or by the last call of
+        :meth:`correct`, :meth:`accept`, :meth:`lock` or :meth:`name`. What :meth:`merge` and :meth:`delete` change is not counted."""
     def state(self) -> bytes:
         """What is known of a whole clip, corrections included, for the option ``state``: some kilobytes per frame."""
     def tracks(self) -> ClipTracks:

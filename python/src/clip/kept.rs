@@ -1,7 +1,7 @@
 //! What there is of a clip, kept in a thread of its own.
 
 use veronese::clip::{
-    ClipCorrection, ClipFrame, ClipOptions, ClipSegmenter, Prompt, SegmentedClip, Spread, StreamSegmenter,
+    Annotations, Changed, ClipFrame, ClipJob, ClipOptions, ClipSegmenter, SegmentedClip, StreamSegmenter,
 };
 use veronese::{Error, Frame};
 
@@ -15,7 +15,8 @@ pub(crate) enum Kept {
     Pairs(ClipSegmenter),
     Segmented {
         clip: SegmentedClip,
-        correction: Option<ClipCorrection>,
+        /// What takes effect, and the clip before.
+        job: Option<(ClipJob, SegmentedClip)>,
         /// Whether it came as bytes.
         restored: bool,
     },
@@ -28,10 +29,12 @@ pub(crate) struct Summary {
     pub(crate) dropped: usize,
 }
 
-/// A step of a correction: the frame that it wants next, and those that it has changed.
-pub(crate) struct Step {
-    pub(crate) wanted: Option<usize>,
-    pub(crate) changed: Vec<usize>,
+/// How far what is said has taken effect.
+pub(crate) enum Step {
+    /// The frame that is needed next.
+    Wants(usize),
+    /// The frames that have changed, and what objects have gained and lost.
+    Done(Vec<usize>, Vec<Changed>),
 }
 
 impl Kept {
@@ -79,7 +82,7 @@ impl Kept {
 
     fn keep(&mut self, clip: SegmentedClip, restored: bool) -> Summary {
         let summary = Summary { length: clip.len(), size: clip.size(), dropped: clip.dropped() };
-        *self = Kept::Segmented { clip, correction: None, restored };
+        *self = Kept::Segmented { clip, job: None, restored };
         summary
     }
 
@@ -94,42 +97,41 @@ impl Kept {
         }
     }
 
-    /// What is to be said of a frame when an object is where a prompt points to.
-    pub(crate) fn outline(
-        &mut self,
-        index: usize,
-        frame: &Frame,
-        prompt: Prompt,
-        object: u8,
-    ) -> Result<Vec<u8>, Failure> {
-        self.segmented(|clip| clip.outline(index, frame, prompt, object))
-    }
-
-    /// Begins a correction, which wants the frame first.
-    pub(crate) fn correct(&mut self, index: usize, labels: &[u8], spread: Spread) -> Result<(), Failure> {
+    /// Begins to apply what is said.
+    pub(crate) fn annotate(&mut self, annotations: Annotations) -> Result<Step, Failure> {
         match self {
-            Kept::Segmented { clip, correction, .. } => {
-                *correction = Some(clip.correct(index, labels, spread)?);
-                Ok(())
+            Kept::Segmented { clip, job, .. } => {
+                *job = None;
+                let before = clip.clone();
+                let (begun, _) = job.insert((clip.annotate(annotations)?, before));
+                Ok(step(begun))
             }
             _ => Err(ended()),
         }
     }
 
+    /// Takes the frame that is wanted.
     pub(crate) fn take(&mut self, frame: &Frame) -> Result<Step, Failure> {
-        let Kept::Segmented { clip, correction: Some(correction), restored } = self else { return Err(ended()) };
-        let known = correction.changed().len();
-        correction.take(clip, frame).map_err(|error| told(error, *restored))?;
-        Ok(Step { wanted: correction.wanted(), changed: correction.changed()[known..].to_vec() })
+        let Kept::Segmented { clip, job: Some((job, _)), restored } = self else { return Err(ended()) };
+        job.take(clip, frame).map_err(|error| told(error, *restored))?;
+        Ok(step(job))
     }
 
-    /// Takes back what a correction has changed so far.
-    pub(crate) fn cancel(&mut self) {
-        if let Kept::Segmented { clip, correction, .. } = self
-            && let Some(correction) = correction.take()
+    /// Ends what was said last. It holds, or nobody has said it.
+    pub(crate) fn settle(&mut self, holds: bool) {
+        if let Kept::Segmented { clip, job, .. } = self
+            && let Some((_, before)) = job.take()
+            && !holds
         {
-            correction.cancel(clip);
+            *clip = before;
         }
+    }
+}
+
+fn step(job: &ClipJob) -> Step {
+    match job.wanted() {
+        Some(index) => Step::Wants(index),
+        None => Step::Done(job.changed().to_vec(), job.changes()),
     }
 }
 

@@ -1,90 +1,226 @@
-//! What a person says of frames: masks, corrections, and what points to an object.
+//! What a person says of a clip, read from the classes of the package: masks, corrections, prompts, and frames that are right.
+
+use std::collections::BTreeMap;
 
 use pyo3::prelude::*;
-use veronese::MAX_SIDE;
-use veronese::clip::{Prompt, Spread};
+use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, Spread};
+use veronese::{Error, MAX_SIDE};
 
 use crate::errors::Failure;
 use crate::frames::image;
 use crate::options::{invalid, whole};
 use crate::results::class;
 
-/// What is said of a frame: 255 where nothing is.
+/// What is given for the options of that name.
+#[derive(Default)]
+pub(crate) struct Given<'a, 'py> {
+    pub(crate) masks: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) corrections: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) prompts: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) locked: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) named: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) accepted: Option<&'a Bound<'py, PyAny>>,
+}
+
+/// What is said at one time.
+#[derive(Default)]
 pub(crate) struct Said {
-    pub(crate) frame: usize,
-    pub(crate) labels: Vec<u8>,
-    /// Width and height.
-    pub(crate) size: [usize; 2],
-    pub(crate) spread: Option<Spread>,
-}
-
-/// What points to an object in a frame.
-pub(crate) struct Pointed {
-    pub(crate) frame: usize,
-    pub(crate) object: u8,
-    pub(crate) prompt: Prompt,
-    pub(crate) spread: Option<Spread>,
-}
-
-/// One thing that is said.
-pub(crate) enum Word {
-    Labels(Said),
-    Prompt(Pointed),
+    pub(crate) annotations: Annotations,
+    /// Of each image of labels the option, the frame, width and height.
+    images: Vec<(&'static str, usize, [usize; 2])>,
 }
 
 /// The label of a pixel of which nothing is said.
 const NOTHING: u8 = u8::MAX;
 
-/// Masks: one for a frame at most.
-pub(crate) fn masks(given: &Bound<'_, PyAny>, length: usize) -> PyResult<Vec<Said>> {
-    let mut masks: Vec<Said> = Vec::new();
-    for (at, entry) in entries("masks", "Mask", given)?.iter().enumerate() {
-        let place = format!("number {at} ");
-        if !entry.is_instance(&class(given.py(), "Mask")?)? {
-            return Err(Failure::option("masks", &format!("{place}is no Mask")).into());
-        }
-        let mask = labels("masks", &place, entry, length)?;
-        check_first(masks.iter().any(|other| other.frame == mask.frame), "masks", &place, mask.frame)?;
-        masks.push(mask);
-    }
-    Ok(masks)
+/// Something with where it spreads, if that is said.
+type Spreading<T> = (T, Option<Spread>);
+
+/// Reads one thing after another.
+#[derive(Default)]
+struct Reader {
+    /// Number of frames.
+    length: usize,
+    masks: Vec<Spreading<Painted>>,
+    corrections: Vec<Spreading<Painted>>,
+    prompts: Vec<Spreading<Prompt>>,
+    images: Vec<(&'static str, usize, [usize; 2])>,
 }
 
-/// Corrections and prompts. A frame has one correction at most; prompts come by frame, then by object: in which order they are given makes no
-/// difference.
-pub(crate) fn corrections(given: &Bound<'_, PyAny>, length: usize) -> PyResult<(Vec<Said>, Vec<Pointed>)> {
-    let (mut corrections, mut prompts): (Vec<Said>, Vec<Pointed>) = Default::default();
-    for (at, entry) in entries("corrections", "Correction or Prompt", given)?.iter().enumerate() {
-        let place = format!("number {at} ");
-        match word(&place, entry, length)? {
-            Word::Labels(said) => {
-                let again = corrections.iter().any(|other| other.frame == said.frame);
-                check_first(again, "corrections", &place, said.frame)?;
-                corrections.push(said);
-            }
-            Word::Prompt(pointed) => {
-                let Pointed { frame, object, .. } = pointed;
-                if prompts.iter().any(|other| (other.frame, other.object) == (frame, object)) {
-                    let reason = format!("{place}points to object {object} in frame {frame}, as one before does");
-                    return Err(Failure::option("corrections", &reason).into());
-                }
-                prompts.push(pointed);
+impl Said {
+    /// Checks all that needs no frame.
+    pub(crate) fn of(given: &Given<'_, '_>, length: usize) -> PyResult<Said> {
+        let mut reader = Reader { length, ..Reader::default() };
+        if let Some(masks) = given.masks {
+            reader.read("masks", &["Mask"], masks)?;
+        }
+        if let Some(corrections) = given.corrections {
+            reader.read("corrections", &["Correction", "Prompt"], corrections)?;
+        }
+        if let Some(prompts) = given.prompts {
+            reader.read("prompts", &["Prompt"], prompts)?;
+        }
+        let accepted = given.accepted.map(|accepted| reader.accepted(accepted)).transpose()?;
+        let locked = given.locked.map(|locked| objects("locked", locked)).transpose()?;
+        let named = given.named.map(|named| objects("named", named)).transpose()?;
+        Ok(reader.said(Annotations { locked, named, accepted, ..Annotations::default() }))
+    }
+
+    /// Whether labels fill frames of this size, and prompts lie within them.
+    pub(crate) fn check(&self, [width, height]: [usize; 2]) -> Result<(), Failure> {
+        if let Some((option, frame, [w, h])) = self.images.iter().find(|(.., size)| *size != [width, height]) {
+            let reason = format!("that of frame {frame} has {w}×{h} pixels, a frame has {width}×{height}");
+            return Err(Failure::option(option, &reason));
+        }
+        let is_within = |Prompt { clicks, within, .. }: &Prompt| {
+            clicks.iter().all(|Click { at: [x, y], .. }| *x < width && *y < height)
+                && within.is_none_or(|[x, y, columns, rows]| x + columns <= width && y + rows <= height)
+        };
+        match self.annotations.prompts.iter().find(|prompt| !is_within(prompt)) {
+            None => Ok(()),
+            Some(Prompt { object, frame, .. }) => {
+                let what = format!("what points to object {object} in frame {frame}");
+                Err(Failure::option("prompts", &format!("{what} is not within {width}×{height} pixels")))
             }
         }
     }
-    prompts.sort_by_key(|prompt| (prompt.frame, prompt.object));
-    Ok((corrections, prompts))
+
+    /// Whether nothing is said of a locked object, in a clip of which nothing was said before.
+    pub(crate) fn check_unlocked(&self) -> Result<(), Failure> {
+        let Annotations { corrections, prompts, locked, .. } = &self.annotations;
+        let is_said = |object: &u8| {
+            let is_about = |painted: &Painted| match painted.object {
+                Some(about) => about == *object && painted.labels.iter().any(|label| *label != NOTHING),
+                None => painted.labels.contains(object),
+            };
+            prompts.iter().any(|prompt| prompt.object == *object) || corrections.iter().any(is_about)
+        };
+        match locked.iter().flatten().copied().find(is_said) {
+            Some(object) => Err(Error::ObjectLocked { object }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The same of the first frames alone.
+    pub(crate) fn of_first(self, frames: usize) -> Annotations {
+        let Annotations { mut masks, mut corrections, mut prompts, mut accepted, .. } = self.annotations;
+        masks.retain(|mask| mask.frame < frames);
+        corrections.retain(|correction| correction.frame < frames);
+        prompts.retain(|prompt| prompt.frame < frames);
+        if let Some(accepted) = &mut accepted {
+            accepted.retain(|accepted| accepted.frame < frames);
+        }
+        Annotations { masks, corrections, prompts, accepted, ..self.annotations }
+    }
 }
 
-/// A correction or a prompt. `place`: which of several it is.
-pub(crate) fn word(place: &str, entry: &Bound<'_, PyAny>, length: usize) -> PyResult<Word> {
-    if entry.is_instance(&class(entry.py(), "Correction")?)? {
-        return labels("corrections", place, entry, length).map(Word::Labels);
+impl Reader {
+    fn read(&mut self, option: &'static str, forms: &[&str], given: &Bound<'_, PyAny>) -> PyResult<()> {
+        let iterator =
+            given.try_iter().map_err(|_| invalid(option, &format!("a sequence of {}", forms.join(" or ")), given))?;
+        for (at, entry) in iterator.enumerate() {
+            self.entry(option, forms, &format!("number {at} "), &entry?)?;
+        }
+        Ok(())
     }
-    if entry.is_instance(&class(entry.py(), "Prompt")?)? {
-        return pointed(place, entry, length).map(Word::Prompt);
+
+    /// `place`: which of several it is.
+    fn entry(&mut self, option: &'static str, forms: &[&str], place: &str, entry: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut form = None;
+        for name in forms {
+            if entry.is_instance(&class(entry.py(), name)?)? {
+                form = Some(*name);
+            }
+        }
+        let wrong = |reason: &str| Failure::option(option, &format!("{place}{reason}"));
+        let Some(form) = form else { return Err(wrong(&format!("is no {}", forms.join(" or "))).into()) };
+        let frame = self.frame(option, place, &entry.getattr("frame")?)?;
+        let spread = spread_of(&entry.getattr("propagate")?, &wrong)?;
+        if form == "Prompt" {
+            let prompt = prompt(entry, frame, &wrong)?;
+            if self.prompts.iter().any(|(other, _)| (other.frame, other.object) == (frame, prompt.object)) {
+                let reason = format!("points to object {} in frame {frame}, as one before does", prompt.object);
+                return Err(wrong(&reason).into());
+            }
+            self.prompts.push((prompt, spread));
+            return Ok(());
+        }
+        let about =
+            if form == "Correction" { entry.getattr("object")? } else { entry.py().None().into_bound(entry.py()) };
+        let object = match about.is_none() {
+            true => None,
+            false => Some(object(&about).ok_or_else(|| wrong("must have an object, a number from 1 to 254, or None"))?),
+        };
+        let labels = self.labels(option, place, frame, entry)?;
+        if let Some(object) = object
+            && labels.iter().any(|label| ![0, object, NOTHING].contains(label))
+        {
+            return Err(wrong(&format!("is about object {object} alone: its labels are 0, {object} and 255")).into());
+        }
+        let list = if form == "Mask" { &mut self.masks } else { &mut self.corrections };
+        if list.iter().any(|(other, _)| (other.frame, other.object) == (frame, object)) {
+            let what = object.map_or(String::new(), |object| format!("object {object} in "));
+            return Err(wrong(&format!("is of {what}frame {frame}, as one before is")).into());
+        }
+        list.push((Painted { frame, object, labels, spread: Spread::Both }, spread));
+        Ok(())
     }
-    Err(Failure::option("corrections", &format!("{place}is neither Correction nor Prompt")).into())
+
+    fn accepted(&mut self, given: &Bound<'_, PyAny>) -> PyResult<Vec<Accepted>> {
+        let option = "accepted";
+        let mut accepted: Vec<Accepted> = Vec::new();
+        let iterator = given.try_iter().map_err(|_| invalid(option, "a sequence of frames or Accepted", given))?;
+        for (at, entry) in iterator.enumerate() {
+            let (entry, place) = (entry?, format!("number {at} "));
+            let has_labels = entry.is_instance(&class(entry.py(), "Accepted")?)?;
+            let frame = if has_labels { entry.getattr("frame")? } else { entry.clone() };
+            let frame = self.frame(option, &place, &frame)?;
+            let labels = if has_labels { Some(self.labels(option, &place, frame, &entry)?) } else { None };
+            if accepted.iter().any(|other| other.frame == frame) {
+                return Err(Failure::option(option, &format!("{place}is frame {frame}, as one before is")).into());
+            }
+            accepted.push(Accepted { frame, labels });
+        }
+        Ok(accepted)
+    }
+
+    fn frame(&self, option: &str, place: &str, given: &Bound<'_, PyAny>) -> Result<usize, Failure> {
+        let frame = whole(given).filter(|&frame| frame < self.length);
+        let reason = || match self.length {
+            0 => format!("{place}is of a frame, and there is none"),
+            _ => format!("{place}must have a frame from 0 to {}", self.length - 1),
+        };
+        frame.ok_or_else(|| Failure::option(option, &reason()))
+    }
+
+    fn labels(
+        &mut self,
+        option: &'static str,
+        place: &str,
+        frame: usize,
+        entry: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<u8>> {
+        let (labels, size) = image::<u8>("the labels", "uint8", &entry.getattr("labels")?)
+            .map_err(|failure| Failure::option(option, &format!("{place}has other labels: {}", failure.message)))?;
+        self.images.push((option, frame, size));
+        Ok(labels)
+    }
+
+    /// What does not say where it spreads does so as the label map of its frame.
+    fn said(self, rest: Annotations) -> Said {
+        let maps = self.masks.iter().chain(&self.corrections).filter(|(painted, _)| painted.object.is_none());
+        let ways: BTreeMap<usize, Spread> = maps.filter_map(|(map, spread)| Some((map.frame, (*spread)?))).collect();
+        let of_frame = |frame: usize| ways.get(&frame).copied().unwrap_or_default();
+        let painted = |list: Vec<Spreading<Painted>>| -> Vec<Painted> {
+            let spreads = list.into_iter();
+            spreads.map(|(of, spread)| Painted { spread: spread.unwrap_or_else(|| of_frame(of.frame)), ..of }).collect()
+        };
+        let prompts = self.prompts.into_iter();
+        let prompts =
+            prompts.map(|(of, spread)| Prompt { spread: spread.unwrap_or_else(|| of_frame(of.frame)), ..of }).collect();
+        let (masks, corrections) = (painted(self.masks), painted(self.corrections));
+        Said { annotations: Annotations { masks, corrections, prompts, ..rest }, images: self.images }
+    }
 }
 
 /// Numbers of objects.
@@ -99,105 +235,63 @@ fn object(given: &Bound<'_, PyAny>) -> Option<u8> {
     whole(given).and_then(|number| u8::try_from(number).ok()).filter(|&number| number != 0 && number != NOTHING)
 }
 
-/// What is said of each frame: a correction goes before the mask of its frame where it says anything.
-pub(crate) fn together(mut said: Vec<Said>, corrections: Vec<Said>) -> Vec<Said> {
-    for mut correction in corrections {
-        let Some(mask) = said.iter_mut().find(|mask| mask.frame == correction.frame) else {
-            said.push(correction);
-            continue;
-        };
-        for (label, &below) in correction.labels.iter_mut().zip(&mask.labels) {
-            if *label == NOTHING {
-                *label = below;
-            }
-        }
-        correction.spread = correction.spread.or(mask.spread);
-        *mask = correction;
-    }
-    said
-}
-
-/// Labels must fill the frames.
-pub(crate) fn check_size(option: &str, said: &Said, [width, height]: [usize; 2]) -> Result<(), Failure> {
-    if said.size == [width, height] {
-        return Ok(());
-    }
-    let ([w, h], frame) = (said.size, said.frame);
-    Err(Failure::option(option, &format!("that of frame {frame} has {w}×{h} pixels, a frame has {width}×{height}")))
-}
-
-/// Prompts must lie within the frames.
-pub(crate) fn check_within(prompt: &Pointed, [width, height]: [usize; 2]) -> Result<(), Failure> {
-    let [right, bottom] = match prompt.prompt {
-        Prompt::Click([x, y]) => [x + 1, y + 1],
-        Prompt::Box([x, y, columns, rows]) => [x + columns, y + rows],
-    };
-    if right <= width && bottom <= height {
-        return Ok(());
-    }
-    let Pointed { frame, object, .. } = prompt;
-    let reason = format!("what points to object {object} in frame {frame} is not within {width}×{height} pixels");
-    Err(Failure::option("corrections", &reason))
-}
-
-fn entries<'py>(option: &str, form: &str, given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-    let iterator = given.try_iter().map_err(|_| invalid(option, &format!("a sequence of {form}"), given))?;
-    iterator.collect()
-}
-
-fn check_first(again: bool, option: &str, place: &str, frame: usize) -> Result<(), Failure> {
-    if again { Err(Failure::option(option, &format!("{place}is of frame {frame}, as one before is"))) } else { Ok(()) }
-}
-
-fn labels(option: &str, place: &str, entry: &Bound<'_, PyAny>, length: usize) -> PyResult<Said> {
-    let (frame, spread) = (frame_of(option, place, entry, length)?, spread_of(option, place, entry)?);
-    let (labels, size) = image::<u8>("the labels", "uint8", &entry.getattr("labels")?)
-        .map_err(|failure| Failure::option(option, &format!("{place}has other labels: {}", failure.message)))?;
-    Ok(Said { frame, labels, size, spread })
-}
-
-fn pointed(place: &str, entry: &Bound<'_, PyAny>, length: usize) -> PyResult<Pointed> {
-    let wrong = |reason: &str| Failure::option("corrections", &format!("{place}{reason}"));
-    let frame = frame_of("corrections", place, entry, length)?;
-    let spread = spread_of("corrections", place, entry)?;
-    let number = object(&entry.getattr("label")?).ok_or_else(|| wrong("must have a label, a number from 1 to 254"))?;
-    let sides = |name: &str| -> PyResult<Option<Vec<usize>>> {
-        let given = entry.getattr(name)?;
-        if given.is_none() {
-            return Ok(None);
-        }
-        let numbers: Option<Vec<usize>> = match given.try_iter() {
-            Ok(sides) => sides.map(|side| side.ok().and_then(|side| whole(&side))).collect(),
-            Err(_) => None,
-        };
-        Ok(Some(numbers.filter(|sides| sides.iter().all(|&side| side <= MAX_SIDE)).unwrap_or_default()))
-    };
-    let prompt = match (sides("box")?, sides("click")?) {
-        (Some(_), Some(_)) => return Err(wrong("must have a box or a click, not both").into()),
-        (Some(sides), None) => match sides[..] {
-            [x, y, width, height] if width > 0 && height > 0 => Prompt::Box([x, y, width, height]),
+fn prompt(entry: &Bound<'_, PyAny>, frame: usize, wrong: &dyn Fn(&str) -> Failure) -> PyResult<Prompt> {
+    let object =
+        object(&entry.getattr("object")?).ok_or_else(|| wrong("must have an object, a number from 1 to 254"))?;
+    let within = match given(entry, "box")? {
+        None => None,
+        Some(sides) => match places(&sides).as_deref() {
+            Some(&[x, y, width, height]) if width > 0 && height > 0 => Some([x, y, width, height]),
             _ => return Err(wrong("must have a box, the whole numbers (x, y, width, height)").into()),
         },
-        (None, Some(sides)) => match sides[..] {
-            [x, y] => Prompt::Click([x, y]),
+    };
+    let mut clicks = Vec::new();
+    if let Some(place) = given(entry, "click")? {
+        match places(&place).as_deref() {
+            Some(&[x, y]) => clicks.push(Click { at: [x, y], inside: true }),
             _ => return Err(wrong("must have a click, the whole numbers (x, y)").into()),
-        },
-        (None, None) => return Err(wrong("must have a box or a click").into()),
+        }
+    }
+    let form = || {
+        wrong(
+            "must have clicks, a sequence of (x, y, 1) for what belongs to the object and (x, y, -1) for what does not",
+        )
     };
-    Ok(Pointed { frame, object: number, prompt, spread })
+    for each in entry.getattr("clicks")?.try_iter().map_err(|_| form())? {
+        let (x, y, sign): (Bound<'_, PyAny>, Bound<'_, PyAny>, i32) = each?.extract().map_err(|_| form())?;
+        match (place(&x), place(&y), sign) {
+            (Some(x), Some(y), 1 | -1) => clicks.push(Click { at: [x, y], inside: sign == 1 }),
+            _ => return Err(form().into()),
+        }
+    }
+    let inside = || clicks.iter().filter(|click| click.inside);
+    if within.is_none() && !clicks.is_empty() && inside().next().is_none() {
+        return Err(wrong(&format!("must have a box or a click that belongs to object {object}")).into());
+    }
+    if let Some([left, top, width, height]) = within
+        && let Some(Click { at: [x, y], .. }) = inside()
+            .find(|Click { at: [x, y], .. }| !(left..left + width).contains(x) || !(top..top + height).contains(y))
+    {
+        let reason = format!("has a click at {x}, {y} that belongs to object {object} and is not in its box");
+        return Err(wrong(&reason).into());
+    }
+    Ok(Prompt { frame, object, clicks, within, spread: Spread::Both })
 }
 
-fn frame_of(option: &str, place: &str, entry: &Bound<'_, PyAny>, length: usize) -> PyResult<usize> {
-    let frame = whole(&entry.getattr("frame")?).filter(|&frame| frame < length);
-    let reason = || match length {
-        0 => format!("{place}is of a frame, and there is none"),
-        _ => format!("{place}must have a frame from 0 to {}", length - 1),
-    };
-    Ok(frame.ok_or_else(|| Failure::option(option, &reason()))?)
+/// A field that is not None.
+fn given<'py>(entry: &Bound<'py, PyAny>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    Ok(Some(entry.getattr(name)?).filter(|value| !value.is_none()))
 }
 
-fn spread_of(option: &str, place: &str, entry: &Bound<'_, PyAny>) -> PyResult<Option<Spread>> {
-    let given = entry.getattr("propagate")?;
+fn places(given: &Bound<'_, PyAny>) -> Option<Vec<usize>> {
+    given.try_iter().ok()?.map(|side| place(&side.ok()?)).collect()
+}
+
+fn place(given: &Bound<'_, PyAny>) -> Option<usize> {
+    whole(given).filter(|&place| place <= MAX_SIDE)
+}
+
+fn spread_of(given: &Bound<'_, PyAny>, wrong: &dyn Fn(&str) -> Failure) -> PyResult<Option<Spread>> {
     if given.is_none() {
         return Ok(None);
     }
@@ -206,10 +300,7 @@ fn spread_of(option: &str, place: &str, entry: &Bound<'_, PyAny>) -> PyResult<Op
         Ok("forward") => Spread::Forward,
         Ok("backward") => Spread::Backward,
         Ok("none") => Spread::None,
-        _ => {
-            let reason = format!("{place}must propagate 'both', 'forward', 'backward' or 'none'");
-            return Err(Failure::option(option, &reason).into());
-        }
+        _ => return Err(wrong("must propagate 'both', 'forward', 'backward' or 'none'").into()),
     };
     Ok(Some(spread))
 }
