@@ -1,34 +1,37 @@
-//! What a person does with a clip, in any order: corrections, outlines, renumbering, reserved numbers, locks.
+//! What a person says of a clip, in any order and together, what is interrupted, and what must not change then.
 #![no_main]
 
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use libfuzzer_sys::fuzz_target;
-use veronese::clip::{Prompt, SegmentedClip, Spread};
+use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, SegmentedClip, Spread};
+use veronese::{Error, Frame};
 use veronese_fuzz::{check_clip, known};
 
 #[derive(Arbitrary, Debug)]
 enum Action<'a> {
-    Correct {
-        frame: u8,
-        spread: u8,
-        labels: Labels<'a>,
-        cancel_after: Option<u8>,
-    },
-    /// Takes what an outline says as a correction.
-    Outline {
-        frame: u8,
-        prompt: [u8; 4],
-        boxed: bool,
-        number: u8,
-    },
-    Renumber {
-        object: u8,
-        number: u8,
-    },
-    Reserve(&'a [u8]),
-    Lock(&'a [u8]),
+    Say { words: Vec<Word<'a>>, cancel_after: Option<u8> },
     Unknown(bool),
     Save,
+}
+
+/// One thing that is said.
+#[derive(Arbitrary, Debug)]
+enum Word<'a> {
+    Mask(Paint<'a>),
+    Correct(Paint<'a>),
+    Point { frame: u8, object: u8, clicks: Vec<([u8; 2], bool)>, within: Option<[u8; 4]>, spread: u8 },
+    Lock(&'a [u8]),
+    Name(&'a [u8]),
+    Accept { frames: Vec<u8>, labels: Option<Labels<'a>> },
+    Renumber([u8; 2]),
+}
+
+#[derive(Arbitrary, Debug)]
+struct Paint<'a> {
+    frame: u8,
+    object: Option<u8>,
+    labels: Labels<'a>,
+    spread: u8,
 }
 
 #[derive(Arbitrary, Debug)]
@@ -60,19 +63,75 @@ impl Labels<'_> {
     }
 }
 
-fn correct(clip: &mut SegmentedClip, index: usize, labels: &[u8], spread: Spread, cancel_after: Option<u8>) {
-    let frames = &known().frames;
-    let Ok(mut correction) = clip.correct(index, labels, spread) else { return };
-    let mut taken = 0;
-    while let Some(wanted) = correction.wanted() {
-        if cancel_after == Some(taken) {
-            correction.cancel(clip);
+impl Paint<'_> {
+    fn painted(&self) -> Painted {
+        let mut labels = self.labels.pixels();
+        if let Some(object) = self.object.filter(|object| object % 8 > 0) {
+            // Nearly always as it has to be.
+            labels.iter_mut().filter(|label| ![0, 255].contains(*label)).for_each(|label| *label = object);
+        }
+        Painted { frame: usize::from(self.frame % 4), object: self.object, labels, spread: spread(self.spread) }
+    }
+}
+
+fn spread(chosen: u8) -> Spread {
+    [Spread::Both, Spread::Forward, Spread::Backward, Spread::None][usize::from(chosen % 4)]
+}
+
+fn annotations(words: &[Word<'_>]) -> Annotations {
+    let mut all = Annotations::default();
+    for word in words.iter().take(MOST) {
+        match word {
+            Word::Mask(paint) => all.masks.push(paint.painted()),
+            Word::Correct(paint) => all.corrections.push(paint.painted()),
+            Word::Point { frame, object, clicks, within, spread: chosen } => all.prompts.push(Prompt {
+                frame: usize::from(frame % 4),
+                object: *object,
+                clicks: clicks
+                    .iter()
+                    .take(MOST)
+                    .map(|(at, inside)| Click { at: at.map(|place| usize::from(place % 36)), inside: *inside })
+                    .collect(),
+                within: within.map(|sides| sides.map(|side| usize::from(side % 36))),
+                spread: spread(*chosen),
+            }),
+            Word::Lock(objects) => all.locked = Some(objects.to_vec()),
+            Word::Name(objects) => all.named = Some(objects.to_vec()),
+            Word::Accept { frames, labels } => {
+                let labels = labels.as_ref().map(Labels::pixels);
+                let frames = frames.iter().take(MOST);
+                let accepted = frames.map(|frame| Accepted { frame: usize::from(frame % 4), labels: labels.clone() });
+                all.accepted = Some(accepted.collect());
+            }
+            Word::Renumber(numbers) => all.numbers.push(*numbers),
+        }
+    }
+    all
+}
+
+/// Says something, or takes it back after some frames.
+fn say(clip: &mut SegmentedClip, frames: &[Frame], words: &[Word<'_>], cancel_after: Option<u8>) {
+    let before = clip.clone();
+    let mut job = match clip.annotate(annotations(words)) {
+        Ok(job) => job,
+        Err(error) => {
+            assert!(matches!(error, Error::InvalidOption { .. } | Error::ObjectLocked { .. }), "{error}");
+            assert_eq!(clip.to_bytes(), before.to_bytes(), "what is refused changes nothing");
             return;
         }
-        correction.take(clip, &frames[wanted]).expect("it is the frame that is wanted");
-        taken += 1;
+    };
+    let mut taken = 0;
+    while let Some(wanted) = job.wanted() {
+        if cancel_after == Some(taken) {
+            *clip = before;
+            return;
+        }
+        job.take(clip, &frames[wanted]).expect("it is the frame that is wanted");
+        taken = taken.saturating_add(1);
     }
-    assert!(correction.changed().iter().all(|&index| index < frames.len()));
+    let changed = job.changed();
+    assert!(changed.iter().all(|&index| index < frames.len()));
+    assert!(job.changes().iter().all(|change| changed.contains(&change.frame) && change.gained + change.lost > 0));
 }
 
 fuzz_target!(|actions: Vec<Action<'_>>| {
@@ -80,21 +139,7 @@ fuzz_target!(|actions: Vec<Action<'_>>| {
     let mut clip = SegmentedClip::from_bytes(&known.state).expect("the state is its own");
     for action in actions.iter().take(MOST) {
         match action {
-            Action::Correct { frame, spread, labels, cancel_after } => {
-                let spread = [Spread::Both, Spread::Forward, Spread::Backward, Spread::None][usize::from(spread % 4)];
-                correct(&mut clip, usize::from(frame % 4), &labels.pixels(), spread, *cancel_after);
-            }
-            Action::Outline { frame, prompt, boxed, number } => {
-                let [x, y, wide, high] = prompt.map(|p| usize::from(p % 36));
-                let prompt = if *boxed { Prompt::Box([x, y, wide, high]) } else { Prompt::Click([x, y]) };
-                let index = usize::from(frame % 3);
-                if let Ok(labels) = clip.outline(index, &known.frames[index], prompt, *number) {
-                    correct(&mut clip, index, &labels, Spread::Both, None);
-                }
-            }
-            Action::Renumber { object, number } => drop(clip.renumber(*object, *number)),
-            Action::Reserve(numbers) => drop(clip.reserve(numbers)),
-            Action::Lock(numbers) => clip.lock(numbers),
+            Action::Say { words, cancel_after } => say(&mut clip, &known.frames, words, *cancel_after),
             Action::Unknown(mark) => clip.mark_unknown(*mark),
             Action::Save => {
                 clip = SegmentedClip::from_bytes(&clip.to_bytes()).expect("a clip reads what it has written");
