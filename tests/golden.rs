@@ -106,14 +106,16 @@ fn clip(frames: &[Frame], asked: &Value) -> Answer {
         let mut pairs = ClipSegmenter::new(options).unwrap();
         frames.iter().for_each(|frame| drop(pairs.push(frame.clone()).unwrap()));
         let mut clip = pairs.conclude();
-        for said in asked["corrections"].as_array().into_iter().flatten() {
-            let labels = filled(&frames[0], &said["box"], said["label"].as_u64().unwrap() as u8, 255);
-            let frame = said["frame"].as_u64().unwrap() as usize;
-            let corrections = vec![Painted { frame, object: None, labels, spread: Spread::Both }];
-            let mut correction = clip.annotate(Annotations { corrections, ..Annotations::default() }).unwrap();
-            while let Some(wanted) = correction.wanted() {
-                correction.take(&mut clip, &frames[wanted]).unwrap();
-            }
+        let painted = |said: &Value| Painted {
+            frame: said["frame"].as_u64().unwrap() as usize,
+            object: None,
+            labels: filled(&frames[0], &said["box"], said["label"].as_u64().unwrap() as u8, 255),
+            spread: Spread::Both,
+        };
+        let corrections = asked["corrections"].as_array().into_iter().flatten().map(painted).collect();
+        let mut job = clip.annotate(Annotations { corrections, ..Annotations::default() }).unwrap();
+        while let Some(wanted) = job.wanted() {
+            job.take(&mut clip, &frames[wanted]).unwrap();
         }
         frames.iter().enumerate().map(|(index, frame)| clip.frame(index, frame).unwrap()).collect()
     };
