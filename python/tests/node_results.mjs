@@ -1,7 +1,7 @@
 // What the npm package makes of the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
 //
-// Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, masks, corrections }], points: [{ positions,
-// derivatives, options }] }. A frame is a path of an image, or of RGBA bytes with their size.
+// Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, said }], points: [{ positions, derivatives, options }] }.
+// What is said has masks, corrections, prompts and accepted frames, with files of labels. A frame is a path of an image, or of RGBA bytes with their size.
 
 import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
@@ -43,13 +43,14 @@ function ofPair({ labels, motions, junctions, evidence, confidence }) {
   };
 }
 
-async function ofClip({ frames, stream, options, masks, corrections }) {
+async function ofClip({ frames, stream, options, said }) {
   const read = (index) => pixels(frames[index]);
   async function* each() {
     for (const frame of frames) yield pixels(frame);
   }
-  const said = (list) => Promise.all(list.map(async ({ labels, ...rest }) => (labels ? { ...rest, labels: new Uint8Array(await readFile(labels)) } : rest)));
-  const given = { ...options, ...(masks && { masks: await said(masks) }), ...(corrections && { corrections: await said(corrections) }) };
+  const loaded = async (one) => (one.labels ? { ...one, labels: new Uint8Array(await readFile(one.labels)) } : one);
+  const given = { ...options };
+  for (const [name, list] of Object.entries(said)) given[name] = await Promise.all(list.map(loaded));
   const clip = segmentClip(stream ? each() : { length: frames.length, read }, given);
   const labels = [];
   for await (const frame of clip) labels.push(hash(frame.labels));
@@ -58,6 +59,7 @@ async function ofClip({ frames, stream, options, masks, corrections }) {
   see('BackgroundMotion', background);
   const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
   const state = await clip.state();
+  const changes = (await clip.changes()).map(({ frame, object, gained, lost }) => [frame, object, gained, lost]);
   return {
     labels,
     tracks: numbers([
@@ -66,6 +68,7 @@ async function ofClip({ frames, stream, options, masks, corrections }) {
       dropped,
     ]),
     state: state ? hash(state) : null,
+    changes,
   };
 }
 

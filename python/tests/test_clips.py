@@ -256,7 +256,7 @@ def test_of_a_locked_object_nothing_new_is_said() -> None:
     steps: List[Any] = []
     for options in ({"corrections": [said]}, {"prompts": [Prompt(0, 1, click=(45, 36))]}):
         with pytest.raises(VeroneseError) as caught:
-            segment_clip(FRAMES, **FAST, locked=[1], progress=lambda *step: steps.append(step), **options)  # type: ignore[arg-type]
+            segment_clip(FRAMES, **FAST, locked=[1], progress=lambda *step: steps.append(step), **options)
         assert caught.value.code == "object-locked"
     assert not steps, "no pair is solved before"
 

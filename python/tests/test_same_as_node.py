@@ -16,7 +16,7 @@ import pytest
 import veronese
 from numpy.typing import NDArray
 from scenes import Pixels, clip, frame, square_mask
-from veronese import ClipTracks, Correction, Mask, Prompt, Segmentation, fit_points, segment_clip, segment_pair
+from veronese import Accepted, ClipTracks, Correction, Mask, Prompt, Segmentation, fit_points, segment_clip, segment_pair
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "www" / "public" / "samples"
@@ -25,6 +25,8 @@ NODE = shutil.which("node") or ""
 pytestmark = pytest.mark.skipif(not NODE, reason="there is no node to compare with")
 
 NAMES = {"mark_unknown": "markUnknown", "look_ahead": "lookAhead"}
+# What is said of frames, and what Node has in another form.
+SAID = ("masks", "corrections", "prompts", "accepted")
 
 
 def sha256(content: Any) -> str:
@@ -72,20 +74,28 @@ class Asked:
         rgba[..., :3] = given
         return {"path": self.write(rgba.tobytes()), "width": width, "height": height}
 
-    def said(self, given: Any) -> Dict[str, Any]:
+    def said(self, option: str, given: Any) -> Any:
+        if isinstance(given, int):
+            return given
         said: Dict[str, Any] = {"frame": given.frame}
-        if given.propagate is not None:
+        if getattr(given, "propagate", None) is not None:
             said["propagate"] = given.propagate
-        if isinstance(given, Prompt):
-            said["label"] = given.label
-            said.update({"box": given.box} if given.box else {"click": given.click})
-        else:
+        if not isinstance(given, Prompt):
             said["labels"] = self.write(given.labels.tobytes())
+            if getattr(given, "object", None) is not None:
+                said["object"] = given.object
+        elif option == "prompts":
+            said.update({"object": given.object, "clicks": [*([(*given.click, 1)] if given.click else []), *given.clicks]})
+            said.update({"box": given.box} if given.box else {})
+        else:
+            said["label"] = given.object
+            said.update({"box": given.box} if given.box else {"click": given.click})
         return said
 
     def of_node(self) -> Any:
         def options(given: Dict[str, Any]) -> Dict[str, Any]:
-            return {NAMES.get(name, name): value for name, value in given.items() if name not in ("masks", "corrections")}
+            named = {"edits": {"names": {number: "thing" for number in given["named"]}}} if "named" in given else {}
+            return {**{NAMES.get(name, name): value for name, value in given.items() if name not in (*SAID, "named")}, **named}
 
         asked = {
             "pairs": [{"frames": [self.frame(one) for one in pair], "options": options(given)} for *pair, given in self.pairs],
@@ -94,7 +104,7 @@ class Asked:
                     "frames": [self.frame(one) for one in frames],
                     "stream": stream,
                     "options": options(given),
-                    **{name: [self.said(one) for one in given[name]] for name in ("masks", "corrections") if name in given},
+                    "said": {name: [self.said(name, one) for one in given[name]] for name in SAID if name in given},
                 }
                 for frames, stream, given in self.clips
             ],
@@ -131,7 +141,8 @@ def of_clip(frames: List[Any], stream: bool, options: Dict[str, Any]) -> Dict[st
     segmented = segment_clip(iter(frames) if stream else frames, **options)
     labels = [sha256(one.labels.tobytes()) for one in segmented]
     state = None if stream else sha256(segmented.state())
-    return {"labels": labels, "tracks": of_tracks(segmented.tracks()), "state": state}
+    changes = [] if stream else [[one.frame, one.object, one.gained, one.lost] for one in segmented.changes()]
+    return {"labels": labels, "tracks": of_tracks(segmented.tracks()), "state": state, "changes": changes}
 
 
 def test_ten_pairs(tmp_path: Path) -> None:
@@ -176,6 +187,17 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
         (generated, False, {}),
         (generated, False, {"quality": "fast", **said}),
         (generated, False, {"quality": "fast", **said, "locked": [7]}),
+        (
+            generated,
+            False,
+            {
+                "quality": "fast",
+                "named": [1],
+                "accepted": [Accepted(0, square_mask(0, 1, 0)), 5],
+                "corrections": [Correction(3, partly), Correction(3, square_mask(1.5, 1, 255), object=1)],
+                "prompts": [Prompt(2, 6, (60, 5, 30, 20), clicks=[(70, 10, 1), (62, 24, -1)]), Prompt(4, 6, click=(75, 12), propagate="backward")],
+            },
+        ),
         (generated, True, {"quality": "fast", "look_ahead": 2, "mark_unknown": True}),
         (moving(10, (120, 90)), True, {"quality": "fast"}),
         (real, False, {"quality": "fast", "mark_unknown": True}),
@@ -184,6 +206,7 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
     found = [of_clip(*one) for one in asked.clips]
     assert found == asked.of_node()["clips"]
     assert len({one["tracks"] for one in found}) == len(found), "all are different"
+    assert [bool(one["changes"]) for one in found] == [False, True, True, True, False, False, False, False]
 
 
 def test_measurements(tmp_path: Path) -> None:
