@@ -17,6 +17,9 @@ const OLD: [&str; 10] =
 /// The number of the object whose mask is given, and that of one that no label found fits.
 const GIVEN: u8 = 200;
 const NEW: u8 = 250;
+/// Frames further than this from every stroke are far, and this is a loss of J there.
+const FAR: usize = 8;
+const LOSS: f64 = 0.02;
 /// Least J of a label that is taken for the object.
 const FITS: f64 = 0.05;
 
@@ -40,6 +43,12 @@ pub(crate) struct Row {
     touched: Pointed,
     /// J of the object's label after one click and 0, 1, … rounds of strokes in the worst frame.
     rounds: Vec<f64>,
+    /// Frames more than eight away from every stroke in which the object lost .02 or more in a round, and all such frames.
+    far_lost: [usize; 2],
+    /// Pixels of what was found that a box elsewhere, in the last frame but one, gave to anything but its own object.
+    others_changed: usize,
+    /// Pixels of two accepted frames that a round of strokes in another one changed.
+    accepted_changed: usize,
     /// Time of each round, and of a frame that a correction changed.
     round_seconds: Vec<f64>,
     frame_milliseconds: f64,
@@ -86,8 +95,10 @@ fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Optio
     let mut effort = session.effort;
     let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(automatic, prompt, &truths));
     let (boxed, touched) = (boxed?, touched?);
-    let Rounds { click, rounds, seconds: round_seconds, effort: of_rounds } =
+    let Rounds { click, rounds, far_lost, seconds: round_seconds, effort: of_rounds } =
         corrected(case, data, automatic, options)?;
+    let (others_changed, accepted_changed) =
+        (others_changed(automatic, width)?, accepted_changed(automatic, &truths, width)?);
     effort.time += of_rounds.time;
     effort.frames += of_rounds.frames;
     let baseline = baseline(case, data, options, &truths)?;
@@ -104,6 +115,9 @@ fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Optio
         boxed,
         touched,
         rounds,
+        far_lost,
+        others_changed,
+        accepted_changed,
         round_seconds,
         frame_milliseconds,
         baseline,
@@ -140,6 +154,7 @@ struct Rounds {
     click: f64,
     /// J, that of the click first.
     rounds: Vec<f64>,
+    far_lost: [usize; 2],
     seconds: Vec<f64>,
     effort: Effort,
 }
@@ -152,19 +167,61 @@ fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Option
     let label = if click < FITS { NEW } else { label };
     let mut session = automatic.clone();
     let (mut rounds, mut seconds) = (vec![click], Vec::new());
-    let mut said: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    let mut strokes: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    let mut far_lost = [0; 2];
     for round in 1..=options.rounds {
         let found = masks(&session.labels, label);
         let worst = worst(&each(&found, &truths));
-        let said = said.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
+        let said = strokes.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
         View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, said);
         let before = session.effort.time;
+        let last = each(&found, &truths);
         session.paint(worst, said)?;
         seconds.push((session.effort.time - before).as_secs_f64());
-        rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
+        let now = each(&masks(&session.labels, label), &truths);
+        for t in (0..now.len()).filter(|t| strokes.keys().all(|stroke| stroke.abs_diff(*t) > FAR)) {
+            far_lost[1] += 1;
+            far_lost[0] += usize::from(now[t] <= last[t] - LOSS);
+        }
+        rounds.push(mean(&now));
         dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
     }
-    Ok(Rounds { click, rounds, seconds, effort: session.effort })
+    Ok(Rounds { click, rounds, far_lost, seconds, effort: session.effort })
+}
+
+/// Draws a box around ground in the last frame but one, and counts the pixels of what was found that become anything but its object.
+fn others_changed(automatic: &Session<'_>, width: usize) -> Result<usize, Failure> {
+    let mut session = automatic.clone();
+    let frame = session.labels.len().saturating_sub(2);
+    let ground = of_label(&session.labels[frame], 0);
+    let height = ground.len() / width;
+    let depths = depths(&ground, width);
+    let deepest = (0..ground.len()).rev().max_by_key(|&p| depths[p]).unwrap_or(0);
+    let sides = [width / 8, height / 8];
+    let corner = [deepest % width, deepest / width].map(|at| at as isize);
+    let at = |k: usize, side: usize| (corner[k] - sides[k] as isize / 2).clamp(0, (side - sides[k]) as isize) as usize;
+    let within = Some([at(0, width), at(1, height), sides[0], sides[1]]);
+    session.point(Prompt { frame, object: GIVEN, clicks: Vec::new(), within, spread: Spread::Both })?;
+    let pixels = automatic.labels.iter().flatten().zip(session.labels.iter().flatten());
+    Ok(pixels.filter(|&(before, now)| *before != 0 && before != now && *now != GIVEN).count())
+}
+
+/// Accepts two frames, draws strokes in the worst of the others, and counts the pixels of the accepted ones that change.
+fn accepted_changed(automatic: &Session<'_>, truths: &[Vec<bool>], width: usize) -> Result<usize, Failure> {
+    let mut session = automatic.clone();
+    let count = truths.len();
+    let accepted = [count / 3, 2 * count / 3];
+    session.accept(&accepted)?;
+    let label = best_label(&session.labels, truths).map_or(NEW, |(label, _)| label);
+    let found = masks(&session.labels, label);
+    let mut scores = each(&found, truths);
+    accepted.iter().for_each(|&t| scores[t] = f64::INFINITY);
+    let worst = worst(&scores);
+    let mut said = vec![NOTHING_SAID; truths[0].len()];
+    View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, &mut said);
+    session.paint(worst, &said)?;
+    let changed = |&t: &usize| automatic.labels[t].iter().zip(&session.labels[t]).filter(|(a, b)| a != b).count();
+    Ok(accepted.iter().map(changed).sum())
 }
 
 /// The smallest box around a mask, and a click at its deepest pixel, the first of equals.

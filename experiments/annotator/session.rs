@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use veronese::clip::{
-    Annotations, ClipJob, ClipOptions, ClipSegmenter, FramePairs, Painted, Prompt, SegmentedClip, Spread,
+    Accepted, Annotations, ClipJob, ClipOptions, ClipSegmenter, FramePairs, Painted, Prompt, SegmentedClip, Spread,
 };
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
@@ -71,6 +71,13 @@ impl<'a> Session<'a> {
         let start = Instant::now();
         let job = self.clip.annotate(Annotations { corrections: vec![painted], ..Annotations::default() })?;
         self.effort.time += start.elapsed();
+        self.spread(job)
+    }
+
+    /// Accepts frames as they are.
+    pub(crate) fn accept(&mut self, frames: &[usize]) -> Result<()> {
+        let accepted = Some(frames.iter().map(|&frame| Accepted { frame, labels: None }).collect());
+        let job = self.clip.annotate(Annotations { accepted, ..Annotations::default() })?;
         self.spread(job)
     }
 

@@ -3,10 +3,11 @@
 //! A statement is about one object, or, as a label map, about the objects that it names. It is kept as it was said: a box stays a box. What a
 //! box or clicks suppose to be ground is not their object, and nothing to anybody else.
 
+use super::model;
 use super::runs::Runs;
 use super::saved::{Saved, saved};
 use super::whole::NOTHING_SAID;
-use crate::components::{Connectivity, components};
+use crate::components::{Component, Connectivity, components};
 
 /// Where what is said of a frame spreads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,6 +121,8 @@ pub struct Annotations {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seed {
     Nothing,
+    /// It is in a piece that was taken away as a whole: not the object's, though it may look like it.
+    Dropped,
     Other,
     Object,
 }
@@ -261,16 +264,27 @@ impl Said {
             let old = before.seeds(object);
             let inside: Vec<u8> = now.iter().map(|&label| u8::from(label == object)).collect();
             let parts = components(&inside, width, Connectivity::Eight);
-            let (mut is_cut, mut is_said) = (vec![false; parts.list.len()], vec![false; parts.list.len()]);
+            let mut is_said = vec![false; parts.list.len()];
+            // First and last column and row of the strokes in each.
+            let mut strokes = vec![[usize::MAX, usize::MAX, 0, 0]; parts.list.len()];
             for p in 0..now.len() {
                 let part = parts.of[p] as usize;
-                is_cut[part] |= seeds[p] == Seed::Other && old.as_ref().is_none_or(|old| old[p] != Seed::Other);
                 is_said[part] |= seeds[p] == Seed::Object;
+                if seeds[p] == Seed::Other && old.as_ref().is_none_or(|old| old[p] != Seed::Other) {
+                    let ([x, y], [left, top, right, bottom]) = ([p % width, p / width], strokes[part]);
+                    strokes[part] = [left.min(x), top.min(y), right.max(x), bottom.max(y)];
+                }
             }
             let all: usize = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).sum();
             let goes = |p: usize| {
                 let part = parts.of[p] as usize;
-                inside[p] > 0 && is_cut[part] && !is_said[part] && 2 * parts.list[part].size < all
+                let (Component { size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
+                let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
+                let is_cut = drawn[0] <= drawn[2];
+                // A dab in a large piece may be about part of it.
+                let is_small = (size as f32) < model().part * all as f32;
+                let is_meant = is_cut && (is_small || 2 * size < all && 2 * length(drawn) > length(bounds));
+                inside[p] > 0 && !is_said[part] && is_meant
             };
             let mut piece: Vec<u8> = (0..now.len()).map(|p| if goes(p) { 0 } else { NOTHING_SAID }).collect();
             if !piece.contains(&0) {
@@ -319,16 +333,16 @@ impl Said {
     pub(super) fn seeds(&self, object: u8) -> Option<Vec<Seed>> {
         let mut seeds: Option<Vec<Seed>> = None;
         let layers = [
-            self.pieces.iter().find(|(of, _)| *of == object).map(|(_, labels)| labels),
-            self.outlined(object).map(|of| &of.labels),
-            self.map_of(object).map(|map| &map.labels),
-            self.strokes(object).map(|strokes| &strokes.labels),
+            (self.pieces.iter().find(|(of, _)| *of == object).map(|(_, labels)| labels), Seed::Dropped),
+            (self.outlined(object).map(|of| &of.labels), Seed::Other),
+            (self.map_of(object).map(|map| &map.labels), Seed::Other),
+            (self.strokes(object).map(|strokes| &strokes.labels), Seed::Other),
         ];
-        for labels in layers.into_iter().flatten() {
+        for (labels, other) in layers.into_iter().filter_map(|(labels, other)| Some((labels?, other))) {
             let labels = labels.values();
             let seeds = seeds.get_or_insert_with(|| vec![Seed::Nothing; labels.len()]);
             for (seed, label) in seeds.iter_mut().zip(labels).filter(|(_, label)| *label != NOTHING_SAID) {
-                *seed = if label == object { Seed::Object } else { Seed::Other };
+                *seed = if label == object { Seed::Object } else { other };
             }
         }
         seeds

@@ -62,6 +62,8 @@ pub(super) struct FrameCorrection {
     before: Runs,
     /// Which objects of each frame of the scene were a person's.
     persons: Vec<Numbers>,
+    /// Of which objects something was added to what was said, and nothing taken back.
+    extends: Numbers,
 }
 
 /// What a frame is wanted for.
@@ -88,6 +90,7 @@ impl FrameCorrection {
             done: vec![false; last + 1 - first],
             before: Default::default(),
             persons: (first..=last).map(|t| clip.persons_in(t)).collect(),
+            extends: [true; 256],
         }
     }
 
@@ -166,7 +169,9 @@ impl FrameCorrection {
                 said.point(prompt, &labels);
             }
         }
-        said.drop_pieces(&before, &now, clip.size()[0]);
+        if std::env::var("NOPIECES").is_err() {
+            said.drop_pieces(&before, &now, clip.size()[0]);
+        }
         said.keep_bases(&now);
         let persons = clip.persons_in(self.index);
         let mut touched = [false; 256];
@@ -186,6 +191,14 @@ impl FrameCorrection {
             said.takes_from.iter().copied().for_each(&mut touch);
         }
         let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
+        for number in (1..NOTHING_SAID).filter(|&number| !said.agrees(&before, number)) {
+            let now = said.seeds(number).unwrap_or_default();
+            let is_kept = |(p, seed): (usize, &Seed)| {
+                *seed == Seed::Nothing || now.get(p).is_some_and(|now| now != &Seed::Nothing)
+            };
+            self.extends[usize::from(number)] =
+                before.seeds(number).unwrap_or_default().iter().enumerate().all(is_kept);
+        }
         let is_new = !said.is_same(&before);
         clip.frames[self.index].said = (!said.is_empty()).then_some(said);
         self.before = Runs::of(&now);
@@ -425,6 +438,7 @@ impl FrameCorrection {
         }
         let said = clip.frames[t].said.clone().unwrap_or_default();
         let hand = said.by_hand().unwrap_or_default();
+        let was = clip.overlaid(t, &found, &self.persons[t - self.scene[0]]);
         let mut best = vec![0.0f32; width * height];
         for (number, claim) in claims {
             let claim = claim.as_ref().filter(|claim| claim.mask.contains(&1));
@@ -440,12 +454,26 @@ impl FrameCorrection {
             for (inside, seed) in full.iter_mut().zip(seeds.iter().flatten()) {
                 match seed {
                     Seed::Nothing => {}
-                    Seed::Other => *inside = 0,
+                    Seed::Other | Seed::Dropped => *inside = 0,
                     Seed::Object => *inside = 1,
                 }
             }
             if let Some((base, seeds)) = base.zip(seeds.as_ref()) {
                 local::keep(&mut full, &base, seeds, width);
+            }
+            let env =
+                |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
+            let (theta, tau) = (env("THETA", 0.0), env("TAU", 8.0));
+            if theta > 0.0 && seeds.is_none() && self.extends[usize::from(*number)] {
+                let was: Vec<u8> = was.iter().map(|label| u8::from(label == number)).collect();
+                if was.contains(&1) {
+                    let near = (t.abs_diff(self.index)) as f32;
+                    let least = theta * (1.0 - libm::expf(-(near - 1.0) / tau));
+                    let odds = |p: usize| {
+                        claim.map_or(-2.0 * model().certain, |claim| claim.at(look.pixel(p, width), look.size[0]))
+                    };
+                    settle(&mut full, &was, &odds, least, width);
+                }
             }
             // What a label map says to be ground stays it, but for objects that were there.
             let is_free = |p: usize| !held[p] && (hand.get(p) != Some(&0) || shown[p] == *number);
@@ -456,6 +484,12 @@ impl FrameCorrection {
                     (best[p], labels[p]) = (odds, *number);
                 }
             }
+        }
+        if std::env::var("NORIM").is_err() {
+            let takes = |from: u8, other: u8| {
+                from != 0 && from != other && decided(other) && !persons[usize::from(from)] && !kept[usize::from(from)]
+            };
+            local::absorb_rims(&mut labels, &found, &takes, width, 2 * look.step);
         }
         let certain = 2.0 * model().certain;
         let shown_here = |p: usize| match shown[p] {
@@ -549,6 +583,27 @@ impl SegmentedClip {
             }
         }
         sizes
+    }
+}
+
+/// Far from what was said.
+fn settle(mask: &mut [u8], before: &[u8], odds: &dyn Fn(usize) -> f32, least: f32, width: usize) {
+    use crate::components::{Connectivity, components};
+    let changes: Vec<u8> = mask.iter().zip(before).map(|(now, before)| now + 2 * before).collect();
+    let parts = components(&changes, width, Connectivity::Eight);
+    let mut sums = vec![0.0f32; parts.list.len()];
+    for (p, change) in changes.iter().enumerate() {
+        sums[parts.of[p] as usize] += match change {
+            1 => odds(p),
+            2 => -odds(p),
+            _ => 0.0,
+        };
+    }
+    for (p, inside) in mask.iter_mut().enumerate() {
+        let part = parts.of[p] as usize;
+        if matches!(changes[p], 1 | 2) && sums[part] < least * parts.list[part].size as f32 {
+            *inside = before[p];
+        }
     }
 }
 

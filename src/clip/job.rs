@@ -59,6 +59,7 @@ impl ClipJob {
         let mut given: Vec<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
         given.sort_unstable();
         given.dedup();
+        given.iter().filter(|label| is_object(**label)).for_each(|&label| clip.given[usize::from(label)] = true);
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
         }
@@ -141,6 +142,10 @@ impl ClipJob {
     }
 }
 
+fn is_object(number: u8) -> bool {
+    number != 0 && number != NOTHING_SAID
+}
+
 /// A step for each frame in which something is painted: a correction goes before the mask of its frame where it says anything.
 fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
     let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
@@ -166,7 +171,6 @@ fn check_all(clip: &SegmentedClip, annotations: &Annotations) -> Result<()> {
     let Annotations { masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
     let [width, height] = clip.size();
     let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
-    let is_object = |number: u8| number != 0 && number != NOTHING_SAID;
     let fill = |name, labels: &[u8]| match labels.len() == width * height {
         true => Ok(()),
         false => {

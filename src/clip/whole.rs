@@ -174,8 +174,8 @@ impl ClipSegmenter {
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         let stream = look_ahead.is_some();
         let ClipSegmenter { hashes, frames, .. } = self;
-        let [locked, named] = [(); 2].map(|()| vec![false; 256]);
-        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, hashes, frames }
+        let [locked, named, given] = [(); 3].map(|()| vec![false; 256]);
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames }
     }
 
     /// Divides what was one object before it was two.
@@ -224,12 +224,14 @@ pub struct SegmentedClip {
     pub(super) locked: Vec<bool>,
     /// Whether only what is said of itself changes the object of a number.
     pub(super) named: Vec<bool>,
+    /// Whether masks with a number were given: the object takes the place of what was found of it.
+    pub(super) given: Vec<bool>,
     /// Of every frame as it was segmented.
     hashes: Vec<u64>,
     pub(super) frames: Vec<FrameState>,
 }
 
-saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, hashes, frames });
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames });
 
 /// A frame of a segmented clip.
 #[derive(Clone, Debug)]
@@ -390,15 +392,27 @@ impl SegmentedClip {
         self.overlaid(index, &self.found_full(index, luminance), &self.persons_in(index))
     }
 
-    /// Full-size labels that were found with the layer of a frame over them. What was found of an object of a person does not show.
+    /// Full-size labels that were found with the layer of a frame over them. What was found of an object of a person does not show, nor what
+    /// is left of one of which an object whose masks were given has most.
     pub(super) fn overlaid(&self, index: usize, found: &[u8], persons: &Numbers) -> Vec<u8> {
-        let layer = self.above(index);
-        let shown = |(p, &found): (usize, &u8)| match layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]) {
-            NOTHING_SAID if persons[usize::from(found)] => 0,
+        let layer = self.above(index).unwrap_or_else(|| vec![NOTHING_SAID; found.len()]);
+        let mut sizes = [[0usize; 2]; 256];
+        for (&found, &label) in found.iter().zip(&layer) {
+            sizes[usize::from(found)][0] += 1;
+            sizes[usize::from(found)][1] += usize::from(self.given[usize::from(label)]);
+        }
+        let kept = self.kept();
+        let hides = |label: u8| {
+            let k = usize::from(label);
+            persons[k] || !kept[k] && 2 * sizes[k][1] > sizes[k][0]
+        };
+        let hidden: Vec<bool> = (0..=u8::MAX).map(hides).collect();
+        let shown = |(&layer, &found): (&u8, &u8)| match layer {
+            NOTHING_SAID if hidden[usize::from(found)] => 0,
             NOTHING_SAID => found,
             label => label,
         };
-        found.iter().enumerate().map(shown).collect()
+        layer.iter().zip(found).map(shown).collect()
     }
 
     /// The labels of the layer of a frame, if it has one. What was found shows again where objects of a person were deleted.
@@ -575,7 +589,7 @@ impl SegmentedClip {
 
     fn is_valid(&self) -> bool {
         let [width, height] = self.size;
-        if [self.numbers.len(), self.locked.len(), self.named.len()] != [256; 3]
+        if [self.numbers.len(), self.locked.len(), self.named.len(), self.given.len()] != [256; 4]
             || self.hashes.len() != self.frames.len()
         {
             return false;

@@ -39,7 +39,17 @@ function object({ real }) {
   const rows = groups(real).map(([name, own]) => [
     `${name} (${own.length})`, ...scores.map(([, of]) => score(mean(own.map(of)))), ...times.map(([, of]) => amount(mean(own.map(of)))),
   ]);
-  return table(['clips', ...[...scores, ...times].map(([title]) => title)], rows);
+  const falls = ({ rounds }) => rounds.some((j, k) => j < rounds[k - 1] - 0.01);
+  const sum = (own, of) => own.reduce((all, row) => all + of(row), 0);
+  const far = (own) => sum(own, ({ farLost: [lost] }) => lost) / sum(own, ({ farLost: [, all] }) => all);
+  const last = (own) => score(mean(own.map((row) => row.rounds.at(-1))));
+  const worst = (own) => own.toSorted((one, other) => one.auto - other.auto).slice(0, Math.ceil(own.length / 3));
+  const trust = groups(real).map(([name, own]) => [
+    `${name} (${own.length})`, own.filter(falls).length, `${fixed(100 * far(own), 1)} %`, last(worst(own)), score(mean(worst(own).map(({ mask }) => mask))),
+    whole(sum(own, ({ othersChanged }) => othersChanged)), whole(sum(own, ({ acceptedChanged }) => acceptedChanged)),
+  ]);
+  const titles = ['clips', 'fall in a round', 'far frames that lose', 'worst third, last round', 'worst third, mask', 'pixels of others', 'pixels of accepted'];
+  return `${table(['clips', ...[...scores, ...times].map(([title]) => title)], rows)}\n\n${table(titles, trust)}`;
 }
 
 function objects({ objects }) {

@@ -1,8 +1,9 @@
 //! Strokes change their frame where they are: one that adds to an object takes nothing away, one that takes away adds nothing, and what
-//! nothing connects with a stroke stays.
+//! nothing connects with a stroke stays. And where an object takes another's place, nothing is left of that around it.
 
 use crate::clip::annotation::Seed;
 use crate::clip::model;
+use crate::clip::whole::NOTHING_SAID;
 use crate::components::{Connectivity, components};
 
 /// Takes back what no stroke has changed of an object's mask since it was `before`.
@@ -14,7 +15,7 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     for (p, change) in changes.iter().enumerate() {
         is_meant[parts.of[p] as usize] |= match change {
             1 => seeds[p] == Seed::Object,
-            2 => seeds[p] == Seed::Other,
+            2 => matches!(seeds[p], Seed::Other | Seed::Dropped),
             _ => true,
         };
     }
@@ -24,6 +25,47 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
         }
     }
     smooth(mask, before, seeds, width);
+}
+
+/// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels
+/// over those that were found, and `takes` tells from which one of them which other one takes.
+pub(super) fn absorb_rims(layer: &mut [u8], found: &[u8], takes: &dyn Fn(u8, u8) -> bool, width: usize, reach: usize) {
+    let mut sizes = [[0usize; 2]; 256];
+    for (&found, &label) in found.iter().zip(&*layer) {
+        sizes[usize::from(found)][0] += 1;
+        sizes[usize::from(found)][1] += usize::from(label != NOTHING_SAID && takes(found, label));
+    }
+    let is_taken = |label: u8| 2 * sizes[usize::from(label)][1] > sizes[usize::from(label)][0];
+    let is_left = |p: usize, layer: &[u8]| layer[p] == NOTHING_SAID && is_taken(found[p]);
+    let left: Vec<u8> = (0..layer.len()).map(|p| if is_left(p, layer) { found[p] } else { 0 }).collect();
+    if left.iter().all(|label| *label == 0) {
+        return;
+    }
+    // The nearest of the others within reach.
+    let mut nearest = layer.to_vec();
+    let mut open: Vec<usize> = (0..layer.len()).filter(|&p| left[p] > 0).collect();
+    for _ in 0..reach {
+        let before = nearest.clone();
+        open.retain(|&p| {
+            let x = p % width;
+            let around = [
+                (x > 0, p.wrapping_sub(1)),
+                (x + 1 < width, p + 1),
+                (p >= width, p.wrapping_sub(width)),
+                (true, p + width),
+            ];
+            let beside =
+                around.into_iter().filter(|&(is_inside, q)| is_inside && q < before.len()).map(|(_, q)| before[q]);
+            let other = beside.into_iter().find(|&label| label != NOTHING_SAID && takes(found[p], label));
+            other.inspect(|other| nearest[p] = *other).is_none()
+        });
+    }
+    let parts = components(&left, width, Connectivity::Four);
+    let mut is_wide = vec![false; parts.list.len()];
+    open.iter().for_each(|&p| is_wide[parts.of[p] as usize] = true);
+    for p in (0..layer.len()).filter(|&p| left[p] > 0 && !is_wide[parts.of[p] as usize]) {
+        layer[p] = nearest[p];
+    }
 }
 
 /// Removes specks and pinholes that the change has left behind.

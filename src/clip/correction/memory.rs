@@ -157,7 +157,7 @@ impl Memory {
         self.learn(look, centre, Part::Given, 1.0, &|p| match said[p] {
             Seed::Object => 0,
             Seed::Other => 1,
-            Seed::Nothing => 2,
+            Seed::Nothing | Seed::Dropped => 2,
         });
     }
 

@@ -352,7 +352,7 @@ pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[See
     let odds: Vec<f32> = (0..look.pixels())
         .map(|p| match said[p] {
             Seed::Nothing => odds_at(&area, &odds, p, look.size[0]),
-            Seed::Other => -CERTAIN,
+            Seed::Other | Seed::Dropped => -CERTAIN,
             Seed::Object => CERTAIN,
         })
         .collect();
