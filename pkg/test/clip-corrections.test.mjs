@@ -351,14 +351,12 @@ describe('what a person said through the command line', () => {
       };
       const before = await labels({});
       for (const more of [
-        { boxes: { f4: { 9: box(3, 4) } } },
-        { clicks: { f0: { 9: middle(3, 0) } } },
-        { prompts: [{ frame: 'f3', object: 9, clicks: [[...middle(3, 3), 1], [90, 70, -1]], box: box(3, 3) }] },
-        { boxes: { f4: { 9: box(2, 4) } } },
+        { boxes: { f4: { 9: box(3, 4) } }, clicks: { f3: { 10: middle(2, 3) } } },
+        { clicks: { f0: { 9: middle(3, 0) } }, prompts: [{ frame: 'f3', object: 10, clicks: [[...middle(1, 3), 1], [90, 70, -1]], box: box(1, 3) }] },
       ]) {
         const after = await labels(more);
         for (const id of [1, 2]) assert.equal(changedOf(before, after, id), 0, `${id}: ${JSON.stringify(more)}`);
-        assert.equal(changedOf(before, after, 3, (_, now) => now === 9), 0);
+        assert.equal(changedOf(before, after, 3, (_, now) => now >= 9), 0);
       }
     });
   }

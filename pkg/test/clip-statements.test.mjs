@@ -228,6 +228,8 @@ test('changes() tells what objects have gained and lost, in the frames that have
 test('refuses what it cannot use before any pair is solved', async () => {
   const prompt = (rest) => ({ prompts: [{ frame: 3, object: 9, ...rest }] });
   const cases = [
+    [{ prompts: null }, /'prompts': must be a list/],
+    [{ accepted: null }, /'accepted': must be a list/],
     [{ prompts: {} }, /'prompts': must be a list of \{ frame, object, clicks, box \}/],
     [{ prompts: [{ frame: COUNT, object: 9, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have a frame from 0 to 5/],
     [{ prompts: [{ frame: 3, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have an object, numbers from 1 to 254/],

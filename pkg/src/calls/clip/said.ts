@@ -32,7 +32,7 @@ export interface SaidOfFrames {
 }
 
 /** Checks what is said of frames, whose size is not known yet. */
-export function checkedSaid(given: { [option in keyof SaidOfFrames]: unknown }, length: number): SaidOfFrames {
+export function checkedSaid({ corrections: painting = [], prompts: pointing = [], accepted }: { [option in keyof SaidOfFrames]: unknown }, length: number): SaidOfFrames {
   const form = '{ frame, object, clicks, box }';
   const prompts: Prompt[] = [];
   const read = (option: Prompt['option']) => (entry: Record<string, unknown>, wrong: Wrong) => {
@@ -44,9 +44,9 @@ export function checkedSaid(given: { [option in keyof SaidOfFrames]: unknown }, 
     prompts.push({ frame, object, ...prompt, option });
     return undefined;
   };
-  const corrections = checkedList('corrections', `{ frame, labels } or ${form}`, given.corrections ?? [], length, read('corrections'));
-  checkedList('prompts', form, given.prompts ?? [], length, read('prompts'));
-  return { corrections, prompts, accepted: given.accepted === undefined ? undefined : checkedAccepted(given.accepted, length) };
+  const corrections = checkedList('corrections', `{ frame, labels } or ${form}`, painting, length, read('corrections'));
+  checkedList('prompts', form, pointing, length, read('prompts'));
+  return { corrections, prompts, accepted: accepted === undefined ? undefined : checkedAccepted(accepted, length) };
 }
 
 function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omit<Said, 'frame'> {
