@@ -8,8 +8,8 @@ import { after, before, describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { segmentPair } from 'veronese';
 import { pair } from '../support/moving.mjs';
-import { labelHash } from '../hosts/app/label-hash.js';
-import { install, run } from '../hosts/packed.mjs';
+import { labelHash } from '../packed/app/label-hash.js';
+import { install, run } from '../packed/packed.mjs';
 
 const folder = fileURLToPath(new URL('.', import.meta.url));
 const at = (...path) => join(folder, 'node_modules', ...path);
