@@ -11,6 +11,7 @@ const ALL = SIZES.flatMap(([width, height]) => SCHEMES.map((colorScheme) => ({ w
 for (const { width, height, colorScheme } of ALL) {
   const shot = async (page: Page, state: string, fullPage = false): Promise<void> => {
     await page.waitForTimeout(300); // transitions and thumbnails
+    expect(await page.evaluate(() => matchMedia('(prefers-color-scheme: dark)').matches)).toBe(colorScheme === 'dark');
     await page.screenshot({ path: screen(`${state}-${width}-${colorScheme}`), fullPage });
   };
 

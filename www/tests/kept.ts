@@ -19,7 +19,7 @@ const keptContexts = new Map<string, Kept>();
 /** Playwright's test, with `context` and `page` of a context that is kept over tests and files. */
 export const test = base.extend<Options>({
   fresh: [false, { option: true }],
-  context: async ({ browser, fresh, baseURL, viewport, hasTouch, isMobile, deviceScaleFactor, serviceWorkers }, use) => {
+  context: async ({ browser, fresh, baseURL, viewport, colorScheme, hasTouch, isMobile, deviceScaleFactor, serviceWorkers }, use) => {
     if (fresh || serviceWorkers !== 'block') {
       const context = await browser.newContext();
       await context.newPage();
@@ -30,6 +30,7 @@ export const test = base.extend<Options>({
     const kept = keptContexts.get(kind) ?? (await opened(browser));
     keptContexts.delete(kind); // whatever fails from here on, nobody gets it again
     if (viewport) await kept.page.setViewportSize(viewport);
+    await kept.page.emulateMedia({ colorScheme });
     const [scripts, sessions] = recorded(kept);
     await use(kept.context);
     await Promise.all(scripts.splice(0).map((script) => script.dispose()));
