@@ -104,7 +104,7 @@ pub struct Annotations {
     /// Label maps and strokes, which go before the mask of their frame where they say anything. Each replaces what was painted in its frame
     /// of the same object, or as a map.
     pub corrections: Vec<Painted>,
-    /// Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
+    /// One after another. Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
     pub prompts: Vec<Prompt>,
     /// Objects that nothing changes until they are unlocked; none: as before.
     pub locked: Option<Vec<u8>>,
@@ -130,7 +130,7 @@ pub(crate) enum Seed {
 /// What is said of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Said {
-    /// By object, ascending, the label map first.
+    /// In the order in which they were last changed: later ones go over earlier ones.
     painted: Vec<Strokes>,
     /// By object, ascending.
     prompts: Vec<Outlined>,
@@ -190,11 +190,14 @@ impl Said {
     /// Takes what is painted in the place of what was painted of the same object.
     pub(super) fn paint(&mut self, painted: &Painted) {
         let object = painted.object.unwrap_or(0);
+        let (labels, spread) = (Runs::of(&painted.labels), painted.spread);
+        let strokes = Strokes { object, labels, spread };
+        if self.painted.contains(&strokes) {
+            return;
+        }
         self.painted.retain(|strokes| strokes.object != object);
         if painted.labels.iter().any(|&label| label != NOTHING_SAID) {
-            let at = self.painted.partition_point(|strokes| strokes.object < object);
-            let (labels, spread) = (Runs::of(&painted.labels), painted.spread);
-            self.painted.insert(at, Strokes { object, labels, spread });
+            self.painted.push(strokes);
         }
     }
 
@@ -281,9 +284,10 @@ impl Said {
                 let (Component { size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
                 let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
                 let is_cut = drawn[0] <= drawn[2];
-                // A dab in a large piece may be about part of it.
+                // A dab in a large piece may be about part of it; a stroke through it is not.
                 let is_small = (size as f32) < model().part * all as f32;
-                let is_meant = is_cut && (is_small || 2 * size < all && 2 * length(drawn) > length(bounds));
+                let is_through = length(drawn) as f32 > (1.0 - model().part) * length(bounds) as f32;
+                let is_meant = is_cut && (is_small || is_through && 2 * size < all);
                 inside[p] > 0 && !is_said[part] && is_meant
             };
             let mut piece: Vec<u8> = (0..now.len()).map(|p| if goes(p) { 0 } else { NOTHING_SAID }).collect();

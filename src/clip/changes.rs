@@ -1,7 +1,5 @@
 //! What annotations change: in which frames, and of which objects how many pixels.
 
-use std::collections::BTreeMap;
-
 use super::runs::Runs;
 
 /// Pixels that an object has gained and lost in a frame.
@@ -18,12 +16,12 @@ pub struct Changed {
     pub lost: usize,
 }
 
+/// The frames that change, in the order in which they changed first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
-    /// In the order in which they changed first.
     frames: Vec<usize>,
-    /// The labels of each at first, and what it lost and gained since.
-    of_frames: BTreeMap<usize, (Runs, Vec<Changed>)>,
+    /// By index of the frame: its labels at first, and what objects gained and lost since.
+    labels: Vec<(usize, Runs, Vec<Changed>)>,
 }
 
 impl Changes {
@@ -41,21 +39,24 @@ impl Changes {
     /// The labels of a frame change.
     pub(super) fn set(&mut self, frame: usize, before: &[u8], now: &[u8]) {
         self.add(frame);
-        let (first, changed) = self.of_frames.entry(frame).or_insert_with(|| (Runs::of(before), Vec::new()));
+        let at = self.labels.partition_point(|(of, ..)| *of < frame);
+        if self.labels.get(at).is_none_or(|(of, ..)| *of != frame) {
+            self.labels.insert(at, (frame, Runs::of(before), Vec::new()));
+        }
+        let (_, first, changed) = &mut self.labels[at];
         let mut counts = [[0usize; 2]; 256];
         for (before, &now) in first.values().into_iter().zip(now).filter(|(before, now)| before != *now) {
             counts[usize::from(now)][0] += 1;
             counts[usize::from(before)][1] += 1;
         }
-        let of = |object: u8| {
-            let [gained, lost] = counts[usize::from(object)];
-            (gained + lost > 0).then_some(Changed { frame, object, gained, lost })
-        };
-        *changed = (0..=u8::MAX).filter_map(of).collect();
+        changed.clear();
+        for (object, [gained, lost]) in (0..=u8::MAX).zip(counts).filter(|(_, [gained, lost])| gained + lost > 0) {
+            changed.push(Changed { frame, object, gained, lost });
+        }
     }
 
     /// By frame, then by object.
     pub(super) fn list(&self) -> Vec<Changed> {
-        self.of_frames.values().flat_map(|(_, changed)| changed.iter().copied()).collect()
+        self.labels.iter().flat_map(|(.., changed)| changed.iter().copied()).collect()
     }
 }

@@ -169,9 +169,7 @@ impl FrameCorrection {
                 said.point(prompt, &labels);
             }
         }
-        if std::env::var("NOPIECES").is_err() {
-            said.drop_pieces(&before, &now, clip.size()[0]);
-        }
+        said.drop_pieces(&before, &now, clip.size()[0]);
         said.keep_bases(&now);
         let persons = clip.persons_in(self.index);
         let mut touched = [false; 256];
@@ -461,19 +459,10 @@ impl FrameCorrection {
             if let Some((base, seeds)) = base.zip(seeds.as_ref()) {
                 local::keep(&mut full, &base, seeds, width);
             }
-            let env =
-                |name: &str, default: f32| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default);
-            let (theta, tau) = (env("THETA", 0.0), env("TAU", 8.0));
-            if theta > 0.0 && seeds.is_none() && self.extends[usize::from(*number)] {
+            if seeds.is_none() && self.extends[usize::from(*number)] {
                 let was: Vec<u8> = was.iter().map(|label| u8::from(label == number)).collect();
-                if was.contains(&1) {
-                    let near = (t.abs_diff(self.index)) as f32;
-                    let least = theta * (1.0 - libm::expf(-(near - 1.0) / tau));
-                    let odds = |p: usize| {
-                        claim.map_or(-2.0 * model().certain, |claim| claim.at(look.pixel(p, width), look.size[0]))
-                    };
-                    settle(&mut full, &was, &odds, least, width);
-                }
+                let looks = |p: usize| claim.map_or(0.0, |claim| claim.looks_at(look.pixel(p, width)));
+                local::settle(&mut full, &was, &looks, width);
             }
             // What a label map says to be ground stays it, but for objects that were there.
             let is_free = |p: usize| !held[p] && (hand.get(p) != Some(&0) || shown[p] == *number);
@@ -485,20 +474,15 @@ impl FrameCorrection {
                 }
             }
         }
-        if std::env::var("NORIM").is_err() {
-            let takes = |from: u8, other: u8| {
-                from != 0 && from != other && decided(other) && !persons[usize::from(from)] && !kept[usize::from(from)]
-            };
-            local::absorb_rims(&mut labels, &found, &takes, width, 2 * look.step);
-        }
-        let certain = 2.0 * model().certain;
-        let shown_here = |p: usize| match shown[p] {
-            NOTHING_SAID => 0,
-            label => label,
+        let takes = |from: u8, other: u8| {
+            from != 0 && from != other && decided(other) && !persons[usize::from(from)] && !kept[usize::from(from)]
         };
+        local::absorb_rims(&mut labels, &found, &takes, width, 2 * look.step);
+        let certain = 2.0 * model().certain;
         let erases = said.names_none();
         for (p, hand) in hand.into_iter().enumerate() {
-            let is_locked = held[p] && (clip.locked[usize::from(shown_here(p))] || shown[p] == NOTHING_SAID);
+            let below = if shown[p] == NOTHING_SAID { found[p] } else { shown[p] };
+            let is_locked = held[p] && clip.locked[usize::from(below)];
             // Ground of a label map is that of the objects that it names.
             let is_others = if hand == 0 { labels[p] != NOTHING_SAID && !erases } else { !decided(hand) };
             if hand == NOTHING_SAID || is_locked || is_others {
@@ -583,27 +567,6 @@ impl SegmentedClip {
             }
         }
         sizes
-    }
-}
-
-/// Far from what was said.
-fn settle(mask: &mut [u8], before: &[u8], odds: &dyn Fn(usize) -> f32, least: f32, width: usize) {
-    use crate::components::{Connectivity, components};
-    let changes: Vec<u8> = mask.iter().zip(before).map(|(now, before)| now + 2 * before).collect();
-    let parts = components(&changes, width, Connectivity::Eight);
-    let mut sums = vec![0.0f32; parts.list.len()];
-    for (p, change) in changes.iter().enumerate() {
-        sums[parts.of[p] as usize] += match change {
-            1 => odds(p),
-            2 => -odds(p),
-            _ => 0.0,
-        };
-    }
-    for (p, inside) in mask.iter_mut().enumerate() {
-        let part = parts.of[p] as usize;
-        if matches!(changes[p], 1 | 2) && sums[part] < least * parts.list[part].size as f32 {
-            *inside = before[p];
-        }
     }
 }
 

@@ -54,12 +54,12 @@ enum Step {
 impl ClipJob {
     pub(super) fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
         check_all(clip, &annotations)?;
-        let Annotations { mut masks, corrections, mut prompts, locked, named, accepted, numbers } = annotations;
+        let Annotations { mut masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, numbers, changes: Changes::default() };
-        let mut given: Vec<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
-        given.sort_unstable();
-        given.dedup();
-        given.iter().filter(|label| is_object(**label)).for_each(|&label| clip.given[usize::from(label)] = true);
+        let mut is_given = [false; 256];
+        masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
+        let given: Vec<u8> = (1..NOTHING_SAID).filter(|&label| is_given[usize::from(label)]).collect();
+        given.iter().for_each(|&label| clip.given[usize::from(label)] = true);
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
         }
@@ -83,7 +83,6 @@ impl ClipJob {
             }
         }
         job.steps.extend(painted(&masks, &corrections));
-        prompts.sort_by_key(|prompt| (prompt.frame, prompt.object));
         job.steps.extend(prompts.into_iter().map(|prompt| Step::Correct(prompt.frame, Change::Prompt(prompt))));
         job.renumber(clip);
         Ok(job)

@@ -1,5 +1,5 @@
 //! Strokes change their frame where they are: one that adds to an object takes nothing away, one that takes away adds nothing, and what
-//! nothing connects with a stroke stays. And where an object takes another's place, nothing is left of that around it.
+//! nothing connects with a stroke stays. In other frames, what is there holds unless the object looks otherwise. And where an object takes another's place, nothing is left of that around it.
 
 use crate::clip::annotation::Seed;
 use crate::clip::model;
@@ -25,6 +25,26 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
         }
     }
     smooth(mask, before, seeds, width);
+}
+
+/// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that way: `looks` are the odds
+/// of the object by its looks. They are weighed over each connected change.
+pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f32, width: usize) {
+    if !before.contains(&1) {
+        return;
+    }
+    // 1 is added, 2 is taken away.
+    let changes: Vec<u8> = mask.iter().zip(before).map(|(now, before)| now + 2 * before).collect();
+    let parts = components(&changes, width, Connectivity::Eight);
+    let mut sums = vec![0.0f32; parts.list.len()];
+    for (p, change) in changes.iter().enumerate().filter(|(_, change)| matches!(change, 1 | 2)) {
+        sums[parts.of[p] as usize] += if *change == 1 { looks(p) } else { -looks(p) };
+    }
+    for (p, inside) in mask.iter_mut().enumerate() {
+        if matches!(changes[p], 1 | 2) && sums[parts.of[p] as usize] < 0.0 {
+            *inside = before[p];
+        }
+    }
 }
 
 /// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels

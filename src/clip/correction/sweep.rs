@@ -47,12 +47,15 @@ pub(super) struct Claim {
     pub(super) odds: Vec<f32>,
     /// 1 for the object.
     pub(super) mask: Vec<u8>,
+    /// Odds of the object by its looks alone at every pixel of the frame, 0 where they are not known; empty if they are nowhere.
+    looks: Vec<f32>,
 }
 
 /// What is expected of an object in the next frame.
 pub(super) struct Expected {
     pub(super) area: Area,
     pub(super) odds: Vec<f32>,
+    looks: Vec<f32>,
     centre: [f32; 2],
     placed: Option<Placed>,
     /// How much each pixel is awaited to be that of a hidden object.
@@ -235,12 +238,16 @@ impl Sweep {
             z.clamp(-model().certain, most)
         });
         let odds = odds.collect();
-        Some(Expected { area, odds, centre, placed, awaited })
+        let mut looks = vec![0.0; look.pixels()];
+        if let Some(remembered) = &remembered {
+            area.pixels(width).zip(remembered).for_each(|(p, r)| looks[p] = logit(*r));
+        }
+        Some(Expected { area, odds, looks, centre, placed, awaited })
     }
 
     /// Comes to the next frame, with what was expected of it and what is said there.
     pub(super) fn step(&mut self, look: &Look, given: &Given<'_>, expected: Expected) -> Claim {
-        let Expected { area, odds, centre, placed, .. } = expected;
+        let Expected { area, odds, looks, centre, placed, .. } = expected;
         let solve = |said| solved(look, area.clone(), odds.clone(), said);
         let contradicts = |claim: &Claim, said: &[Seed]| {
             let mut pixels = claim.area.pixels(look.size[0]).zip(&claim.mask);
@@ -273,6 +280,8 @@ impl Sweep {
             let centre = if whole.now { seen } else { centre };
             self.arrive(look, given, Front { mask, centre, whole }, [true, false]);
         }
+        let mut claim = claim;
+        claim.looks = looks;
         claim
     }
 
@@ -315,6 +324,21 @@ impl Claim {
         plane
     }
 
+    /// Odds of the object at a pixel by its looks alone; 0 if they are not known.
+    pub(super) fn looks_at(&self, p: usize) -> f32 {
+        self.looks.get(p).copied().unwrap_or(0.0)
+    }
+
+    /// The odds of two claims, by the weights of each.
+    pub(super) fn joined(look: &Look, claims: [&Claim; 2], weights: [f32; 2]) -> Claim {
+        let (area, width) = (claims[0].area.with(&claims[1].area), look.size[0]);
+        let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
+        let odds: Vec<f32> = area.pixels(width).map(|p| mean(claims.map(|claim| claim.at(p, width)))).collect();
+        let looks = (0..look.pixels()).map(|p| mean(claims.map(|claim| claim.looks_at(p)))).collect();
+        let mask = cut(look, &area, &odds);
+        Claim { area, odds, mask, looks }
+    }
+
     /// Odds at a pixel.
     pub(super) fn at(&self, p: usize, width: usize) -> f32 {
         odds_at(&self.area, &self.odds, p, width)
@@ -347,7 +371,7 @@ pub(super) fn logit(p: f32) -> f32 {
 pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Seed]>) -> Claim {
     let Some(said) = said else {
         let mask = cut(look, &area, &odds);
-        return Claim { area, odds, mask };
+        return Claim { area, odds, mask, looks: Vec::new() };
     };
     let odds: Vec<f32> = (0..look.pixels())
         .map(|p| match said[p] {
@@ -362,7 +386,7 @@ pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[See
     } else {
         odds.iter().map(|&z| u8::from(z > 0.0)).collect()
     };
-    Claim { area, odds, mask }
+    Claim { area, odds, mask, looks: Vec::new() }
 }
 
 /// The mask of least energy.

@@ -2,9 +2,8 @@
 //! between them both, by nearness.
 
 use super::look::Look;
-use super::sweep::{Claim, Expected, Given, Sweep, cut};
+use super::sweep::{Claim, Expected, Given, Sweep};
 use crate::clip::annotation::{Seed, Spread};
-use crate::frame::area::Area;
 
 /// A frame that speaks of an object, and where that spreads.
 pub(super) type Start = (usize, Spread);
@@ -127,10 +126,6 @@ impl Track {
         let distance = |start: Option<&Start>| start.map_or(0.0, |(start, _)| start.abs_diff(t) as f32);
         let since = distance(self.starts.iter().rev().find(|(start, spread)| *start <= t && spread.ways()[0]));
         let until = distance(self.starts.iter().find(|(start, spread)| *start >= t && spread.ways()[1]));
-        let (area, width): (Area, usize) = (forward.area.with(&backward.area), look.size[0]);
-        let both = |p| forward.at(p, width) * (until + 0.5) + backward.at(p, width) * (since + 0.5);
-        let odds: Vec<f32> = area.pixels(width).map(|p| both(p) / (since + until + 1.0)).collect();
-        let mask = cut(look, &area, &odds);
-        Claim { area, odds, mask }
+        Claim::joined(look, [forward, backward], [until + 0.5, since + 0.5])
     }
 }
