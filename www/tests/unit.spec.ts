@@ -25,11 +25,12 @@ import type { Frames } from '../src/session/frames.js';
 import type { PairSegmenting } from '../src/session/pair/segmenting.js';
 import { Playing } from '../src/session/playing.js';
 import { exactly } from '../src/state/exact.js';
-import { withSaid } from '../src/state/said.js';
-import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan, withRun } from '../src/state/spans.js';
+import { painted, promptOf, withSaid } from '../src/state/said.js';
+import { becameAfter, editsIn, fromSpan, numbersOf, spanAt, theirNumbers, toSpan, toldOf, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result, Store } from '../src/state/state.js';
-import { type Tracked, type TrackedFrame, type Version, isUnsavedClip, untracked, versionOf } from '../src/state/tracked.js';
+import { type Painted, type Prompt, type Said, points, refined, saidAtSize, withStatement } from '../src/state/statement.js';
+import { type Tracked, type TrackedFrame, type Version, isUnsavedClip, unchanged, untracked, versionOf } from '../src/state/tracked.js';
 import { cornersOf, setCorner, takeBack } from '../src/views/polygon.js';
 import { differences } from './support.js';
 
@@ -360,18 +361,68 @@ test('an object keeps its number when its frames are segmented again', () => {
   expect(numbersOf([masks(7, 7, 0, 0, 0, 0)], { first: 3, last: 3 }, version)).toEqual(new Map([[7, 1]]));
 });
 
-test('objects that a person has spoken of by erasing are not locked', () => {
-  const runs = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
-  const span = { range: { first: 0, last: 1 }, state: new Blob(), numbers: new Map([[1, 5], [2, 6], [3, 7], [4, 8]]) };
-  const found = [runs(5, 6, 7, 8), runs(5, 6, 7, 8)];
-  const frames = found.map((runs) => ({ runs, objects: [], background: null }));
-  const version = { ...untracked({ count: 2 } as Clip), frames, found, spans: [span], painted: new Map([[0, runs(255, 0, 255, 255)]]), became: new Map([[8, 7]]) };
-  expect(lockedIn(span, version, [], () => true)).toEqual([1, 3, 4]);
-  expect(lockedIn(span, version, [], (id) => id === 7)).toEqual([3, 4]); // what was merged into it as well
-  // The frame that is painted now names 5.
-  const now = { ...version, painted: new Map([...version.painted, [1, runs(255, 255, 255, 5)]]) };
-  expect(lockedIn(span, now, [1], () => true)).toEqual([3, 4]);
-  expect(lockedIn(span, now, [0], () => true)).toEqual([1, 3, 4]);
+/** Labels of 6×1 pixels. */
+const labels = (...values: number[]): Runs => packed(Uint8Array.from(values), 6, 1);
+const stroke = (object: number, ...values: number[]): Painted => ({ frame: 0, object, propagate: 'both', labels: labels(...values) });
+const prompt = (object: number, clicks: Prompt['clicks'], box: Prompt['box'] = null): Prompt => ({ frame: 0, object, propagate: 'both', clicks, box });
+
+test('what is said is kept of each object, in the order in which it was said', () => {
+  const none: ReadonlySet<number> = new Set();
+  const all = [stroke(1, 1, 1, 255, 255, 255, 255), stroke(2, 255, 2, 2, 0, 255, 255), prompt(1, [[0, 0, 1]]), stroke(1, 255, 0, 255, 255, 255, 1), prompt(1, [[0, 0, 1], [3, 0, -1]])];
+  const said = all.reduce<readonly Said[]>((before, now) => withStatement(before, now, none), []);
+  expect(said.map((one) => ('labels' in one ? [one.object, ...unpacked(one.labels)] : one.clicks))).toEqual([[2, 255, 2, 2, 0, 255, 255], [1, 1, 0, 255, 255, 255, 1], [[0, 0, 1], [3, 0, -1]]]);
+  // A label map of objects is about all that was painted in its frame, but what is locked.
+  const [one, , , map] = withStatement(said, stroke(0, 255, 4, 255, 255, 255, 4), new Set([2])).filter((of) => 'labels' in of || of.object === 1);
+  expect(one).toBe(said[0]);
+  expect(map).toMatchObject({ object: 0 });
+  expect([...unpacked((withStatement(said, stroke(0, 255, 4, 255, 255, 255, 4), none)[0] as Painted).labels)]).toEqual([255, 255, 2, 0, 255, 255]);
+});
+
+test('a prompt is refined by clicks and a box, which has all that is the object', () => {
+  const first = prompt(3, [[4, 4, 1]]);
+  expect(refined(first, [6, 1, -1])).toEqual(prompt(3, [[4, 4, 1], [6, 1, -1]]));
+  const boxed = refined(first, [0, 0, 3, 3]);
+  expect(boxed).toEqual(prompt(3, [[4, 4, 1]], [0, 0, 5, 5]));
+  expect(refined(boxed, [7, 2, 1]).box).toEqual([0, 0, 8, 5]);
+  expect(refined(boxed, [9, 9, -1]).box).toEqual([0, 0, 5, 5]);
+  // The last click on a pixel counts, and something must be left that it points to.
+  expect(refined(first, [4, 4, -1]).clicks).toEqual([[4, 4, -1]]);
+  expect([first, boxed, refined(first, [4, 4, -1])].map(points)).toEqual([true, true, false]);
+  expect(saidAtSize(prompt(3, [[1, 1, 1], [5, 3, -1]], [1, 0, 3, 4]), { width: 6, height: 4 }, { width: 12, height: 8 })).toEqual(prompt(3, [[3, 3, 1], [11, 7, -1]], [2, 0, 6, 8]));
+  const version: Version = { ...untracked({ count: 1 } as Clip), said: [first], became: new Map([[3, 1]]) };
+  expect([promptOf(version, 0, 1), promptOf(version, 0, 3), promptOf(version, 1, 1), promptOf(version, null, null)]).toEqual([first, null, null, null]);
+});
+
+test('an eraser is about the selected object and what was merged into it; the background is about all that is not locked', () => {
+  const start: Version = { ...untracked({ count: 1 } as Clip), frames: [masks(1, 1, 2, 3, 3, 0)], largest: 4, became: new Map([[4, 1]]) };
+  const erase = Uint8Array.of(255, 0, 0, 0, 255, 255);
+  const of = (version: Version, object: number): (readonly number[])[] => painted(version, 0, object, erase, 'none').map((one) => [one.object, ...unpacked(one.labels)]);
+  expect(of(start, 1)).toEqual([[4, 255, 0, 0, 0, 255, 255], [1, 255, 0, 0, 0, 255, 255]]);
+  const erased = withSaid(start, { said: painted(start, 0, 1, erase, 'none') });
+  expect([...unpacked(erased.frames[0]!.runs)]).toEqual([1, 0, 2, 3, 3, 0]);
+  expect(of(erased, 0).map(([object]) => object)).toEqual([0, 4, 1]);
+  const locked = { ...start, locked: new Set([3]) };
+  expect(of(locked, 0).map(([object]) => object)).toEqual([0]);
+  expect([...unpacked(withSaid(locked, { said: painted(locked, 0, 0, erase, 'none') }).frames[0]!.runs)]).toEqual([1, 0, 0, 3, 3, 0]);
+  // Under the masks of a file, which name objects, of each that is there.
+  const imported = { ...locked, said: [stroke(0, 1, 1, 2, 3, 3, 0)] };
+  expect(of(imported, 0).map(([object]) => object)).toEqual([1, 2]);
+});
+
+test('the package is told what is said, by its numbers', () => {
+  const numbers = new Map([[1, 3], [3, 1]]);
+  const { corrections, prompts } = toldOf([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
+  expect(corrections.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
+  expect(prompts).toEqual([{ frame: 0, object: 5, propagate: 'both', clicks: [[1, 0, 1]], box: [0, 0, 2, 1] }]);
+  expect(numbers).toEqual(new Map([[1, 3], [3, 1], [9, 9], [5, 5]]));
+  expect(theirNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
+});
+
+test('frames that come back with the same labels are the same', () => {
+  const before = { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 0, 0, 0, 0, 0), null] };
+  expect(unchanged(before, { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 0, 0, 0, 0, 0), null] }).frames).toBe(before.frames);
+  const now = unchanged(before, { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 2, 0, 0, 0, 0), null] });
+  expect(now.frames.map((frame, index) => frame === before.frames[index])).toEqual([true, false, true]);
 });
 
 test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
@@ -410,22 +461,22 @@ test('what is drawn exactly stays where other things are said, and follows its o
   const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
   const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
   const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
-  const drawn = withSaid(start, { painted: new Map([[0, row(255, 3, 3, 255, 0, 255)]]), spread: 'exact' });
+  const drawn = withSaid(start, { drawn: new Map([[0, row(255, 3, 3, 255, 0, 255)]]) });
   expect(shown(drawn)).toEqual([1, 3, 3, 2, 0, 0]);
   expect(drawn.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [2, 1, 3, 0, 1, 1], [3, 2, 1, 0, 2, 1]]);
   expect(drawn.frames[1]).toBe(start.frames[1]);
-  expect([drawn.largest, drawn.painted.size]).toEqual([3, 0]);
+  expect([drawn.largest, drawn.said.length]).toEqual([3, 0]);
   // Whatever comes for the frame, and unchanged if it agrees.
   expect(shown(exactly({ ...drawn, frames: [masks(4, 4, 4, 4, 4, 4), null] }))).toEqual([4, 3, 3, 4, 0, 4]);
   expect(exactly(drawn).frames[0]).toBe(drawn.frames[0]);
   // A person says otherwise: that counts, and is exact as well where something was.
-  const over = withSaid(drawn, { painted: new Map([[0, row(255, 255, 2, 2, 2, 2)]]), spread: 'both' });
+  const over = withSaid(drawn, { said: [stroke(2, 255, 255, 2, 2, 2, 2)] });
   expect(shown(over)).toEqual([1, 3, 2, 2, 2, 2]);
   expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
   expect(shown(withSaid(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
   expect(shown(withSaid(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
   // What the package has no number of goes along with an object that it has, in all frames.
-  const later = withSaid(drawn, { painted: new Map([[1, row(255, 255, 255, 255, 255, 5)]]), spread: 'both' });
+  const later = withSaid(drawn, { said: [{ ...stroke(5, 255, 255, 255, 255, 255, 5), frame: 1 }] });
   const merged = withSaid(later, { edits: { merge: [[3, 5]] } });
   expect([shown(merged), shown(merged, 1)]).toEqual([[1, 3, 3, 2, 0, 0], [1, 1, 0, 2, 2, 3]]);
   expect(merged.frames[1]!.objects.map(({ id }) => id)).toEqual([1, 2, 3]);

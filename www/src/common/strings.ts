@@ -88,6 +88,12 @@ const TOOLS = {
   box: () => 'Drag a box around something, or press on it: it becomes a new object.',
 };
 
+const POINTING = {
+  new: 'With Shift it is added to the selected object, with Alt or the right button removed.',
+  add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
+  remove: 'Press on what does not belong to the selected object.',
+};
+
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
   split: 'First | second',
@@ -197,10 +203,13 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean): string => {
+  /** `pointing`: what a press of the box tool does where the selected object can be refined, otherwise `null`. */
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, pointing: keyof typeof POINTING | null): string => {
     const thing = isClip ? 'object' : 'mask';
     if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
-    return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
+    const refines = tool === 'box' && pointing !== null ? POINTING[pointing] : '';
+    const said = refines === '' || pointing === 'new' ? `${TOOLS[tool](thing)} ${refines}`.trim() : refines;
+    return `${said} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
   },
 
   accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,
@@ -251,7 +260,9 @@ export const strings = {
     leftOut: (folder: string, count: number): string => `Opened the images of “${folder}”. ${images(count)} of other folders ${count === 1 ? 'is' : 'are'} left out.`,
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
-    nothingThere: 'There is nothing there that is not a locked object or one of yours.',
+    nothingThere: 'There is nothing there that is not an object already.',
+    noPrompt: 'Clicks refine an object that a box or a press made in this frame. Select it first.',
+    isLocked: (name: string): string => `${name} is locked, so nothing changes it. Unlock it first.`,
     noFrameThere: 'There is no segmented frame on that side.',
     locked: 'What you painted belongs to a locked object. Unlock it first.',
     otherState:

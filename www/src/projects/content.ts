@@ -1,27 +1,24 @@
 //! What a project's file says, besides its header, and the checks of it: a file may come from anywhere.
 
-import type { ClipPropagation } from 'veronese';
 import type { Edits } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
-import { type SolvedPairs, type Span, type TrackedFrame, rangeOf } from '../state/tracked.js';
+import { type Click, type Said, isPrompt, points } from '../state/statement.js';
+import type { SolvedPairs, Span } from '../state/tracked.js';
 import type { Project, ProjectClip } from './project.js';
 import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, optional, orNull } from './schema.js';
 
 type Entries<K, V> = readonly (readonly [K, V])[];
 
 /** A project with lists of entries in place of maps. */
-export interface Content extends Pick<Project, 'settings'>, Partial<Pick<Project, 'classList'>> {
+export interface Content extends Pick<Project, 'settings' | 'classList'> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'spread' | 'exact' | 'became' | 'locks' | 'accepted' | 'classes' | 'spans' | 'solved'> & {
-        readonly painted: Entries<number, Runs>;
-        readonly spread?: Entries<number, ClipPropagation>;
-        readonly exact?: Entries<number, Runs>;
+    | (Omit<ProjectClip, 'exact' | 'became' | 'locked' | 'accepted' | 'spans' | 'solved'> & {
+        readonly exact: Entries<number, Runs>;
         readonly became: Entries<number, number>;
-        readonly locks?: Entries<number, boolean>;
-        readonly accepted?: readonly number[];
-        readonly classes?: ProjectClip['classes'];
+        readonly locked: readonly number[];
+        readonly accepted: readonly number[];
         readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
         readonly solved: { readonly settings: SolvedPairs['settings']; readonly pairs: Entries<number, Blob> } | null;
       })
@@ -35,20 +32,19 @@ export function isContent(value: unknown, frames: number): value is Content {
   const { clip, pairs } = value as Content;
   if (pairs.some(([, { edits, found }]) => edits.done > edits.actions.length || !(found === null || fits(found.packed)))) return false;
   if (clip === null) return true;
-  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...[...clip.painted, ...(clip.exact ?? [])].map(([, runs]) => runs)];
+  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...clip.said.map((one) => ('labels' in one ? one.labels : null)), ...clip.exact.map(([, runs]) => runs)];
   const images = masks.filter((image) => image !== null);
-  const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames);
+  const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames) && clip.said.every((one) => isInside(one, clip.frames[one.frame]?.runs));
   return clip.frames.length === frames && clip.found.length === frames && clip.at < frames && inside && images.every((image) => sameSize(image, images[0]!));
 }
 
-/** The content of a file of version 1 as of this version. Its clips have one state, of all frames that have masks. */
-export function upgraded(content: unknown): unknown {
-  if (!isOld(content) || content.clip === null) return content;
-  const { state, ...clip } = content.clip;
-  const range = rangeOf(clip.frames);
-  const numbers = Array.from({ length: clip.largest }, (_, k) => [k + 1, k + 1]);
-  const spans = state === null || range === null ? [] : [{ range, state, numbers }];
-  return { ...content, clip: { ...clip, spans, found: clip.frames.map((frame) => frame?.runs ?? null), became: [] } };
+/** Whether clicks and box of a prompt are within the masks of its frame. */
+function isInside(said: Said, masks: Runs | undefined): boolean {
+  if (masks === undefined || !isPrompt(said)) return masks !== undefined;
+  const { clicks, box } = said;
+  const isIn = (x: number, y: number): boolean => x < masks.width && y < masks.height;
+  const [left, top, width, height] = box ?? [0, 0, 1, 1];
+  return points(said) && clicks.every(([x, y]) => isIn(x, y)) && width > 0 && height > 0 && isIn(left + width - 1, top + height - 1);
 }
 
 /** Whether labels and report are of one result. */
@@ -78,22 +74,24 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-const isPainted = listOf(entryOf(isIndex, isRuns));
+const isPropagation = isOne('both', 'forward', 'backward', 'none');
+const isPainted = objectOf({ frame: isIndex, object: isFrom(0, 254), propagate: isPropagation, labels: isRuns });
+const isClick: Check<Click> = (value): value is Click => listOf(isNumber, 3)(value) && isIndex(value[0]) && isIndex(value[1]) && Math.abs(value[2]!) === 1;
+const isPrompted = objectOf({ frame: isIndex, object: isFrom(1, 254), propagate: isPropagation, clicks: listOf(isClick), box: orNull(listOf(isIndex, 4)) });
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
   largest: isFrom(0, 254),
   names: mapOf(isText),
-  classes: optional(mapOf(isText)),
+  classes: mapOf(isText),
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
-  painted: isPainted,
-  spread: optional(listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))),
-  exact: optional(isPainted),
+  said: listOf(either(isPainted, isPrompted)),
+  exact: listOf(entryOf(isIndex, isRuns)),
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
-  locks: optional(listOf(entryOf(isFrom(1, 254), isFlag))),
-  accepted: optional(listOf(isIndex)),
+  locked: listOf(isFrom(1, 254)),
+  accepted: listOf(isIndex),
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),
@@ -125,9 +123,4 @@ const isReport = objectOf({
 const isFound = objectOf({ packed: objectOf({ report: isReport, runs: isRuns }), waited: isNumber });
 const isPair = objectOf({ edits: isEdits, found: orNull(isFound), ownMotions: orNull(isMotions), width: isSide, height: isSide });
 
-const isProject = objectOf({ settings: isSettings, classList: optional(listOf(isText)), clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
-
-/** What {@link upgraded} reads of a file of version 1. */
-const isOld = objectOf<{ readonly clip: { readonly state: Blob | null; readonly frames: readonly (TrackedFrame | null)[]; readonly largest: number } | null }>({
-  clip: orNull(objectOf({ state: orNull(isBlob), frames: listOf(orNull(isFrame)), largest: isFrom(0, 254) })) as Check<never>,
-});
+const isProject = objectOf({ settings: isSettings, classList: listOf(isText), clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });

@@ -7,12 +7,12 @@ import type { Runs } from '../correction/runs.js';
 import type { Kept } from '../state/kept.js';
 import type { Subject } from '../state/pair.js';
 import { acceptedIn } from '../state/tracked.js';
-import { isContent, isRuns, upgraded } from './content.js';
+import { isContent, isRuns } from './content.js';
 import type { Project } from './project.js';
 import * as check from './schema.js';
 
 const FORMAT = 'veronese-project';
-const VERSION = 2;
+const VERSION = 3;
 const MEDIA_TYPE = 'application/gzip';
 
 /** Where a document refers to a label image, and where to other bytes: their place in its lists. */
@@ -26,7 +26,7 @@ interface BytesPlace {
 /** The first line: what a list of projects shows. */
 export interface Header extends Subject, Pick<Project, 'thumbnail'> {
   readonly format: typeof FORMAT;
-  readonly version: 1 | typeof VERSION;
+  readonly version: typeof VERSION;
   /** When it was written, as an ISO 8601 date. */
   readonly saved: string;
 }
@@ -41,7 +41,7 @@ export function streamOf({ of, name, frames, sample, thumbnail, settings, classL
   };
   // The same image or blob is written once, however many refer to it.
   const referring = (_key: string, value: unknown): unknown => {
-    if (value instanceof Map) return [...value];
+    if (value instanceof Map || value instanceof Set) return [...value];
     if (value instanceof Blob) return { bytes: place(blobs, value) } satisfies BytesPlace;
     return isRuns(value) ? ({ image: place(images, value) } satisfies ImagePlace) : value;
   };
@@ -96,14 +96,13 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
     const images = lists.images.map(([width, height, count]) => runsFrom(width!, height!, new Uint32Array(taken(4 * count!).buffer), taken(count!)));
     const blobs = lists.bytes.map((length) => new Blob([taken(length)]));
     assert(at === bytes.length);
-    const parsed: unknown = JSON.parse(content, (_key, value: unknown) => {
+    const value: unknown = JSON.parse(content, (_key, value: unknown) => {
       if (isImagePlace(value)) return images[value.image];
       return isBytesPlace(value) ? blobs[value.bytes] : value;
     });
-    const { of, name: called, frames, sample, thumbnail, version } = header;
-    const value = version === 1 ? upgraded(parsed) : parsed;
+    const { of, name: called, frames, sample, thumbnail } = header;
     assert(isContent(value, frames));
-    const { settings, classList = [], clip, pairs } = value;
+    const { settings, classList, clip, pairs } = value;
     const subject = { of, name: called, frames, ...(sample && { sample }) };
     return {
       ...subject,
@@ -112,13 +111,10 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
       classList,
       clip: clip && {
         ...clip,
-        painted: new Map(clip.painted),
-        spread: new Map(clip.spread),
         exact: new Map(clip.exact),
         became: new Map(clip.became),
-        locks: new Map(clip.locks),
-        classes: clip.classes ?? {},
-        accepted: new Set(clip.accepted?.flatMap((index) => clip.frames[index] ?? [])),
+        locked: new Set(clip.locked),
+        accepted: new Set(clip.accepted.flatMap((index) => clip.frames[index] ?? [])),
         spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
         solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },
       },
@@ -143,7 +139,7 @@ function assert(condition: boolean): asserts condition {
 const isPicture: check.Check<string> = (value): value is string => check.isText(value) && /^data:image\/jpeg;base64,[\w+/=]*$/.test(value);
 const isHeader = check.objectOf<Header>({
   format: check.isOne(FORMAT),
-  version: check.isOne(1, VERSION),
+  version: check.isOne(VERSION),
   of: check.isText,
   name: check.isText,
   frames: check.isFrom(1),

@@ -67,11 +67,11 @@ export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of
   };
 }
 
-const NOTHING: Tracked['saved'] = { frames: [], locks: new Map(), accepted: new Set(), names: {}, classes: {}, colours: {} };
+const NOTHING: Tracked['saved'] = { frames: [], locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 /** Whether a person did anything with the clip. */
-function hasWork({ past, painted, exact, became, locks, accepted, names, classes, colours }: Tracked): boolean {
-  const counts = [past.length, ...[painted, exact, became, locks, accepted].map(({ size }) => size), ...[names, classes, colours].map((said) => Object.keys(said).length)];
+function hasWork({ past, said, exact, became, locked, accepted, names, classes, colours }: Tracked): boolean {
+  const counts = [past.length, said.length, ...[exact, became, locked, accepted].map(({ size }) => size), ...[names, classes, colours].map((said) => Object.keys(said).length)];
   return counts.some((count) => count > 0);
 }
 

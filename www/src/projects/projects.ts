@@ -16,7 +16,7 @@ const SOON = 500;
 const LATER = 10_000;
 
 const OF_EDITS = ['actions', 'done', 'appearances'] as const;
-const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locks', 'accepted', 'exact', 'solved', 'run', 'range'] as const;
+const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'solved', 'run', 'range'] as const;
 
 type Shelf = typeof import('./shelf.js');
 

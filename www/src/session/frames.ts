@@ -7,7 +7,7 @@ import type { Project, ProjectClip } from '../projects/project.js';
 import type { Projects } from '../projects/projects.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import { FRESH, type Look, type Store } from '../state/state.js';
-import { drawnIn, isSeen, livesOf } from '../state/tracked.js';
+import { correctedIn, isSeen, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
@@ -89,7 +89,7 @@ export class Frames {
   goToCorrected(by: 1 | -1): void {
     const { tracked, timeline } = this.#store.get();
     const at = timeline?.first ?? 0;
-    const corrected = (tracked === null ? [] : drawnIn(tracked)).map(([index]) => index).sort((one, other) => by * (one - other));
+    const corrected = (tracked === null ? [] : correctedIn(tracked)).map(([index]) => index).sort((one, other) => by * (one - other));
     const next = corrected.find((index) => by * (index - at) > 0);
     if (next !== undefined) void this.goTo(next);
   }

@@ -5,49 +5,77 @@ import { type Runs, over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
+import { type Painted, type Prompt, type Said, isPrompt, namesObjects, paintedOf, withStatement } from './statement.js';
 import type { Notes, Version } from './tracked.js';
 
 /** Where what is said of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
 export type Spread = ClipPropagation | 'exact';
 
-/** What points to a new object in a frame: x, y, width and height of a box, or x and y of a click, pixels of the masks. */
-export interface Pointed {
-  readonly frame: number;
-  readonly id: number;
-  readonly spread: Spread;
-  readonly at: readonly [number, number] | readonly [number, number, number, number];
+/** What a person says: of objects in frames, what becomes of whole objects, what is drawn exactly, or what changes no masks. */
+export type Saying = (Stated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
+
+export interface Stated {
+  readonly said: readonly Said[];
 }
 
-/** What a person says: pixels of frames, by index, and where they spread; where a new object is, what becomes of whole objects, or what changes no masks. */
-export type Said =
-  | { readonly pointed: Pointed }
-  | ({ readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: ClipPropagation } & Partial<Noted>)
-  | ({ readonly edits: NonNullable<ClipOptions['edits']> } & Partial<Noted>)
-  | Drawn
-  | Noted;
+/** What is drawn exactly in frames, by index. */
+export interface Drawn {
+  readonly drawn: ReadonlyMap<number, Uint8Array>;
+}
 
 /** What changes no masks: these notes in the place of those before. */
 export interface Noted {
   readonly notes: Partial<Notes>;
 }
 
-/** What is drawn exactly in frames, by index. */
-export type Drawn = { readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: 'exact' } & Partial<Noted>;
+/**
+ * What is said by painting an object in a frame: its number, 0 where it is not, 255 where nothing is said. What was merged into the object is
+ * part of it. Of the background: that all unlocked objects there are not.
+ */
+export function painted(version: Version, frame: number, object: number, labels: Uint8Array, propagate: ClipPropagation): Painted[] {
+  const masks = version.frames[frame]?.runs;
+  if (masks === undefined) return [];
+  const runsOf = (all: Uint8Array): Runs => packed(all, masks.width, masks.height);
+  const isNot = runsOf(labels.map((label) => (label === 0 ? 0 : UNLABELLED)));
+  const not = (other: number): Painted => ({ frame, object: other, propagate, labels: isNot });
+  if (object !== 0) {
+    const merged = labels.includes(0) ? [...version.became].filter(([, into]) => into === object).map(([other]) => not(other)) : [];
+    return [...merged, { frame, object, propagate, labels: runsOf(labels) }];
+  }
+  const map = paintedOf(version.said, frame, 0);
+  const isOfMasks = map !== null && namesObjects(map);
+  const under = isOfMasks ? unpacked(masks).filter((_, p) => labels[p] === 0) : [];
+  const stroked = version.said.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
+  const others = [...new Set([...under, ...stroked])].filter((other) => other !== 0 && other !== UNLABELLED && !version.locked.has(other));
+  return [...(isOfMasks ? [] : [not(0)]), ...others.map(not)];
+}
 
-/** What was painted before in a frame, with this over it. */
-export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
-  const said = packed(labels, size.width, size.height);
-  return before === undefined ? said : over(before, said);
+/** What painting an object changes in the masks of its frame at once: the number of an object, 0, or 255 where nothing. */
+export function seenOf(version: Version, frame: number, object: number, labels: Uint8Array): Uint8Array {
+  const shown = unpacked(version.frames[frame]!.runs);
+  const stays = (label: number, was: number): boolean => version.locked.has(was) || (label === 0 && object !== 0 && was !== object);
+  return labels.map((label, p) => (stays(label, shown[p]!) ? UNLABELLED : label));
+}
+
+/** The prompt of an object in a frame, which may have been merged into this one; `null` if there is none. */
+export function promptOf({ said, became }: Pick<Version, 'said' | 'became'>, frame: number | null, id: number | null): Prompt | null {
+  return said.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
 }
 
 /** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */
-export function withSaid<V extends Version>(version: V, said: Said): V {
-  // Nothing is seen of it yet; its number is taken.
-  if ('pointed' in said) return { ...version, largest: Math.max(version.largest, said.pointed.id) };
-  const noted = { ...version, ...said.notes };
-  if ('edits' in said) return withEdits(noted, said.edits);
-  if (!('painted' in said)) return noted;
-  return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels, said.spread === 'exact'), noted);
+export function withSaid<V extends Version>(version: V, saying: Saying): V {
+  const noted = { ...version, ...saying.notes };
+  if ('edits' in saying) return withEdits(noted, saying.edits);
+  if ('drawn' in saying) return [...saying.drawn].reduce((before, [index, labels]) => withLabels(before, index, labels, true), noted);
+  return 'said' in saying ? saying.said.reduce(withOne, noted) : noted;
+}
+
+function withOne<V extends Version>(version: V, now: Said): V {
+  const said = withStatement(version.said, now, version.locked);
+  // Nothing is seen of a prompt yet; its number is taken.
+  if (isPrompt(now)) return { ...version, said, largest: Math.max(version.largest, now.object) };
+  const masks = version.frames[now.frame];
+  return { ...(masks ? withLabels(version, now.frame, seenOf(version, now.frame, now.object, unpacked(now.labels)), false) : version), said };
 }
 
 function withEdits<V extends Version>(version: V, edits: NonNullable<ClipOptions['edits']>): V {
@@ -58,15 +86,16 @@ function withEdits<V extends Version>(version: V, edits: NonNullable<ClipOptions
   return exactly({ ...version, frames, became, exact });
 }
 
-function withPainted<V extends Version>(version: V, index: number, labels: Uint8Array, isExact: boolean): V {
+function withLabels<V extends Version>(version: V, index: number, labels: Uint8Array, isExact: boolean): V {
   const masks = version.frames[index];
   if (!masks) return version;
-  const frame = overlaid(masks, packed(labels, masks.runs.width, masks.runs.height));
+  const { width, height } = masks.runs;
+  const frame = overlaid(masks, packed(labels, width, height));
   const frames = version.frames.with(index, frame);
   const largest = Math.max(version.largest, ...frame.objects.map(({ id }) => id));
   const before = version.exact.get(index);
   if (!isExact && before === undefined) return { ...version, frames, largest };
   // What a person says later counts, also where something was drawn exactly.
-  const said = isExact || before === undefined ? labels : unpacked(before).map((label, p) => (label === UNLABELLED ? label : labels[p]!));
-  return { ...version, frames, largest, exact: new Map(version.exact).set(index, paintedOver(before, said, masks.runs)) };
+  const said = packed(isExact || before === undefined ? labels : unpacked(before).map((label, p) => (label === UNLABELLED ? label : labels[p]!)), width, height);
+  return { ...version, frames, largest, exact: new Map(version.exact).set(index, before === undefined ? said : over(before, said)) };
 }

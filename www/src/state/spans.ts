@@ -2,9 +2,10 @@
 //! number, in other parts and when its frames are segmented again.
 
 import type { ClipOptions } from 'veronese';
-import { type Runs, overlapsOf, resized, together, unpacked } from '../correction/runs.js';
+import { type Runs, overlapsOf, resized, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly } from './exact.js';
+import { type Said, isPrompt, namesObjects, saidAtSize } from './statement.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
 /** The largest number of an object. */
@@ -31,13 +32,41 @@ export function theirNumber(numbers: ReadonlyMap<number, number>, id: number): n
 export function toSpan(runs: Runs, numbers: Map<number, number>): Uint8Array<ArrayBuffer> {
   const table = new Map<number, number>([0, UNLABELLED].map((label) => [label, label]));
   const labels = runs.labels.map((label) => {
-    if (!table.has(label)) {
-      table.set(label, theirNumber(numbers, label));
-      numbers.set(table.get(label)!, label);
-    }
+    if (!table.has(label)) table.set(label, learned(numbers, label));
     return table.get(label)!;
   });
   return unpacked({ ...runs, labels });
+}
+
+function learned(numbers: Map<number, number>, id: number): number {
+  const number = theirNumber(numbers, id);
+  if (number !== 0) numbers.set(number, id);
+  return number;
+}
+
+/** What the package is told of what was said in frames of a span; `numbers` learns new ones. Where an object is not that it does not know is nothing. */
+export function toldOf(said: readonly Said[], { first }: Range, numbers: Map<number, number>): Required<Pick<ClipOptions, 'corrections' | 'prompts'>> {
+  const corrections: NonNullable<ClipOptions['corrections']>[number][] = [];
+  const prompts: NonNullable<ClipOptions['prompts']>[number][] = [];
+  for (const one of said) {
+    const isKnown = one.object === 0 || [...numbers.values()].includes(one.object);
+    const object = isKnown || isPrompt(one) || namesObjects(one) ? learnedUnlessMap(numbers, one.object) : null;
+    if (object === null) continue;
+    const common = { frame: one.frame - first, propagate: one.propagate };
+    if (isPrompt(one)) prompts.push({ ...common, object, clicks: one.clicks, ...(one.box && { box: one.box }) });
+    else corrections.push({ ...common, labels: toSpan(one.labels, numbers), ...(object !== 0 && { object }) });
+  }
+  return { corrections, prompts };
+}
+
+/** The package's number of an object; 0 for a label map, and `null` if there is no number left. */
+function learnedUnlessMap(numbers: Map<number, number>, object: number): number | null {
+  return object === 0 ? 0 : learned(numbers, object) || null;
+}
+
+/** The package's numbers of objects here, which may have been merged. */
+export function theirNumbers(numbers: ReadonlyMap<number, number>, became: Version['became'], is: (id: number) => boolean): number[] {
+  return [...numbers].filter(([, here]) => is(became.get(here) ?? here)).map(([there]) => there);
 }
 
 /** The masks with the numbers here. What is not known yet gets a number above `largest`, or is background if there is none. */
@@ -92,28 +121,6 @@ export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number
   return { merge: Object.values(kept).filter((group) => group.length > 1), delete: gone };
 }
 
-/**
- * The package's numbers of the objects that other corrections leave as they are. What is painted in the frames `own` is about the objects
- * that it names; parts that are made background, in any frame, are a correction of their object.
- */
-export function lockedIn(
-  { range, numbers }: Span,
-  { painted, became, frames, found }: Version,
-  own: readonly number[],
-  isLocked: (id: number) => boolean,
-): number[] {
-  const spoken = new Set<number>();
-  for (const [index, said] of painted) {
-    if (!contains(range, index)) continue;
-    if (own.includes(index)) for (const label of said.labels) spoken.add(label);
-    for (const masks of [frames[index]?.runs, found[index]]) {
-      if (masks) for (const [label, under] of together(said, masks)) if (label === 0) spoken.add(became.get(under) ?? under);
-    }
-  }
-  const here = (id: number): number => became.get(id) ?? id;
-  return [...numbers].filter(([, id]) => isLocked(here(id)) && !spoken.has(here(id))).map(([there]) => there);
-}
-
 /** What became of objects after an edit as well. */
 export function becameAfter(
   became: ReadonlyMap<number, number>,
@@ -130,8 +137,8 @@ export function becameAfter(
 }
 
 /** What was drawn in frames, at the size of their masks. */
-export function atSize(said: Version['painted'], frames: Version['frames']): Version['painted'] {
-  return new Map([...said].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
+export function atSize(exact: Version['exact'], frames: Version['frames']): Version['exact'] {
+  return new Map([...exact].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
 }
 
 /** The version with the frames of a new run, by whose numbers they are, and without what is no longer seen of spans before. */
@@ -141,8 +148,11 @@ export function withRun(version: Version, run: readonly TrackedFrame[], span: Sp
   const named = run.map((frame) => fromSpan(frame, numbers, version.largest));
   const frames = version.frames.map((frame, index) => named[index - first] ?? frame);
   const found = version.found.map((runs, index) => named[index - first]?.runs ?? runs);
-  const [painted, exact] = [version.painted, version.exact].map((said) => atSize(said, frames)) as [Version['painted'], Version['exact']];
+  const said = version.said.map((one) => {
+    const [before, now] = [version.frames, frames].map((all) => all[one.frame]?.runs);
+    return before && now && before.width !== now.width ? saidAtSize(one, before, now) : one;
+  });
   const spans = [...version.spans.filter(({ range }) => range.first < first || range.last > last), { ...span, numbers }];
-  return exactly({ ...version, frames, found, painted, exact, spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
+  return exactly({ ...version, frames, found, said, exact: atSize(version.exact, frames), spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
 }
 

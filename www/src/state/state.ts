@@ -9,6 +9,8 @@ import type { ImageFolder } from '../frames/files.js';
 import type { Kept } from './kept.js';
 import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
+import { promptOf } from './said.js';
+import type { Prompt } from './statement.js';
 import type { Tracked } from './tracked.js';
 
 /** What led to the masks on screen. */
@@ -61,6 +63,9 @@ export interface Look extends Painting {
 
 export type ToolName = 'look' | 'brush' | 'eraser' | 'polygon' | 'box';
 
+/** What a press of the box tool points to: a new object, or more of the one that is selected, or what does not belong to it. */
+export type Pointing = 'new' | 'add' | 'remove';
+
 export interface Tool {
   readonly name: ToolName;
   /** Of the brush, pixels of the frame. */
@@ -69,6 +74,7 @@ export interface Tool {
   readonly exact: boolean;
   /** Where what is said of a frame of a clip spreads otherwise. */
   readonly spread: ClipPropagation;
+  readonly pointing: Pointing;
 }
 
 /** The state of the camera while it is on. */
@@ -182,6 +188,16 @@ export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrub
   return playing || scrubbing;
 }
 
+/** The prompt of the selected object in the frame on screen, which more clicks can be added to; `null` if there is none. */
+export function promptIn({ tracked, timeline, look }: Pick<State, 'tracked' | 'timeline' | 'look'>): Prompt | null {
+  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, timeline?.first ?? null, look.selected);
+}
+
+/** What a press of the box tool points to: a new object, unless the selected one can be refined. */
+export function pointingIn(state: State): Pointing {
+  return promptIn(state) === null ? 'new' : state.tool.pointing;
+}
+
 /** The objects that are selected. */
 export function selectedIn({ selected, among }: Look): readonly number[] {
   return [...(among ?? (selected === null ? [] : [selected]))];
@@ -215,7 +231,7 @@ export const INITIAL: State = {
   kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, onion: false, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,
-  tool: { name: 'look', radius: 8, exact: false, spread: 'both' },
+  tool: { name: 'look', radius: 8, exact: false, spread: 'both', pointing: 'new' },
   notice: null,
   question: null,
   keeping: NOTHING_KEPT,

@@ -1,10 +1,10 @@
 //! The objects of a whole clip: how far their segmentation is, the masks of each frame, and what a person said of them.
 
-import type { ClipFrame, ClipProgress, ClipPropagation } from 'veronese';
+import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import type { Runs } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
-import { keyOf } from '../result/masks.js';
+import type { Said } from './statement.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -61,16 +61,14 @@ export interface Version {
   readonly longestSide: number;
   /** The masks before corrections, by index: they tell which object of another run is which. */
   readonly found: readonly (Runs | null)[];
-  /** What was painted in frames, by index: numbers as in `frames`, and 255 where nothing is said. */
-  readonly painted: ReadonlyMap<number, Runs>;
-  /** Where that spreads, for frames from which it does not spread both ways. */
-  readonly spread: ReadonlyMap<number, ClipPropagation>;
-  /** What was drawn exactly in frames, by index, as {@link painted}: their masks have these labels, whatever else is said. */
+  /** What was said of objects in frames, in the order in which it was said. */
+  readonly said: readonly Said[];
+  /** What was drawn exactly in frames, by index: their masks have these labels, whatever else is said; 255 where nothing was drawn. */
   readonly exact: ReadonlyMap<number, Runs>;
   /** What became of objects that were merged or deleted: the number of another object, or 0. */
   readonly became: ReadonlyMap<number, number>;
-  /** Whether a person wants an object locked or not, by its number. */
-  readonly locks: ReadonlyMap<number, boolean>;
+  /** The objects that nothing changes until a person unlocks them. */
+  readonly locked: ReadonlySet<number>;
   /** The masks that a person has accepted. Masks that change are others, and are not. */
   readonly accepted: ReadonlySet<TrackedFrame>;
   /** Names, classes and colours that a person gave to objects, by `keyOf`. */
@@ -82,7 +80,7 @@ export interface Version {
 }
 
 /** What a version says of objects and frames that changes no masks. */
-export type Notes = Pick<Version, 'locks' | 'accepted' | 'names' | 'classes' | 'colours'>;
+export type Notes = Pick<Version, 'locked' | 'accepted' | 'names' | 'classes' | 'colours'>;
 
 export interface Tracked extends Version {
   readonly clip: Clip;
@@ -105,7 +103,7 @@ export interface Tracked extends Version {
 type Saved = Notes & Pick<Version, 'frames'>;
 
 const NO_PREVIEWS: Tracked['previews'] = [];
-const NO_NOTES: Notes = { locks: new Map(), accepted: new Set(), names: {}, classes: {}, colours: {} };
+const NO_NOTES: Notes = { locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 export function untracked(clip: Clip): Tracked {
   const frames = Array.from({ length: clip.count }, () => null);
@@ -119,8 +117,7 @@ export function untracked(clip: Clip): Tracked {
     spans: [],
     longestSide: Infinity,
     found: frames,
-    painted: new Map(),
-    spread: new Map(),
+    said: [],
     exact: new Map(),
     became: new Map(),
     ...NO_NOTES,
@@ -132,17 +129,12 @@ export function untracked(clip: Clip): Tracked {
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, spread, exact, became, largest, ...others }: Version): Version {
-  return { frames, spans, longestSide, found, painted, spread, exact, became, largest, ...notesOf(others) };
+export function versionOf({ frames, spans, longestSide, found, said, exact, became, largest, ...others }: Version): Version {
+  return { frames, spans, longestSide, found, said, exact, became, largest, ...notesOf(others) };
 }
 
-export function notesOf({ locks, accepted, names, classes, colours }: Notes): Notes {
-  return { locks, accepted, names, classes, colours };
-}
-
-/** Whether corrections of other objects leave this one as it is: an object with a name, unless a person says otherwise. */
-export function isLocked({ locks, names }: Pick<Notes, 'locks' | 'names'>, id: number): boolean {
-  return locks.get(id) ?? keyOf('objects', id) in names;
+export function notesOf({ locked, accepted, names, classes, colours }: Notes): Notes {
+  return { locked, accepted, names, classes, colours };
 }
 
 /** What is saved when the clip is kept or exported as it is. */
@@ -150,9 +142,21 @@ export function savedOf({ frames, ...others }: Saved): Saved {
   return { frames, ...notesOf(others) };
 }
 
-/** What a person drew in frames, by index. A frame may be there twice. */
-export function drawnIn({ painted, exact }: Pick<Version, 'painted' | 'exact'>): (readonly [number, Runs])[] {
-  return [...painted, ...exact];
+/** The frames that a person corrected, by index, and of which objects. A frame may be there several times. */
+export function correctedIn({ said, exact }: Pick<Version, 'said' | 'exact'>): (readonly [number, readonly number[]])[] {
+  const ofObjects = said.map((one) => [one.frame, one.object === 0 && 'labels' in one ? [...one.labels.labels] : [one.object]] as const);
+  return [...ofObjects, ...[...exact].map(([index, { labels }]) => [index, [...labels]] as const)];
+}
+
+/** A version with the frames of one before where their labels are the same, so that they are not others. */
+export function unchanged<V extends Pick<Version, 'frames'>>(before: Pick<Version, 'frames'>, now: V): V {
+  const isSame = (one: ArrayLike<number>, other: ArrayLike<number>): boolean => one.length === other.length && Array.prototype.every.call(one, (value, k) => value === other[k]);
+  const frames = now.frames.map((frame, index) => {
+    const [was, is] = [before.frames[index]?.runs, frame?.runs];
+    return was && is && isSame(was.ends, is.ends) && isSame(was.labels, is.labels) ? before.frames[index]! : frame;
+  });
+  const isAll = (all: Version['frames']): boolean => frames.every((frame, index) => frame === all[index]);
+  return isAll(now.frames) ? now : { ...now, frames: isAll(before.frames) ? before.frames : frames };
 }
 
 /** Whether leaving would lose what a person did. */

@@ -6,9 +6,10 @@ import { type Path, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
-import type { State, Store, ToolName } from '../state/state.js';
+import { type Pointing, type State, type Store, type ToolName, pointingIn, promptIn } from '../state/state.js';
 import { drawn, find } from './markup.js';
 import { cornersOf, dotsOf, isPolygon, setCorner, takeBack } from './polygon.js';
+import { promptMarks } from './prompt-marks.js';
 
 type Point = readonly [number, number];
 
@@ -32,6 +33,7 @@ export class Brush {
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #corners = drawn('path', { class: 'corners' });
   readonly #strokes = drawn('g', {});
+  readonly #prompt = drawn('g', {});
   /** What is being drawn, and what takes it: it belongs to the tool and the mask that were selected when it began. */
   #now: { readonly tool: ToolName; readonly points: number[]; readonly take: (path: Path) => void } | null = null;
   /** Whether the pointer was pressed for what is being drawn. A polygon goes on when it is lifted. */
@@ -43,11 +45,12 @@ export class Brush {
     this.#store = store;
     this.#session = session;
     this.#picture = find(stage, '#strokes', SVGSVGElement);
-    this.#picture.append(this.#strokes, this.#path, this.#corners, this.#circle);
+    this.#picture.append(this.#strokes, this.#prompt, this.#path, this.#corners, this.#circle);
     session.masks.finishStroke = () => this.#finish();
     this.#fit(store.get());
     this.#dress(store.get());
     this.#draw(store.get());
+    this.#mark(store.get());
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();
@@ -58,12 +61,14 @@ export class Brush {
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
       const same = now.edits === before.edits && now.tool.name === before.tool.name && now.result === before.result && now.look === before.look;
       if (!same) this.#draw(now);
+      if (!same || now.viewport !== before.viewport || now.tracked !== before.tracked || now.timeline !== before.timeline) this.#mark(now);
     });
   }
 
   /**
    * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke or a box and sets a corner of a
-   * polygon, Enter closes that and Backspace takes a corner back, Escape discards what is being drawn. Returns whether the key was handled.
+   * polygon, Enter closes that and Backspace takes a corner back, Escape discards what is being drawn. With Shift a box adds to the selected
+   * object. Returns whether the key was handled.
    */
   key({ key, shiftKey }: KeyboardEvent): boolean {
     const { tool, result } = this.#store.get();
@@ -75,7 +80,7 @@ export class Brush {
     const polygon = this.#polygon;
     if (key === ' ') {
       const ends = this.painting;
-      if (!ends || polygon) this.begin([x, y]);
+      if (!ends || polygon) this.begin([x, y], shiftKey ? 'add' : null);
       if (ends || tool.name === 'polygon') this.end(0, shiftKey);
     } else if (key === 'Escape' && this.painting) this.abandon();
     else if (key === 'Enter' && polygon) this.#close(shiftKey);
@@ -109,12 +114,13 @@ export class Brush {
     if (!this.painting) this.#circle.setAttribute('r', '0');
   }
 
-  begin(point: Point): void {
+  /** `pointing`: what a box or a press is, if that is not what is chosen. */
+  begin(point: Point, pointing: Pointing | null = null): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
     this.#pressed = true;
     if (!this.#polygon) {
-      const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.edited().beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
+      const take = tool.name === 'box' ? this.#session.objects.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#session.edited().beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
       if (take !== null) this.#now = { tool: tool.name, points: [...point], take };
     }
     this.hover(point);
@@ -202,6 +208,14 @@ export class Brush {
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
     else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(now)));
+  }
+
+  /** The clicks and the box of the selected object, while others can be added. */
+  #mark(now: State): void {
+    const prompt = now.tool.name === 'box' ? promptIn(now) : null;
+    const masks = prompt && now.tracked?.frames[prompt.frame]?.runs;
+    const marks = prompt && masks ? promptMarks(prompt, (now.pair.first?.width ?? masks.width) / masks.width, 1 / (this.#picture.getScreenCTM()?.a ?? 1)) : [];
+    this.#prompt.replaceChildren(...marks);
   }
 
   #draw({ edits, tool, result, found, look }: State): void {

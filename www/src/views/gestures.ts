@@ -1,6 +1,7 @@
 //! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
-//! eraser: dragging paints. Polygon: each press sets a corner where it ends. Box: dragging draws one, a tap points. With Shift the wheel
-//! changes the size of the brush. All tools: the wheel and two fingers zoom.
+//! eraser: dragging paints. Polygon: each press sets a corner where it ends. Box: dragging draws one, a tap points; with Shift to more of the
+//! selected object, with Alt or the right button to what does not belong to it. With Shift the wheel changes the size of the brush. All tools:
+//! the wheel and two fingers zoom.
 
 import { inPicture } from '../drawing/viewport.js';
 import { maskOf } from '../result/masks.js';
@@ -43,7 +44,9 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   const paints = (): boolean => store.get().tool.name !== 'look';
 
   layers.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0 || event.target instanceof HTMLInputElement) return;
+    const points = store.get().tool.name === 'box';
+    const removes = points && (event.button === 2 || event.altKey);
+    if ((event.button !== 0 && !removes) || event.target instanceof HTMLInputElement) return;
     presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY], moved: false });
     layers.setPointerCapture(event.pointerId);
     clearTimeout(holding);
@@ -57,7 +60,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     dragged = false;
     if (paints()) {
       const at = pixelAt(store.get(), inView(event));
-      brush.do((brush) => brush.begin(at));
+      const pointing = removes ? 'remove' : points && event.shiftKey ? 'add' : null;
+      brush.do((brush) => brush.begin(at, pointing));
     } else holding = window.setTimeout(() => peek.press(), TAP);
   });
 
@@ -115,9 +119,9 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
     if (plain && (target === layers || takesBack) && brush.now?.key(event)) event.preventDefault();
   });
-  // A long press on a touch screen opens a menu otherwise.
+  // A long press on a touch screen opens a menu otherwise, and so does the right button.
   layers.addEventListener('contextmenu', (event) => {
-    if (presses.size > 0) event.preventDefault();
+    if (presses.size > 0 || store.get().tool.name === 'box') event.preventDefault();
   });
 
   layers.addEventListener(

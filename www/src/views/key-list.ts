@@ -40,7 +40,7 @@ const WORDS = {
   eraser: 'Eraser: remove from the selected mask',
   polygon: 'Polygon: add its inside to the selected mask; Enter closes it, with Shift to remove, Backspace takes a corner back',
   exact: 'Exact: what is drawn is kept pixel for pixel, and nothing follows',
-  box: 'Box: make a new object of a clip',
+  box: 'Box: make a new object of a clip; again, add to the selected one or remove from it, as a press with Shift or Alt does',
   stroke: 'With the picture focused: start or end a stroke or a box, set a corner; arrow keys move the brush',
   thinner: 'Smaller brush',
   thicker: 'Larger brush',

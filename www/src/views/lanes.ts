@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, drawnIn, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, type Tracked, correctedIn, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -39,7 +39,7 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     const { tracked, look } = now;
     const frames = shownFrames(tracked);
     const sameFrames = frames === shownFrames(before.tracked);
-    const same = sameFrames && tracked?.painted === before.tracked?.painted && tracked?.exact === before.tracked?.exact;
+    const same = sameFrames && tracked?.said === before.tracked?.said && tracked?.exact === before.tracked?.exact;
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
@@ -86,8 +86,8 @@ function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[
     }
   });
   context.globalAlpha = 1;
-  for (const [index, { labels }] of drawnIn(tracked)) {
-    for (const [id, place] of places) if (labels.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
+  for (const [index, ids] of correctedIn(tracked)) {
+    for (const [id, place] of places) if (ids.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
   }
 }
 

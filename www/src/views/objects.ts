@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Result, State, Store } from '../state/state.js';
-import { type Life, isLocked, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
@@ -91,7 +91,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.spans.length > 0;
     for (const control of [lock, split, remove]) control.disabled = !ready;
-    lock.setAttribute('aria-pressed', String(tracked !== null && isLocked(tracked, id)));
+    lock.setAttribute('aria-pressed', String(tracked !== null && tracked.locked.has(id)));
     lock.setAttribute('aria-label', strings.lockOf(called));
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
     doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;

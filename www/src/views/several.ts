@@ -5,7 +5,7 @@ import { panels } from '../common/strings-of-panels.js';
 import { keyOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, selectedIn } from '../state/state.js';
-import { isLocked, livesOf } from '../state/tracked.js';
+import { livesOf } from '../state/tracked.js';
 import { onClass } from './classes.js';
 import { find, takesText } from './markup.js';
 
@@ -163,7 +163,7 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
     merge.disabled = !ready || ids.length < 2;
     for (const control of actions) control.disabled = !ready || ids.length === 0;
     field.disabled = ids.length === 0;
-    lock.setAttribute('aria-pressed', String(ids.length > 0 && ids.every((id) => isLocked(tracked, id))));
+    lock.setAttribute('aria-pressed', String(ids.length > 0 && ids.every((id) => tracked.locked.has(id))));
     const classes = new Set(ids.map((id) => tracked.classes[keyOf('objects', id)] ?? ''));
     if (document.activeElement !== field) field.value = classes.size === 1 ? [...classes][0]! : '';
   };

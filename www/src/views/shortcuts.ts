@@ -10,7 +10,7 @@ import type { KeyName } from './key-list.js';
 import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
 import { accept } from './review.js';
-import { changeRadius, chooseTool } from './tools.js';
+import { changeRadius, chooseBox, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
 
 export interface Key {
@@ -77,7 +77,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['e'], shown: 'E', does: 'eraser', run: () => chooseTool(store, 'eraser') },
     { keys: ['w'], shown: 'W', does: 'polygon', run: () => chooseTool(store, 'polygon') },
     { keys: ['q'], shown: 'Q', does: 'exact', run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
-    { keys: ['x'], shown: 'X', does: 'box', run: () => chooseTool(store, 'box') },
+    { keys: ['x'], shown: 'X', does: 'box', run: () => chooseBox(store) },
     { keys: [], shown: 'Space', does: 'stroke', run: () => undefined },
     { keys: ['['], shown: '[', does: 'thinner', run: () => changeRadius(store, 0.75) },
     { keys: [']'], shown: ']', does: 'thicker', run: () => changeRadius(store, 4 / 3) },

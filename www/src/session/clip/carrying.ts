@@ -1,10 +1,12 @@
 //! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
-import { type Drawn, type Noted, type Said, paintedOver, withSaid } from '../../state/said.js';
+import { strings } from '../../common/strings.js';
+import { type Drawn, type Noted, type Saying, withSaid } from '../../state/said.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type ClipRun, type Notes, type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
+import { isPrompt } from '../../state/statement.js';
+import { type ClipRun, type Notes, type TrackedFrame, type Version, unchanged, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import type { Change, ClipRuns } from './runs.js';
 import type { Spans } from './spans.js';
@@ -23,7 +25,7 @@ interface Corrections {
   settled: Version;
   /** These, as far as the one under way has changed them. */
   now: Version;
-  readonly waiting: Said[];
+  readonly waiting: Saying[];
 }
 
 /** Why a run on the clip is done. */
@@ -45,7 +47,7 @@ export class Carrying {
   }
 
   /** Shows what is said at once in its own frame, and carries it through the clip after what was said before. */
-  async correct(said: Said): Promise<void> {
+  async correct(said: Saying): Promise<void> {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const under = this.#corrections;
@@ -72,7 +74,7 @@ export class Carrying {
   }
 
   /** Takes what is drawn exactly in frames, by index: it is not carried to other pixels. */
-  draw(said: Drawn): void {
+  draw(said: Drawn & Partial<Noted>): void {
     this.#note(said, 'corrected', false);
   }
 
@@ -131,44 +133,32 @@ export class Carrying {
     const next = waiting.shift();
     if (next === undefined) return;
     set({ run: CARRYING });
-    const said = 'pointed' in next ? { painted: await this.#spans.outlined(before, next.pointed, signal), spread: next.pointed.spread } : next;
-    if (signal.aborted) return;
-    if ('painted' in said && said.painted.size === 0) {
-      return this.#shown.version(waiting.reduce(withSaid, before), { phase: 'done', cause: 'corrected', changed: 0 });
-    }
-    corrections.now = withSaid(before, said);
-    if ('pointed' in next) this.#shown.version(waiting.reduce(withSaid, corrections.now), CARRYING);
-    const after = await this.#carried(before, said, corrections, signal);
+    corrections.now = withSaid(before, next);
+    const after = unchanged(before, await this.#carried(before, next, corrections, signal));
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;
-    corrections.settled = corrections.now = after;
-    set({ past: [...now.past, before], future: [] });
+    const isNothing = 'said' in next && next.said.some((said) => isPrompt(said) && !after.frames[said.frame]?.objects.some(({ id }) => id === (after.became.get(said.object) ?? said.object)));
+    if (isNothing) this.#store.say(strings.notices.nothingThere);
+    corrections.settled = corrections.now = isNothing ? before : after;
+    if (!isNothing) set({ past: [...now.past, before], future: [] });
     // What was said meanwhile stays on screen.
-    const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(after, before) } as const);
-    this.#shown.version(waiting.reduce(withSaid, after), run);
+    const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(corrections.settled, before) } as const);
+    this.#shown.version(waiting.reduce(withSaid, corrections.settled), run);
   }
 
   /** The masks of all frames after what is said. */
-  async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
-    if (!('edits' in said) && (!('painted' in said) || said.spread === 'exact')) return corrections.now;
+  async #carried(before: Version, saying: Saying, corrections: Corrections, signal: AbortSignal): Promise<Version> {
+    const { now } = corrections;
+    if (!('edits' in saying || 'said' in saying)) return now;
     const changes = this.#shows(corrections);
-    if ('edits' in said) {
-      let after = corrections.now;
-      const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
-      const spans = before.spans.filter(({ numbers }) => [...numbers.values()].some((id) => objects.has(id)));
-      for (const span of spans) after = await this.#spans.corrected(after, span, [], signal, changes);
-      return after;
-    }
-    const [painted, spread] = [new Map(before.painted), new Map(before.spread)];
-    for (const [index, labels] of said.painted) {
-      if (said.spread === 'both') spread.delete(index);
-      else spread.set(index, said.spread);
-      painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
-    }
-    let after: Version = { ...before, ...said.notes, painted, spread, exact: corrections.now.exact };
+    // Frames that do not change are as they were.
+    let after: Version = 'edits' in saying ? now : { ...now, frames: before.frames, largest: before.largest };
+    const objects = new Set('edits' in saying ? [...(saying.edits.merge ?? []), saying.edits.delete ?? []].flat() : []);
+    const said = now.said.filter((one) => !before.said.includes(one));
     for (const span of before.spans) {
-      const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
-      if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);
+      const own = said.filter(({ frame }) => spanAt(before.spans, frame) === span);
+      const isAbout = own.length > 0 || [...span.numbers.values()].some((id) => objects.has(id));
+      if (isAbout) after = await this.#spans.corrected(after, span, own, signal, changes);
     }
     return after;
   }
@@ -178,9 +168,9 @@ export class Carrying {
     const changed = new Set<number>();
     let shown = -Infinity;
     return (index, masks) => {
-      const { now, waiting } = corrections;
+      const { now, settled, waiting } = corrections;
       changed.add(index);
-      corrections.now = { ...now, frames: now.frames.with(index, masks), largest: Math.max(now.largest, ...masks.objects.map(({ id }) => id)) };
+      corrections.now = { ...now, frames: unchanged(settled, { frames: now.frames.with(index, masks) }).frames, largest: Math.max(now.largest, ...masks.objects.map(({ id }) => id)) };
       const { timeline } = this.#store.get();
       if (index !== timeline?.first && index !== timeline?.second && performance.now() - shown < OFTEN) return;
       shown = performance.now();
@@ -190,8 +180,8 @@ export class Carrying {
 }
 
 /** What notes are about; `null` for what is said of masks. */
-function kindOf(said: Said): string | null {
-  return 'pointed' in said || 'painted' in said || 'edits' in said ? null : Object.keys(said.notes).join();
+function kindOf(saying: Saying): string | null {
+  return 'notes' in saying && saying.notes !== undefined && !('said' in saying || 'drawn' in saying || 'edits' in saying) ? Object.keys(saying.notes).join() : null;
 }
 
 /** Number of frames that are others than before. */

@@ -58,7 +58,7 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     const { painted, classes, left } = await masksFrom(files, tracked);
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     shown.kind('objects');
-    objects.paint(painted, 'both', classes);
+    objects.import(painted, classes);
     if (left.length > 0) store.say(texts.taken(painted.size, left));
   } catch (error) {
     report(store, error);

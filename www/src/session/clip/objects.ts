@@ -1,18 +1,20 @@
 //! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names, classes and colours.
-//! Each becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
+//! Each becomes something that is said of objects in frames, in pixels of the masks, which is then carried through the clip.
 
 import type { ClipOptions } from 'veronese';
+import { nameOf } from '../../common/naming.js';
 import { strings } from '../../common/strings.js';
 import { smallerPieces } from '../../correction/pieces.js';
-import { unpacked } from '../../correction/runs.js';
+import { type Runs, packed, unpacked } from '../../correction/runs.js';
 import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
 import type { Colour } from '../../drawing/palette.js';
 import { UNLABELLED, keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
-import type { Spread } from '../../state/said.js';
+import { type Spread, painted, promptOf, seenOf } from '../../state/said.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
-import type { Store } from '../../state/state.js';
-import { type Notes, isLocked, toReview } from '../../state/tracked.js';
+import type { Pointing, Store } from '../../state/state.js';
+import { type Prompt, type Said, isPrompt, points, refined } from '../../state/statement.js';
+import { type Notes, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
 /** A box with both sides below this share of the frame's width is a click. */
@@ -38,6 +40,7 @@ export class Objects {
     if (own === null) return this.#refuse(strings.notices.chooseMask);
     if (own === UNLABELLED) return this.#refuse(strings.notices.notPainted);
     if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
+    if (this.#areLocked(own)) return null;
     const { index, frame } = at;
     return (drawn) => {
       const { tracked: now } = this.#store.get();
@@ -45,40 +48,68 @@ export class Objects {
       if (!now || masks === undefined) return;
       const scale = masks.width / frame.width;
       const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
-      const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
+      const [shown, labels] = [unpacked(masks), nothing(masks)];
       eachPixel(path, masks.width, masks.height, (p) => {
-        const there = labels[p]!;
-        if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
+        if (!now.locked.has(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
       });
-      if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
-      this.paint(new Map([[index, said]]), this.#spread());
+      if (tool === 'brush' && labels.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
+      this.#paint(index, [[own, labels]]);
     };
   }
 
-  /** Begins a box around a new object, or a click on it, in the frame on screen. Returns what takes its corners, or `null`, and tells why. */
-  beginBox(): ((path: Pick<Path, 'points'>) => void) | null {
+  /**
+   * Begins a box or a click in the frame on screen: around or on a new object, or one more for the object that is selected, which has some
+   * here. Returns what takes its corners, or `null`, and tells why.
+   */
+  beginPrompt(pointing: Pointing): ((path: Pick<Path, 'points'>) => void) | null {
     const at = this.#frameToCorrect();
     if (at === null) return null;
     const { index, frame } = at;
+    const known = (): Prompt | null => promptOf(this.#store.get().tracked!, index, this.#store.get().look.selected);
+    if (pointing !== 'new' && known() === null) return this.#refuse(strings.notices.noPrompt);
+    if (pointing !== 'new' && this.#areLocked(this.#store.get().look.selected!)) return null;
     return ({ points: [x = 0, y = 0, right = x, bottom = y] }) => {
       const masks = this.#store.get().tracked?.frames[index]?.runs;
-      const id = this.#newNumber();
-      if (masks === undefined || id === null) return;
+      const before = pointing === 'new' ? null : known();
+      const object = before?.object ?? this.#newNumber();
+      if (masks === undefined || object === null) return;
       const place = (value: number, side: number): number => Math.min(Math.max(Math.round((value + 0.5) * (masks.width / frame.width) - 0.5), 0), side - 1);
       const [columns, rows] = [[x, right].map((at) => place(at, masks.width)), [y, bottom].map((at) => place(at, masks.height))];
       const [left, top] = [Math.min(...columns), Math.min(...rows)];
       const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
-      const isClick = Math.max(width, height) <= Math.max(STILL * masks.width, 1);
-      this.#store.look({ selected: id });
-      void this.#carrying.correct({ pointed: { frame: index, id, spread: this.#spread(), at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
+      const isClick = pointing === 'remove' || Math.max(width, height) <= Math.max(STILL * masks.width, 1);
+      const spread = this.#spread();
+      const prompt: Prompt = { clicks: [], box: null, ...before, frame: index, object, propagate: spread === 'exact' ? 'none' : spread };
+      const now = refined(prompt, isClick ? [columns[0]!, rows[0]!, pointing === 'remove' ? -1 : 1] : [left, top, width, height]);
+      if (!points(now)) return void this.#refuse(strings.notices.nothingThere);
+      if (before === null) {
+        this.#store.look({ selected: object });
+        this.#store.set({ tool: { ...this.#store.get().tool, pointing: 'new' } });
+      }
+      void this.#carrying.correct({ said: [now] });
     };
   }
 
-  /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. `classes`: of the objects, by number. */
-  paint(painted: ReadonlyMap<number, Uint8Array>, spread: Spread = 'both', classes?: ReadonlyMap<number, string>): void {
-    const notes = classes && { notes: this.#withClasses(classes) };
-    if (spread === 'exact') this.#carrying.draw({ painted, spread, ...notes });
-    else void this.#carrying.correct({ painted, spread, ...notes });
+  /** Takes label maps of frames, by index: numbers of objects, 0, and 255 where nothing is said. `classes`: of the objects, by number. */
+  import(maps: ReadonlyMap<number, Uint8Array>, classes: ReadonlyMap<number, string>): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const said = [...maps].flatMap(([frame, all]): Said[] => {
+      const masks = tracked.frames[frame]?.runs;
+      const labels = all.map((label) => (tracked.locked.has(label) ? UNLABELLED : label));
+      return masks ? [{ frame, object: 0, propagate: 'both', labels: packed(labels, masks.width, masks.height) }] : [];
+    });
+    void this.#carrying.correct({ said, notes: this.#withClasses(classes) });
+  }
+
+  /** Paints objects in a frame, each by its number: where it is, where it is not, and 255 where nothing is said. */
+  #paint(frame: number, all: readonly (readonly [number, Uint8Array])[]): void {
+    const { tracked } = this.#store.get();
+    const spread = this.#spread();
+    if (tracked === null) return;
+    if (spread !== 'exact') return void this.#carrying.correct({ said: all.flatMap(([object, labels]) => painted(tracked, frame, object, labels, spread)) });
+    const seen = all.map(([object, labels]) => seenOf(tracked, frame, object, labels));
+    this.#carrying.draw({ drawn: new Map([[frame, seen[0]!.map((label, p) => seen.findLast((labels) => labels[p] !== UNLABELLED)?.[p] ?? label)]]) });
   }
 
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
@@ -88,12 +119,13 @@ export class Objects {
     const own = look.selected;
     if (at === null || tracked === null) return null;
     if (own === null || own === 0 || own === UNLABELLED) return this.#refuse(strings.notices.chooseMask);
+    if (this.#areLocked(own)) return null;
     const to = at.index + by;
     const [here, there] = [tracked.frames[at.index]?.runs, tracked.frames[to]?.runs];
     if (here === undefined || there === undefined || spanAt(tracked.spans, to) === null) return this.#refuse(strings.notices.noFrameThere);
     const [mask, before] = [unpacked(here), unpacked(there)];
-    const said = before.map((label, p) => (mask[p] === own ? (label === own || !isLocked(tracked, label) ? own : UNLABELLED) : label === own ? 0 : UNLABELLED));
-    this.paint(new Map([[to, said]]), this.#spread());
+    const labels = before.map((label, p) => (mask[p] === own ? (tracked.locked.has(label) ? UNLABELLED : own) : label === own ? 0 : UNLABELLED));
+    this.#paint(to, [[own, labels]]);
     return to;
   }
 
@@ -101,7 +133,7 @@ export class Objects {
   merge(...ids: readonly number[]): void {
     const group = this.#known(ids).sort((one, other) => one - other);
     const { tracked } = this.#store.get();
-    if (group.length < 2 || tracked === null) return;
+    if (group.length < 2 || tracked === null || this.#areLocked(...group)) return;
     const [name] = group.flatMap((id) => tracked.classes[keyOf('objects', id)] ?? []);
     this.#edit({ merge: [group] }, name === undefined ? {} : this.#withClasses(new Map([[group[0]!, name]])));
   }
@@ -109,7 +141,7 @@ export class Objects {
   /** The objects become background in the whole clip. */
   remove(...ids: readonly number[]): void {
     const known = this.#known(ids);
-    if (known.length > 0) this.#edit({ delete: known });
+    if (known.length > 0 && !this.#areLocked(...known)) this.#edit({ delete: known });
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
@@ -117,14 +149,16 @@ export class Objects {
     const { tracked, timeline } = this.#store.get();
     const frame = timeline?.first ?? null;
     const masks = frame === null ? undefined : tracked?.frames[frame]?.runs;
-    if (!this.#takesCorrections() || masks === undefined || frame === null) return;
+    if (!this.#takesCorrections() || masks === undefined || !tracked || frame === null || this.#areLocked(id)) return;
     const pieces = smallerPieces(unpacked(masks), masks.width, id);
     const number = this.#newNumber();
     if (pieces.length === 0) return void this.#refuse(strings.notices.onePiece);
     if (number === null) return;
-    const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
-    for (const p of pieces) labels[p] = number;
-    this.paint(new Map([[frame, labels]]), this.#spread());
+    const [is, isNot] = [nothing(masks), nothing(masks)];
+    for (const p of pieces) [is[p], isNot[p]] = [number, 0];
+    // What was found automatically gives way by itself.
+    const isOwn = keyOf('objects', id) in tracked.names || tracked.said.some((one) => one.object === id || (!isPrompt(one) && one.labels.labels.includes(id)));
+    this.#paint(frame, [...(isOwn ? [[id, isNot] as const] : []), [number, is]]);
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */
@@ -142,13 +176,14 @@ export class Objects {
     this.#carrying.redo();
   }
 
-  /** Locks the objects, or unlocks them if all are locked: whether corrections of others may change them. */
+  /** Locks the objects, or unlocks them if all are locked: nothing changes what is locked. */
   toggleLock(...ids: readonly number[]): void {
     const { tracked } = this.#store.get();
     const known = this.#known(ids);
     if (tracked === null || known.length === 0 || !this.#takesCorrections()) return;
-    const locked = !known.every((id) => isLocked(tracked, id));
-    this.#carrying.note({ locks: new Map([...tracked.locks, ...known.map((id) => [id, locked] as const)]) }, locked ? 'locked' : 'unlocked');
+    const { locked } = tracked;
+    const unlocks = known.every((id) => locked.has(id));
+    this.#carrying.note({ locked: new Set(unlocks ? [...locked].filter((id) => !known.includes(id)) : [...locked, ...known]) }, unlocks ? 'unlocked' : 'locked');
   }
 
   /**
@@ -206,6 +241,14 @@ export class Objects {
     if (this.#takesCorrections()) void this.#carrying.correct({ edits, notes });
   }
 
+  /** Whether one of the objects is locked; tells so. */
+  #areLocked(...ids: readonly number[]): boolean {
+    const { tracked, look } = this.#store.get();
+    const id = ids.find((one) => tracked?.locked.has(one));
+    if (id !== undefined) this.#refuse(strings.notices.isLocked(nameOf(look, id)));
+    return id !== undefined;
+  }
+
   /** The frame on screen and its index; `null`, and tells why, if it takes no corrections. */
   #frameToCorrect(): { readonly index: number; readonly frame: LoadedFrame } | null {
     const { tracked, timeline, pair } = this.#store.get();
@@ -231,4 +274,9 @@ export class Objects {
     this.#store.say(sentence);
     return null;
   }
+}
+
+/** Labels that say nothing of any pixel. */
+function nothing({ width, height }: Runs): Uint8Array<ArrayBuffer> {
+  return new Uint8Array(width * height).fill(UNLABELLED);
 }

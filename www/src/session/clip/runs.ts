@@ -45,7 +45,7 @@ export class ClipRuns {
     } catch (error) {
       if (signal.aborted) return;
       set({ run: { phase: 'failed' } });
-      report(this.#store, codeOf(error) === 'invalid-option' ? new PageError('other-state', strings.notices.otherState) : error);
+      report(this.#store, told(error));
     } finally {
       if (this.#current === own) this.#current = null;
     }
@@ -69,4 +69,10 @@ export class ClipRuns {
   interrupt(): void {
     this.#current?.controller.abort();
   }
+}
+
+function told(error: unknown): unknown {
+  const code = codeOf(error);
+  if (code === 'object-locked') return new PageError(code, strings.notices.locked);
+  return code === 'invalid-option' ? new PageError('other-state', strings.notices.otherState) : error;
 }

@@ -3,11 +3,13 @@
 
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
+import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
+import { UNLABELLED } from '../../result/masks.js';
 import type { Settings } from '../../state/settings.js';
 import { exactly } from '../../state/exact.js';
 import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, notesOf, savedOf, untracked, versionOf } from '../../state/tracked.js';
+import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, acceptedIn, isTracked, notesOf, savedOf, unchanged, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import { ClipFrames, STOPPED } from './frames.js';
 import type { Change, ClipRuns } from './runs.js';
@@ -187,15 +189,16 @@ export class ClipSegmenting {
     signal: AbortSignal,
     set: Change,
   ): Promise<void> {
-    const { painted, became } = before;
+    const { said, became } = before;
     const isFirst = before.found.every((runs) => runs === null);
     const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
-    const said = [...painted.keys()].filter((index) => contains(range, index));
-    const corrected = said.length > 0 || became.size > 0;
-    if (corrected) version = await this.#spans.corrected(version, version.spans.at(-1)!, said, signal);
+    const accepted = new Map(acceptedIn(before).filter((index) => contains(range, index)).map((index) => [index, acceptedLabels(before, version, index)]));
+    const corrected = said.some(({ frame }) => contains(range, frame)) || became.size > 0;
+    if (corrected || accepted.size > 0) version = await this.#spans.repeated(version, version.spans.at(-1)!, accepted, signal);
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
+    version = unchanged(now, version);
     // What a person corrected can be brought back.
     if (now.past.length > 0) set({ past: [...now.past, versionOf(now)] });
     else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
@@ -213,6 +216,15 @@ export class ClipSegmenting {
     this.solvedPairs.set(fingerprint, known);
     return known;
   }
+}
+
+/** The labels of an accepted frame at the size that it has now. What was drawn exactly is the page's alone. */
+function acceptedLabels(before: Version, now: Version, index: number): Runs {
+  const runs = resized(before.frames[index]!.runs, now.frames[index]!.runs);
+  const exact = now.exact.get(index);
+  if (exact === undefined) return runs;
+  const drawn = unpacked(exact);
+  return packed(unpacked(runs).map((label, p) => (drawn[p] === UNLABELLED ? label : UNLABELLED)), runs.width, runs.height);
 }
 
 /** The largest number of an object in these frames. */

@@ -1,24 +1,20 @@
-//! What the package is asked about frames that were segmented together: whether it still knows them, what a box or a click in one of them
-//! points to, and what all of them become by corrections. It computes the next version of the masks and shows nothing.
+//! What the package is asked about frames that were segmented together: whether it still knows them, and what they become by corrections.
+//! It computes the next version of the masks and shows nothing.
 
-import type { ClipFrame, Segmenter } from 'veronese';
+import type { ClipFrame, ClipOptions, Segmenter } from 'veronese';
 import { codeOf } from '../../common/errors.js';
-import { strings } from '../../common/strings.js';
-import { packed, unpacked } from '../../correction/runs.js';
-import { UNLABELLED } from '../../result/masks.js';
+import { type Runs, packed } from '../../correction/runs.js';
+import { keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
-import type { Pointed } from '../../state/said.js';
 import { exactly, overlaid } from '../../state/exact.js';
-import { editsIn, fromSpan, lockedIn, spanAt, theirNumber, toSpan } from '../../state/spans.js';
+import { contains, editsIn, fromSpan, spanAt, theirNumbers, toSpan, toldOf } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
-import { type Span, type Tracked, type TrackedFrame, type Version, isLocked } from '../../state/tracked.js';
+import type { Said } from '../../state/statement.js';
+import { type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
 import { ClipFrames } from './frames.js';
 
 /** Memory for frames that a correction reads again, bytes. */
 const ROOM = 64 << 20;
-
-/** Ends a run in which a frame is all that is wanted. */
-const ENOUGH = new Error('enough');
 
 export class Spans {
   readonly #store: Store;
@@ -41,67 +37,42 @@ export class Spans {
     }
   }
 
-  /** What is painted when a box or a click points to an object. What is not the object is not, unless that is to be drawn exactly. */
-  async outlined(version: Version, { frame, id, spread, at }: Pointed, signal: AbortSignal): Promise<Map<number, Uint8Array>> {
-    const { tracked, pair } = this.#store.get();
-    const span = spanAt(version.spans, frame);
-    if (tracked === null || span === null) return new Map();
-    const { first } = span.range;
-    const label = theirNumber(span.numbers, id);
-    let labels: Uint8Array | undefined;
-    const found = this.#segmenter.segmentClip(framesOf(tracked, version, span, pair), {
-      state: await bytesOf(span.state),
-      changesOnly: true,
-      signal,
-      corrections: [at.length === 2 ? { frame: frame - first, label, click: at } : { frame: frame - first, label, box: at }],
-      locked: lockedIn(span, version, [], (id) => isLocked(version, id)),
-      // The first frame that changes is this one; the others are carried later, with all that was said before.
-      onChange: async (index, segmented) => {
-        if (first + index === frame) labels = (await segmented()).labels;
-        throw ENOUGH;
-      },
-    });
-    try {
-      for await (const _ of found);
-    } catch (error) {
-      if (error !== ENOUGH) throw error;
-    }
-    if (!labels?.includes(label)) {
-      this.#store.say(strings.notices.nothingThere);
-      return new Map();
-    }
-    const ground = spread === 'exact' ? UNLABELLED : 0;
-    const { width } = version.frames[frame]!.runs;
-    const exact = version.exact.get(frame);
-    const drawn = exact && unpacked(exact);
-    const [left, top, columns = width, rows = labels.length] = at.length === 2 ? [0, 0] : at;
-    const isWithin = (p: number): boolean => p % width >= left && p % width < left + columns && p / width >= top && p / width < top + rows;
-    return new Map([[frame, labels.map((own, p) => ((drawn?.[p] ?? UNLABELLED) !== UNLABELLED ? UNLABELLED : own === label && isWithin(p) ? id : own === 0 ? ground : UNLABELLED))]]);
+  /**
+   * Says in a span what is new there, and what became of objects. `changes` takes frames as they change, perhaps not for the last time.
+   */
+  corrected(version: Version, span: Span, said: readonly Said[], signal: AbortSignal, changes: (index: number, masks: TrackedFrame) => void): Promise<Version> {
+    const accepted = acceptedIn(version).filter((index) => spanAt(version.spans, index) === span);
+    return this.#answer(version, span, signal, changes, (numbers) => ({
+      ...toldOf(said, span.range, numbers),
+      accepted: accepted.map((index) => index - span.range.first),
+      locked: theirNumbers(numbers, version.became, (id) => version.locked.has(id)),
+    }));
   }
 
-  /**
-   * Applies what became of objects to the frames of a span, and what was painted in some of them. `changes` takes frames as they change,
-   * perhaps not for the last time.
-   */
-  async corrected(
+  /** Says in a span that was segmented again all that was said before objects were locked. `accepted`: the labels of accepted frames, by index. */
+  repeated(version: Version, span: Span, accepted: ReadonlyMap<number, Runs>, signal: AbortSignal): Promise<Version> {
+    const { first } = span.range;
+    return this.#answer(version, span, signal, null, (numbers) => ({
+      ...toldOf(version.said.filter(({ frame }) => contains(span.range, frame)), span.range, numbers),
+      accepted: [...accepted].map(([index, runs]) => ({ frame: index - first, labels: toSpan(runs, numbers) })),
+      locked: [],
+    }));
+  }
+
+  async #answer(
     version: Version,
     span: Span,
-    painted: readonly number[],
     signal: AbortSignal,
-    changes?: (index: number, masks: TrackedFrame) => void,
+    changes: ((index: number, masks: TrackedFrame) => void) | null,
+    tell: (numbers: Map<number, number>) => Pick<ClipOptions, 'corrections' | 'prompts' | 'accepted' | 'locked'>,
   ): Promise<Version> {
     const { tracked, settings, pair } = this.#store.get();
     if (tracked === null) return version;
     const { first } = span.range;
     const numbers = new Map(span.numbers);
     const frames = framesOf(tracked, version, span, pair);
-    const corrections = painted.map((index) => ({
-      frame: index - first,
-      propagate: version.spread.get(index) ?? 'both',
-      labels: toSpan(version.painted.get(index)!, numbers),
-    }));
     let { largest } = version;
-    const named = (frame: ClipFrame): TrackedFrame => {
+    const numbered = (frame: ClipFrame): TrackedFrame => {
       const masks = overlaid(fromSpan(masksOf(frame, frames.size), numbers, largest), version.exact.get(first + frame.index));
       largest = Math.max(largest, ...masks.objects.map(({ id }) => id));
       return masks;
@@ -110,23 +81,23 @@ export class Spans {
     const onChange = async (index: number, segmented: () => Promise<ClipFrame>): Promise<void> => {
       if (!isOwn(first + index)) return;
       const frame = await segmented();
-      if (!signal.aborted) changes?.(first + index, named(frame));
+      if (!signal.aborted) changes?.(first + index, numbered(frame));
     };
+    const told = tell(numbers);
+    const names = namesIn(version, numbers);
     const found = this.#segmenter.segmentClip(frames, {
+      ...told,
       state: await bytesOf(span.state),
       markUnknown: settings.markUnknown,
       changesOnly: true,
       signal,
       transfer: true,
-      edits: editsIn(numbers, version.became),
-      corrections,
-      // When the clip is segmented again, all is said again that was said before objects were locked.
-      locked: changes ? lockedIn(span, version, painted, (id) => isLocked(version, id)) : [],
+      edits: { ...editsIn(numbers, version.became), names },
       ...(changes && { onChange }),
     });
     const masks = [...version.frames];
     for await (const frame of found) {
-      const is = named(frame);
+      const is = numbered(frame);
       if (isOwn(first + frame.index)) masks[first + frame.index] = is;
     }
     const state = await found.state();
@@ -140,6 +111,14 @@ export class Spans {
 function framesOf({ clip }: Tracked, { longestSide }: Version, { range }: Span, { first, second }: State['pair']): ClipFrames {
   const hand = [first, second].filter((frame): frame is LoadedFrame => frame !== null);
   return new ClipFrames(clip, longestSide, range, { hand, room: ROOM });
+}
+
+/** The names that a person gave to objects, by the package's numbers: other corrections leave them as they are. */
+function namesIn({ names, became }: Version, numbers: ReadonlyMap<number, number>): Record<number, string> {
+  return Object.fromEntries([...numbers].flatMap(([there, here]) => {
+    const name = names[keyOf('objects', became.get(here) ?? here)];
+    return name === undefined ? [] : [[there, name]];
+  }));
 }
 
 export async function bytesOf(blob: Blob): Promise<Uint8Array> {

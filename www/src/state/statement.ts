@@ -1,0 +1,102 @@
+//! What a person said of an object in a frame: pixels, or clicks and a box that point to it. It is kept as it was said.
+
+import type { ClipPropagation } from 'veronese';
+import { type Runs, over, packed, resized, unpacked } from '../correction/runs.js';
+import { UNLABELLED } from '../result/masks.js';
+
+/** Column and row of a pixel of the masks, and whether it is the object's. */
+export type Click = readonly [x: number, y: number, sign: 1 | -1];
+/** First column, first row, width and height, pixels of the masks. */
+export type Box = readonly [x: number, y: number, width: number, height: number];
+
+interface Statement {
+  readonly frame: number;
+  readonly object: number;
+  /** Where it spreads. */
+  readonly propagate: ClipPropagation;
+}
+
+/** Pixels: the object's number, 0 where it is not, 255 where nothing is said. Of object 0: a label map, with numbers of any objects. */
+export interface Painted extends Statement {
+  readonly labels: Runs;
+}
+
+/** Where the object is. */
+export interface Prompt extends Statement {
+  readonly clicks: readonly Click[];
+  readonly box: Box | null;
+}
+
+export type Said = Painted | Prompt;
+
+export function isPrompt(said: Said): said is Prompt {
+  return 'clicks' in said;
+}
+
+/** Whether it is a label map that names objects. */
+export function namesObjects({ labels: { labels } }: Painted): boolean {
+  return labels.some((label) => label !== 0 && label !== UNLABELLED);
+}
+
+/** What was painted of an object in a frame; of 0, the label map. */
+export function paintedOf(said: readonly Said[], frame: number, object: number): Painted | null {
+  return said.find((one): one is Painted => !isPrompt(one) && one.frame === frame && one.object === object) ?? null;
+}
+
+/**
+ * All that is said, with this, in the order in which it was said. What is painted lies over what was painted of the same object; a label map of
+ * objects also over the strokes in its frame but those of objects that are `locked`. A prompt takes the place of the one before.
+ */
+export function withStatement(said: readonly Said[], now: Said, locked: ReadonlySet<number>): readonly Said[] {
+  const isBefore = (one: Said): boolean => one.frame === now.frame && one.object === now.object && isPrompt(one) === isPrompt(now);
+  const others = said.filter((one) => !isBefore(one));
+  if (isPrompt(now)) return [...others, now];
+  const before = paintedOf(said, now.frame, now.object);
+  const all = { ...now, labels: before === null ? now.labels : over(before.labels, now.labels) };
+  const isUnder = (one: Said): one is Painted => !isPrompt(one) && one.frame === now.frame && !locked.has(one.object);
+  const covered = now.object === 0 && namesObjects(now) ? others.map((one) => (isUnder(one) ? without(one, now.labels) : one)) : others;
+  return [...covered, all];
+}
+
+/** What is painted without the pixels of which something else is said. */
+function without(painted: Painted, said: Runs): Painted {
+  const above = unpacked(said);
+  const { width, height } = painted.labels;
+  return { ...painted, labels: packed(unpacked(painted.labels).map((label, p) => (above[p] === UNLABELLED ? label : UNLABELLED)), width, height) };
+}
+
+/** A prompt with another click, or with a box. A box has all clicks that are the object's. */
+export function refined(prompt: Prompt, more: Click | Box): Prompt {
+  const clicks = more.length === 3 ? [...prompt.clicks.filter(([x, y]) => x !== more[0] || y !== more[1]), more] : prompt.clicks;
+  const box = more.length === 4 ? more : prompt.box;
+  const inside = clicks.filter(([, , sign]) => sign > 0);
+  return { ...prompt, clicks, box: box && inside.reduce(grown, box) };
+}
+
+function grown([left, top, width, height]: Box, [x, y]: Click): Box {
+  const [x0, y0] = [Math.min(left, x), Math.min(top, y)];
+  return [x0, y0, Math.max(left + width, x + 1) - x0, Math.max(top + height, y + 1) - y0];
+}
+
+/** Whether a prompt points to anything. */
+export function points({ clicks, box }: Prompt): boolean {
+  return box !== null || clicks.some(([, , sign]) => sign > 0);
+}
+
+interface Size {
+  readonly width: number;
+  readonly height: number;
+}
+
+/** What was said of masks of one size, for masks of another. */
+export function saidAtSize(said: Said, before: Size, now: Size): Said {
+  if (!isPrompt(said)) return { ...said, labels: resized(said.labels, now) };
+  const [sx, sy] = [now.width / before.width, now.height / before.height];
+  const at = (value: number, by: number, side: number): number => Math.min(Math.floor((value + 0.5) * by), side - 1);
+  const clicks = said.clicks.map(([x, y, sign]): Click => [at(x, sx, now.width), at(y, sy, now.height), sign]);
+  if (said.box === null) return { ...said, clicks };
+  const [x, y, width, height] = said.box;
+  const [left, top] = [Math.floor(x * sx), Math.floor(y * sy)];
+  const [right, bottom] = [Math.min(Math.ceil((x + width) * sx), now.width), Math.min(Math.ceil((y + height) * sy), now.height)];
+  return { ...said, clicks, box: [left, top, right - left, bottom - top] };
+}
