@@ -412,7 +412,7 @@ test('an eraser is about the selected object and what was merged into it; the ba
 test('the package is told what is said, by its numbers', () => {
   const numbers = new Map([[1, 3], [3, 1]]);
   const { corrections, prompts } = toldOf([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
-  expect(corrections.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
+  expect(corrections!.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
   expect(prompts).toEqual([{ frame: 0, object: 5, propagate: 'both', clicks: [[1, 0, 1]], box: [0, 0, 2, 1] }]);
   expect(numbers).toEqual(new Map([[1, 3], [3, 1], [9, 9], [5, 5]]));
   expect(theirNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
