@@ -27,12 +27,14 @@ test('objects are selected, locked and deleted, corrected frames are found, and 
   await expect(status).toHaveText('Corrected: the masks of one frame have changed.');
   await clipDone(page);
   await follow.selectOption('forward');
-  await drag(page, [0.15, 0.85], [0.2, 0.9]);
+  await page.keyboard.press('2');
+  await drag(page, [0.3, 0.42], [0.4, 0.42]);
   await expect(status).toHaveText(/^Corrected: the masks of (2|3|4) frames have changed\.$/);
   await clipDone(page);
 
   // The painted corner goes with the object to the next frame, and nowhere else.
   await follow.selectOption('none');
+  await page.keyboard.press('1');
   const own = (await labelsOnCanvas(page)).map((label) => Number(label === 1));
   await page.keyboard.press('Shift+>');
   await expect(page.locator('#caption')).toHaveText('Frame 5');

@@ -156,7 +156,7 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   const project = await savedProject(page);
   expect(project.name).toBe('f00-f03.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
-  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 2, name: 'f00-f03.png', frames: 4 });
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 3, name: 'f00-f03.png', frames: 4 });
 
   await openExport(page);
   await page.getByText('One project in this browser').click();
@@ -189,8 +189,8 @@ test('a project whose state is of an older version is segmented again and correc
   expect(new Set(corrected)).toContain(3);
   const project = await savedProject(page);
   const unpacked = gunzipSync(project.buffer).toString('latin1');
-  expect(unpacked).toContain('VERCLIP4');
-  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
+  const [now] = /VERCLIP\d/.exec(unpacked)!;
+  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll(now, `VERCLIP${Number(now.at(-1)) - 1}`), 'latin1')) };
   const again = '2 objects in 4 frames, corrected as before.';
 
   // Over the open clip, cancelled: it takes corrections when the segmentation is done.
@@ -344,7 +344,7 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   expect(await namesInBrowser(second)).toEqual({ 'objects-1': 'Ball', 'objects-2': 'Box' });
 });
 
-test('damaged and foreign projects are refused with a reason and change nothing; one of the first version is opened, and takes corrections', async ({ page }) => {
+test('damaged and foreign projects are refused with a reason and change nothing', async ({ page }) => {
   const files = await smallFrames(5);
   await openSegmented(page, files);
   const project = await savedProject(page);
@@ -357,7 +357,8 @@ test('damaged and foreign projects are refused with a reason and change nothing;
     [Buffer.from('not a project'), 'damaged-project'],
     [project.buffer.subarray(0, project.buffer.length - 9), 'damaged-project'],
     [flipped, 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('"version":2', '"version":3'), ...rest]), 'newer-project'],
+    [remade(([header, ...rest]) => [header!.replace('"version":3', '"version":4'), ...rest]), 'newer-project'],
+    [remade(([header, ...rest]) => [header!.replace('"version":3', '"version":2'), ...rest]), 'damaged-project'],
     [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
     [remade(([header, ...rest]) => [header!.replace('data:image/jpeg;', 'data:text/html;'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
@@ -371,17 +372,4 @@ test('damaged and foreign projects are refused with a reason and change nothing;
     await page.locator('#notice-close').click();
   }
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
-
-  const [header, content, ...rest] = lines as [string, string, ...string[]];
-  const parsed = JSON.parse(content) as { clip: Record<string, unknown> };
-  const { spans, found: _, became: __, ...clip } = parsed.clip;
-  const [{ state }] = spans as [{ state: unknown }];
-  const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...parsed, clip: { ...clip, state } }), ...rest].join('\n');
-  await forgetAll(page);
-  await reloadEmpty(page);
-  await upload(page, [{ ...project, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
-  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
-  await page.locator('#objects > li').nth(1).locator('summary').click();
-  await page.getByRole('button', { name: 'Delete Object 1' }).click();
-  await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 5 frames have changed.');
 });

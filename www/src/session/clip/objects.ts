@@ -124,7 +124,7 @@ export class Objects {
     const [here, there] = [tracked.frames[at.index]?.runs, tracked.frames[to]?.runs];
     if (here === undefined || there === undefined || spanAt(tracked.spans, to) === null) return this.#refuse(strings.notices.noFrameThere);
     const [mask, before] = [unpacked(here), unpacked(there)];
-    const labels = before.map((label, p) => (mask[p] === own ? (tracked.locked.has(label) ? UNLABELLED : own) : label === own ? 0 : UNLABELLED));
+    const labels = before.map((label, p) => (mask[p] !== own ? 0 : tracked.locked.has(label) ? UNLABELLED : own));
     this.#paint(to, [[own, labels]]);
     return to;
   }
