@@ -1,7 +1,7 @@
 //! What the package is asked about frames that were segmented together: whether it still knows them, and what they become by corrections.
 //! It computes the next version of the masks and shows nothing.
 
-import type { ClipFrame, ClipOptions, Segmenter } from 'veronese';
+import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
 import { codeOf } from '../../common/errors.js';
 import { type Runs, packed } from '../../correction/runs.js';
 import { keyOf } from '../../result/masks.js';
@@ -46,16 +46,23 @@ export class Spans {
       ...toldOf(said, span.range, numbers),
       accepted: accepted.map((index) => index - span.range.first),
       locked: theirNumbers(numbers, version.became, (id) => version.locked.has(id)),
+      names: namesIn(version, numbers),
     }));
   }
 
-  /** Says in a span that was segmented again all that was said before objects were locked. `accepted`: the labels of accepted frames, by index. */
-  repeated(version: Version, span: Span, accepted: ReadonlyMap<number, Runs>, signal: AbortSignal): Promise<Version> {
-    const { first } = span.range;
-    return this.#answer(version, span, signal, null, (numbers) => ({
-      ...toldOf(version.said.filter(({ frame }) => contains(span.range, frame)), span.range, numbers),
-      accepted: [...accepted].map(([index, runs]) => ({ frame: index - first, labels: toSpan(runs, numbers) })),
+  /**
+   * Says in a span that was segmented again all that was said, and then that frames are accepted, with their labels by index. What was locked and
+   * named since is protected from what is said next.
+   */
+  async repeated(version: Version, span: Span, accepted: ReadonlyMap<number, Runs>, signal: AbortSignal): Promise<Version> {
+    const { range } = span;
+    const said = version.said.filter(({ frame }) => contains(range, frame));
+    const after = await this.#answer(version, span, signal, null, (numbers) => ({ ...toldOf(said, range, numbers), accepted: [], locked: [], names: {} }));
+    if (accepted.size === 0 || signal.aborted) return after;
+    return this.#answer(after, after.spans[version.spans.indexOf(span)]!, signal, null, (numbers) => ({
+      accepted: [...accepted].map(([index, runs]) => ({ frame: index - range.first, labels: toSpan(runs, numbers) })),
       locked: [],
+      names: {},
     }));
   }
 
@@ -64,7 +71,7 @@ export class Spans {
     span: Span,
     signal: AbortSignal,
     changes: ((index: number, masks: TrackedFrame) => void) | null,
-    tell: (numbers: Map<number, number>) => Pick<ClipOptions, 'corrections' | 'prompts' | 'accepted' | 'locked'>,
+    tell: (numbers: Map<number, number>) => Pick<ClipOptions, 'corrections' | 'prompts' | 'accepted' | 'locked'> & Pick<ClipEdits, 'names'>,
   ): Promise<Version> {
     const { tracked, settings, pair } = this.#store.get();
     if (tracked === null) return version;
@@ -83,8 +90,7 @@ export class Spans {
       const frame = await segmented();
       if (!signal.aborted) changes?.(first + index, numbered(frame));
     };
-    const told = tell(numbers);
-    const names = namesIn(version, numbers);
+    const { names, ...told } = tell(numbers);
     const found = this.#segmenter.segmentClip(frames, {
       ...told,
       state: await bytesOf(span.state),
