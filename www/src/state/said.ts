@@ -1,11 +1,11 @@
 //! What a person says about a clip, and the masks as they are before it has been carried to the other frames.
 
 import type { ClipOptions, ClipPropagation } from 'veronese';
-import { type Runs, over, packed, unpacked } from '../correction/runs.js';
+import { over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
-import { type Painted, type Prompt, type Said, isPrompt, namesObjects, paintedOf, withStatement } from './statement.js';
+import { type Prompt, type Said, isPrompt, withStatement } from './statement.js';
 import type { Notes, Version } from './tracked.js';
 
 /** Where what is said of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
@@ -26,28 +26,6 @@ export interface Drawn {
 /** What changes no masks: these notes in the place of those before. */
 export interface Noted {
   readonly notes: Partial<Notes>;
-}
-
-/**
- * What is said by painting an object in a frame: its number, 0 where it is not, 255 where nothing is said. What was merged into the object is
- * part of it. Of the background: that all unlocked objects there are not.
- */
-export function painted(version: Version, frame: number, object: number, labels: Uint8Array, propagate: ClipPropagation): Painted[] {
-  const masks = version.frames[frame]?.runs;
-  if (masks === undefined) return [];
-  const runsOf = (all: Uint8Array): Runs => packed(all, masks.width, masks.height);
-  const isNot = runsOf(labels.map((label) => (label === 0 ? 0 : UNLABELLED)));
-  const not = (other: number): Painted => ({ frame, object: other, propagate, labels: isNot });
-  if (object !== 0) {
-    const merged = labels.includes(0) ? [...version.became].filter(([, into]) => into === object).map(([other]) => not(other)) : [];
-    return [...merged, { frame, object, propagate, labels: runsOf(labels) }];
-  }
-  const map = paintedOf(version.said, frame, 0);
-  const isOfMasks = map !== null && namesObjects(map);
-  const under = isOfMasks ? unpacked(masks).filter((_, p) => labels[p] === 0) : [];
-  const stroked = version.said.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
-  const others = [...new Set([...under, ...stroked])].filter((other) => other !== 0 && other !== UNLABELLED && !version.locked.has(other));
-  return [...(isOfMasks ? [] : [not(0)]), ...others.map(not)];
 }
 
 /** What painting an object changes in the masks of its frame at once: the number of an object, 0, or 255 where nothing. */

@@ -2,10 +2,10 @@
 //! number, in other parts and when its frames are segmented again.
 
 import type { ClipOptions } from 'veronese';
-import { type Runs, overlapsOf, resized, unpacked } from '../correction/runs.js';
+import { type Runs, overlapsOf, resized } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly } from './exact.js';
-import { type Said, isPrompt, namesObjects, saidAtSize } from './statement.js';
+import { saidAtSize } from './statement.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
 /** The largest number of an object. */
@@ -18,55 +18,6 @@ export function contains({ first, last }: Range, index: number): boolean {
 /** The span of which a frame's masks are. */
 export function spanAt(spans: readonly Span[], index: number): Span | null {
   return spans.findLast(({ range }) => contains(range, index)) ?? null;
-}
-
-/** The number that the package has for an object, or will have: one that none has makes a new object. */
-export function theirNumber(numbers: ReadonlyMap<number, number>, id: number): number {
-  const [known] = [...numbers].find(([, here]) => here === id) ?? [];
-  const any = Array.from({ length: MOST_OBJECTS }, (_, k) => k + 1);
-  // Above all that are seen there is none that is hidden.
-  return known ?? [id, Math.max(...numbers.keys()) + 1, ...any].find((number) => number <= MOST_OBJECTS && !numbers.has(number)) ?? 0;
-}
-
-/** The labels with the package's numbers; `numbers` learns new ones. */
-export function toSpan(runs: Runs, numbers: Map<number, number>): Uint8Array<ArrayBuffer> {
-  const table = new Map<number, number>([0, UNLABELLED].map((label) => [label, label]));
-  const labels = runs.labels.map((label) => {
-    if (!table.has(label)) table.set(label, learned(numbers, label));
-    return table.get(label)!;
-  });
-  return unpacked({ ...runs, labels });
-}
-
-function learned(numbers: Map<number, number>, id: number): number {
-  const number = theirNumber(numbers, id);
-  if (number !== 0) numbers.set(number, id);
-  return number;
-}
-
-/** What the package is told of what was said in frames of a span; `numbers` learns new ones. Where an object is not that it does not know is nothing. */
-export function toldOf(said: readonly Said[], { first }: Range, numbers: Map<number, number>): Required<Pick<ClipOptions, 'corrections' | 'prompts'>> {
-  const corrections: NonNullable<ClipOptions['corrections']>[number][] = [];
-  const prompts: NonNullable<ClipOptions['prompts']>[number][] = [];
-  for (const one of said) {
-    const isKnown = one.object === 0 || [...numbers.values()].includes(one.object);
-    const object = isKnown || isPrompt(one) || namesObjects(one) ? learnedUnlessMap(numbers, one.object) : null;
-    if (object === null) continue;
-    const common = { frame: one.frame - first, propagate: one.propagate };
-    if (isPrompt(one)) prompts.push({ ...common, object, clicks: one.clicks, ...(one.box && { box: one.box }) });
-    else corrections.push({ ...common, labels: toSpan(one.labels, numbers), ...(object !== 0 && { object }) });
-  }
-  return { corrections, prompts };
-}
-
-/** The package's number of an object; 0 for a label map, and `null` if there is no number left. */
-function learnedUnlessMap(numbers: Map<number, number>, object: number): number | null {
-  return object === 0 ? 0 : learned(numbers, object) || null;
-}
-
-/** The package's numbers of objects here, which may have been merged. */
-export function theirNumbers(numbers: ReadonlyMap<number, number>, became: Version['became'], is: (id: number) => boolean): number[] {
-  return [...numbers].filter(([, here]) => is(became.get(here) ?? here)).map(([there]) => there);
 }
 
 /** The masks with the numbers here. What is not known yet gets a number above `largest`, or is background if there is none. */
@@ -105,20 +56,6 @@ export function numbersOf(run: readonly TrackedFrame[], { first }: Range, { fram
   match(found);
   match(frames.map((frame) => frame?.runs));
   return numbers;
-}
-
-/** What the package is told of objects that were merged or deleted; `numbers` learns under which number here an object goes on. */
-export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number, number>): NonNullable<ClipOptions['edits']> {
-  const groups = new Map<number, number[]>();
-  for (const [there, here] of [...numbers].sort(([, one], [, other]) => one - other)) {
-    const id = became.get(here) ?? here;
-    // The one whose number stays is the first.
-    const others = groups.get(id) ?? [];
-    groups.set(id, here === id ? [there, ...others] : [...others, there]);
-  }
-  const { 0: gone = [], ...kept } = Object.fromEntries(groups) as Record<number, number[]>;
-  for (const [id, [there]] of Object.entries(kept)) numbers.set(there!, Number(id));
-  return { merge: Object.values(kept).filter((group) => group.length > 1), delete: gone };
 }
 
 /** What became of objects after an edit as well. */

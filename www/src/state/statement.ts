@@ -65,19 +65,6 @@ function without(painted: Painted, said: Runs): Painted {
   return { ...painted, labels: packed(unpacked(painted.labels).map((label, p) => (above[p] === UNLABELLED ? label : UNLABELLED)), width, height) };
 }
 
-/** A prompt with another click, or with a box. A box has all clicks that are the object's. */
-export function refined(prompt: Prompt, more: Click | Box): Prompt {
-  const clicks = more.length === 3 ? [...prompt.clicks.filter(([x, y]) => x !== more[0] || y !== more[1]), more] : prompt.clicks;
-  const box = more.length === 4 ? more : prompt.box;
-  const inside = clicks.filter(([, , sign]) => sign > 0);
-  return { ...prompt, clicks, box: box && inside.reduce(grown, box) };
-}
-
-function grown([left, top, width, height]: Box, [x, y]: Click): Box {
-  const [x0, y0] = [Math.min(left, x), Math.min(top, y)];
-  return [x0, y0, Math.max(left + width, x + 1) - x0, Math.max(top + height, y + 1) - y0];
-}
-
 /** Whether a prompt points to anything. */
 export function points({ clicks, box }: Prompt): boolean {
   return box !== null || clicks.some(([, , sign]) => sign > 0);

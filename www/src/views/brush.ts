@@ -2,9 +2,10 @@
 
 import { maskWith, strokesOf } from '../correction/edits.js';
 import { labellingOf, labelsIn } from '../correction/parts.js';
-import { type Path, allowedLabels } from '../correction/strokes.js';
+import { type Path, type Stroke, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
+import type { Drawing } from '../session/clip/drawing.js';
 import type { Session } from '../session/session.js';
 import { type Pointing, type State, type Store, type ToolName, pointingIn, promptIn } from '../state/state.js';
 import { drawn, find } from './markup.js';
@@ -28,6 +29,7 @@ const NEXT_POINT = 0.3;
 export class Brush {
   readonly #store: Store;
   readonly #session: Session;
+  readonly #drawing: Drawing;
   readonly #picture: SVGSVGElement;
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
@@ -41,9 +43,10 @@ export class Brush {
   /** The last position of the brush. */
   #at: Point | null = null;
 
-  constructor(stage: HTMLElement, store: Store, session: Session) {
+  constructor(stage: HTMLElement, store: Store, session: Session, drawing: Drawing) {
     this.#store = store;
     this.#session = session;
+    this.#drawing = drawing;
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#strokes, this.#prompt, this.#path, this.#corners, this.#circle);
     session.masks.finishStroke = () => this.#finish();
@@ -114,13 +117,17 @@ export class Brush {
     if (!this.painting) this.#circle.setAttribute('r', '0');
   }
 
+  #beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
+    return (this.#store.get().look.kind === 'objects' ? this.#drawing : this.#session.masks).beginStroke(tool);
+  }
+
   /** `pointing`: what a box or a press is, if that is not what is chosen. */
   begin(point: Point, pointing: Pointing | null = null): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
     this.#pressed = true;
     if (!this.#polygon) {
-      const take = tool.name === 'box' ? this.#session.objects.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#session.edited().beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
+      const take = tool.name === 'box' ? this.#drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
       if (take !== null) this.#now = { tool: tool.name, points: [...point], take };
     }
     this.hover(point);
@@ -181,7 +188,7 @@ export class Brush {
 
   #close(erases: boolean): void {
     const points = cornersOf(this.#polygon ?? []);
-    const take = erases ? this.#session.edited().beginStroke('eraser') : this.#now?.take;
+    const take = erases ? this.#beginStroke('eraser') : this.#now?.take;
     if (!take || !isPolygon(points)) return;
     this.#clear();
     take({ points, radius: 0, filled: true });

@@ -15,8 +15,8 @@ export class LateBrush {
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
     this.#load = async () => {
-      const { Brush } = await import('./brush.js');
-      return (this.now = new Brush(stage, store, session));
+      const [{ Brush }, { Drawing }] = await Promise.all([import('./brush.js'), import('../session/clip/drawing.js')]);
+      return (this.now = new Brush(stage, store, session, new Drawing(store, session.objects)));
     };
     store.subscribe(({ tool }) => {
       if (tool.name === 'look' || this.#loading !== null) return;

@@ -76,7 +76,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
   });
   lock.addEventListener('click', () => session.objects.toggleLock(id));
-  split.addEventListener('click', () => session.objects.split(id));
+  split.addEventListener('click', () => void session.objects.split(id));
   remove.addEventListener('click', () => session.objects.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
 

@@ -64,8 +64,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['d'], shown: 'Shift D', does: 'doubtfulBefore', run: () => session.frames.goToDoubtful(null, -1), shift: true },
     { keys: ['c'], shown: 'C', does: 'corrected', run: () => session.frames.goToCorrected(1), shift: false },
     { keys: ['c'], shown: 'Shift C', does: 'correctedBefore', run: () => session.frames.goToCorrected(-1), shift: true },
-    { keys: ['>'], shown: '>', does: 'copyOn', run: () => copyMask(session, 1) },
-    { keys: ['<'], shown: '<', does: 'copyBack', run: () => copyMask(session, -1) },
+    { keys: ['>'], shown: '>', does: 'copyOn', run: () => void copyMask(session, 1) },
+    { keys: ['<'], shown: '<', does: 'copyBack', run: () => void copyMask(session, -1) },
     { keys: ['y'], shown: 'Y', does: 'accept', run: () => accept(session, 'shown'), shift: false },
     { keys: ['y'], shown: 'Shift Y', does: 'acceptAll', run: () => accept(session, 'all'), shift: true },
     { keys: NUMBERS, shown: '1 … 9', does: 'select', run: (name) => selectMask(store, session, Number(name)) },
@@ -109,7 +109,7 @@ function toClass(): void {
 }
 
 /** Copies the selected mask to a neighbouring frame and goes there. */
-function copyMask(session: Session, by: 1 | -1): void {
-  const to = session.objects.copyMask(by);
+async function copyMask(session: Session, by: 1 | -1): Promise<void> {
+  const to = await session.objects.copyMask(by);
   if (to !== null) void session.frames.goTo(to);
 }

@@ -1,9 +1,11 @@
 //! The frames of a clip as the package reads them: whenever it needs one, so that few stay in memory, or none.
 
+import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
+import { packed } from '../../correction/runs.js';
 import { smaller } from '../../frames/frame.js';
 import type { LoadedFrame } from '../../state/pair.js';
-import type { Range } from '../../state/tracked.js';
+import type { Range, TrackedFrame } from '../../state/tracked.js';
 
 type Picture = Pick<LoadedFrame, 'data' | 'width' | 'height'>;
 
@@ -90,4 +92,16 @@ export function isFrameOf({ origin, full, width }: LoadedFrame, clip: Clip, inde
 /** The package may take the buffer. */
 function copyOf({ data, width, height }: Picture): Picture {
   return { data: data.slice(), width, height };
+}
+
+export async function bytesOf(blob: Blob): Promise<Uint8Array> {
+  return new Uint8Array(await blob.arrayBuffer());
+}
+
+export function blobOf(bytes: Uint8Array): Blob {
+  return new Blob([new Uint8Array(bytes)]);
+}
+
+export function masksOf({ labels, objects, background }: ClipFrame, { width, height }: ClipFrames['size']): TrackedFrame {
+  return { runs: packed(labels, width, height), objects, background };
 }

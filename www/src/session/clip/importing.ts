@@ -3,8 +3,11 @@
 import { readAnnotations } from 'veronese/formats';
 import { PageError } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
+import { packed } from '../../correction/runs.js';
+import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
 import type { State, Store } from '../../state/state.js';
+import type { Painted } from '../../state/statement.js';
 import type { Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
@@ -58,11 +61,19 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     const { painted, classes, left } = await masksFrom(files, tracked);
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     shown.kind('objects');
-    objects.import(painted, classes);
+    void objects.carrying.correct({ said: mapsOf(painted, tracked), notes: objects.withClasses(classes) });
     if (left.length > 0) store.say(texts.taken(painted.size, left));
   } catch (error) {
     report(store, error);
   }
+}
+
+/** Label maps of frames, without what is locked. */
+function mapsOf(painted: Imported['painted'], { frames, locked }: Tracked): Painted[] {
+  return [...painted].flatMap(([frame, all]) => {
+    const { width, height } = frames[frame]!.runs;
+    return { frame, object: 0, propagate: 'both', labels: packed(all.map((label) => (locked.has(label) ? UNLABELLED : label)), width, height) };
+  });
 }
 
 interface Imported {

@@ -3,6 +3,7 @@
 
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
+import { codeOf } from '../../common/errors.js';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import type { Settings } from '../../state/settings.js';
@@ -11,9 +12,9 @@ import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, acceptedIn, isTracked, notesOf, savedOf, unchanged, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
-import { ClipFrames, STOPPED } from './frames.js';
+import { ClipFrames, STOPPED, blobOf, bytesOf, masksOf } from './frames.js';
 import type { Change, ClipRuns } from './runs.js';
-import { type Spans, blobOf, bytesOf, masksOf } from './spans.js';
+import type { Spans } from './spans.js';
 import { TimeLeft } from './time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
@@ -24,10 +25,10 @@ export class ClipSegmenting {
   readonly solvedPairs = new Map<string, SolvedPairs>();
   readonly #store: Store;
   readonly #runs: ClipRuns;
-  readonly #spans: Spans;
+  readonly #spans: () => Promise<Spans>;
   readonly #shown: Shown;
 
-  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
+  constructor(store: Store, runs: ClipRuns, spans: () => Promise<Spans>, shown: Shown) {
     this.#store = store;
     this.#runs = runs;
     this.#spans = spans;
@@ -122,7 +123,7 @@ export class ClipSegmenting {
    */
   async renew(): Promise<void> {
     const { tracked } = this.#store.get();
-    if (tracked === null || (await this.#spans.areReadable(tracked))) return;
+    if (tracked === null || (await this.#areReadable(tracked))) return;
     if (this.#store.get().tracked?.clip !== tracked.clip) return;
     this.#runs.stop();
     this.solvedPairs.delete(tracked.clip.fingerprint);
@@ -131,6 +132,18 @@ export class ClipSegmenting {
       await this.segment(range);
       const { tracked: now } = this.#store.get();
       if (now?.clip !== tracked.clip || now.run.phase !== 'done') return;
+    }
+  }
+
+  /** Whether the package reads what it knows of these frames: another version of it may not. */
+  async #areReadable({ clip, longestSide, spans: [span] }: Tracked): Promise<boolean> {
+    if (span === undefined) return true; // all are of one version
+    const frames = new ClipFrames(clip, longestSide, span.range);
+    try {
+      await this.#runs.segmenter.segmentClip(frames, { state: await bytesOf(span.state), changesOnly: true }).next();
+      return true;
+    } catch (error) {
+      return codeOf(error) !== 'invalid-option';
     }
   }
 
@@ -195,7 +208,7 @@ export class ClipSegmenting {
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
     const accepted = new Map(acceptedIn(before).filter((index) => contains(range, index)).map((index) => [index, acceptedLabels(before, version, index)]));
     const corrected = said.some(({ frame }) => contains(range, frame)) || became.size > 0;
-    if (corrected || accepted.size > 0) version = await this.#spans.repeated(version, version.spans.at(-1)!, accepted, signal);
+    if (corrected || accepted.size > 0) version = await (await this.#spans()).repeated(version, version.spans.at(-1)!, accepted, signal);
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
     version = unchanged(now, version);

@@ -1,17 +1,16 @@
-//! What the package is asked about frames that were segmented together: whether it still knows them, and what they become by corrections.
-//! It computes the next version of the masks and shows nothing.
+//! What frames that were segmented together become by what is said, as the package answers: the next version of the masks. It shows nothing.
+//! Loaded when something is said.
 
 import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
-import { codeOf } from '../../common/errors.js';
-import { type Runs, packed } from '../../correction/runs.js';
-import { keyOf } from '../../result/masks.js';
+import type { Runs } from '../../correction/runs.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { exactly, overlaid } from '../../state/exact.js';
-import { contains, editsIn, fromSpan, spanAt, theirNumbers, toSpan, toldOf } from '../../state/spans.js';
+import { contains, fromSpan, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
 import type { Said } from '../../state/statement.js';
+import { editsIn, namesIn, theirNumbers, toSpan, toldOf } from '../../state/told.js';
 import { type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
-import { ClipFrames } from './frames.js';
+import { ClipFrames, blobOf, bytesOf, masksOf } from './frames.js';
 
 /** Memory for frames that a correction reads again, bytes. */
 const ROOM = 64 << 20;
@@ -23,18 +22,6 @@ export class Spans {
   constructor(store: Store, segmenter: Segmenter) {
     this.#store = store;
     this.#segmenter = segmenter;
-  }
-
-  /** Whether the package reads what it knows of these frames: another version of it may not. */
-  async areReadable({ clip, longestSide, spans: [span] }: Tracked): Promise<boolean> {
-    if (span === undefined) return true; // all are of one version
-    const frames = new ClipFrames(clip, longestSide, span.range);
-    try {
-      await this.#segmenter.segmentClip(frames, { state: await bytesOf(span.state), changesOnly: true }).next();
-      return true;
-    } catch (error) {
-      return codeOf(error) !== 'invalid-option';
-    }
   }
 
   /**
@@ -117,24 +104,4 @@ export class Spans {
 function framesOf({ clip }: Tracked, { longestSide }: Version, { range }: Span, { first, second }: State['pair']): ClipFrames {
   const hand = [first, second].filter((frame): frame is LoadedFrame => frame !== null);
   return new ClipFrames(clip, longestSide, range, { hand, room: ROOM });
-}
-
-/** The names that a person gave to objects, by the package's numbers: other corrections leave them as they are. */
-function namesIn({ names, became }: Version, numbers: ReadonlyMap<number, number>): Record<number, string> {
-  return Object.fromEntries([...numbers].flatMap(([there, here]) => {
-    const name = names[keyOf('objects', became.get(here) ?? here)];
-    return name === undefined ? [] : [[there, name]];
-  }));
-}
-
-export async function bytesOf(blob: Blob): Promise<Uint8Array> {
-  return new Uint8Array(await blob.arrayBuffer());
-}
-
-export function blobOf(bytes: Uint8Array): Blob {
-  return new Blob([new Uint8Array(bytes)]);
-}
-
-export function masksOf({ labels, objects, background }: ClipFrame, { width, height }: ClipFrames['size']): TrackedFrame {
-  return { runs: packed(labels, width, height), objects, background };
 }
