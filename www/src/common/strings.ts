@@ -88,12 +88,6 @@ const TOOLS = {
   box: () => 'Drag a box around something, or press on it: it becomes a new object.',
 };
 
-const POINTING = {
-  new: 'With Shift it is added to the selected object, with Alt or the right button removed.',
-  add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
-  remove: 'Press on what does not belong to the selected object.',
-};
-
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
   split: 'First | second',
@@ -203,13 +197,10 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  /** `pointing`: what a press of the box tool does where the selected object can be refined, otherwise `null`. */
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, pointing: keyof typeof POINTING | null): string => {
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean): string => {
     const thing = isClip ? 'object' : 'mask';
     if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
-    const refines = tool === 'box' && pointing !== null ? POINTING[pointing] : '';
-    const said = refines === '' || pointing === 'new' ? `${TOOLS[tool](thing)} ${refines}`.trim() : refines;
-    return `${said} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
+    return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
   },
 
   accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,

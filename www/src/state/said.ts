@@ -5,7 +5,7 @@ import { over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
-import { type Prompt, type Said, isPrompt, withStatement } from './statement.js';
+import { type Said, isPrompt, withStatement } from './statement.js';
 import type { Notes, Version } from './tracked.js';
 
 /** Where what is said of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
@@ -33,11 +33,6 @@ export function seenOf(version: Version, frame: number, object: number, labels: 
   const shown = unpacked(version.frames[frame]!.runs);
   const stays = (label: number, was: number): boolean => version.locked.has(was) || (label === 0 && object !== 0 && was !== object);
   return labels.map((label, p) => (stays(label, shown[p]!) ? UNLABELLED : label));
-}
-
-/** The prompt of an object in a frame, which may have been merged into this one; `null` if there is none. */
-export function promptOf({ said, became }: Pick<Version, 'said' | 'became'>, frame: number | null, id: number | null): Prompt | null {
-  return said.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
 }
 
 /** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */

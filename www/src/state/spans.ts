@@ -5,7 +5,6 @@ import type { ClipOptions } from 'veronese';
 import { type Runs, overlapsOf, resized } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly } from './exact.js';
-import { saidAtSize } from './statement.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
 /** The largest number of an object. */
@@ -85,11 +84,7 @@ export function withRun(version: Version, run: readonly TrackedFrame[], span: Sp
   const named = run.map((frame) => fromSpan(frame, numbers, version.largest));
   const frames = version.frames.map((frame, index) => named[index - first] ?? frame);
   const found = version.found.map((runs, index) => named[index - first]?.runs ?? runs);
-  const said = version.said.map((one) => {
-    const [before, now] = [version.frames, frames].map((all) => all[one.frame]?.runs);
-    return before && now && before.width !== now.width ? saidAtSize(one, before, now) : one;
-  });
   const spans = [...version.spans.filter(({ range }) => range.first < first || range.last > last), { ...span, numbers }];
-  return exactly({ ...version, frames, found, said, exact: atSize(version.exact, frames), spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
+  return exactly({ ...version, frames, found, exact: atSize(version.exact, frames), spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
 }
 

@@ -9,8 +9,6 @@ import type { ImageFolder } from '../frames/files.js';
 import type { Kept } from './kept.js';
 import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
-import { promptOf } from './said.js';
-import type { Prompt } from './statement.js';
 import type { Tracked } from './tracked.js';
 
 /** What led to the masks on screen. */
@@ -186,16 +184,6 @@ export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>
 /** Whether the frames on screen are left at once, so that their pair is not segmented. */
 export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
   return playing || scrubbing;
-}
-
-/** The prompt of the selected object in the frame on screen, which more clicks can be added to; `null` if there is none. */
-export function promptIn({ tracked, timeline, look }: Pick<State, 'tracked' | 'timeline' | 'look'>): Prompt | null {
-  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, timeline?.first ?? null, look.selected);
-}
-
-/** What a press of the box tool points to: a new object, unless the selected one can be refined. */
-export function pointingIn(state: State): Pointing {
-  return promptIn(state) === null ? 'new' : state.tool.pointing;
 }
 
 /** The objects that are selected. */

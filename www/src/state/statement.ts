@@ -1,7 +1,7 @@
 //! What a person said of an object in a frame: pixels, or clicks and a box that point to it. It is kept as it was said.
 
 import type { ClipPropagation } from 'veronese';
-import { type Runs, over, packed, resized, unpacked } from '../correction/runs.js';
+import { type Runs, over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 
 /** Column and row of a pixel of the masks, and whether it is the object's. */
@@ -68,22 +68,4 @@ function without(painted: Painted, said: Runs): Painted {
 /** Whether a prompt points to anything. */
 export function points({ clicks, box }: Prompt): boolean {
   return box !== null || clicks.some(([, , sign]) => sign > 0);
-}
-
-interface Size {
-  readonly width: number;
-  readonly height: number;
-}
-
-/** What was said of masks of one size, for masks of another. */
-export function saidAtSize(said: Said, before: Size, now: Size): Said {
-  if (!isPrompt(said)) return { ...said, labels: resized(said.labels, now) };
-  const [sx, sy] = [now.width / before.width, now.height / before.height];
-  const at = (value: number, by: number, side: number): number => Math.min(Math.floor((value + 0.5) * by), side - 1);
-  const clicks = said.clicks.map(([x, y, sign]): Click => [at(x, sx, now.width), at(y, sy, now.height), sign]);
-  if (said.box === null) return { ...said, clicks };
-  const [x, y, width, height] = said.box;
-  const [left, top] = [Math.floor(x * sx), Math.floor(y * sy)];
-  const [right, bottom] = [Math.min(Math.ceil((x + width) * sx), now.width), Math.min(Math.ceil((y + height) * sy), now.height)];
-  return { ...said, clicks, box: [left, top, right - left, bottom - top] };
 }

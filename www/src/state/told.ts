@@ -1,10 +1,10 @@
 //! What the package is told of what a person said, by its own numbers of objects.
 
 import type { ClipOptions } from 'veronese';
-import { type Runs, unpacked } from '../correction/runs.js';
+import { type Runs, resized, unpacked } from '../correction/runs.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { MOST_OBJECTS } from './spans.js';
-import { type Said, isPrompt, namesObjects } from './statement.js';
+import { type Click, type Said, isPrompt, namesObjects } from './statement.js';
 import type { Range, Version } from './tracked.js';
 
 /** The number that the package has for an object, or will have: one that none has makes a new object. */
@@ -76,4 +76,22 @@ export function namesIn({ names, became }: Pick<Version, 'names' | 'became'>, nu
     const name = names[keyOf('objects', became.get(here) ?? here)];
     return name === undefined ? [] : [[there, name]];
   }));
+}
+
+interface Size {
+  readonly width: number;
+  readonly height: number;
+}
+
+/** What was said of masks of one size, for masks of another. */
+export function saidAtSize(said: Said, before: Size, now: Size): Said {
+  if (!isPrompt(said)) return { ...said, labels: resized(said.labels, now) };
+  const [sx, sy] = [now.width / before.width, now.height / before.height];
+  const at = (value: number, by: number, side: number): number => Math.min(Math.floor((value + 0.5) * by), side - 1);
+  const clicks = said.clicks.map(([x, y, sign]): Click => [at(x, sx, now.width), at(y, sy, now.height), sign]);
+  if (said.box === null) return { ...said, clicks };
+  const [x, y, width, height] = said.box;
+  const [left, top] = [Math.floor(x * sx), Math.floor(y * sy)];
+  const [right, bottom] = [Math.min(Math.ceil((x + width) * sx), now.width), Math.min(Math.ceil((y + height) * sy), now.height)];
+  return { ...said, clicks, box: [left, top, right - left, bottom - top] };
 }

@@ -5,12 +5,12 @@ import { labellingOf, labelsIn } from '../correction/parts.js';
 import { type Path, type Stroke, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
-import type { Drawing } from '../session/clip/drawing.js';
+import { Drawing } from '../session/clip/drawing.js';
 import type { Session } from '../session/session.js';
-import { type Pointing, type State, type Store, type ToolName, pointingIn, promptIn } from '../state/state.js';
+import type { Pointing, State, Store, ToolName } from '../state/state.js';
 import { drawn, find } from './markup.js';
+import { mountPointing, pointingIn } from './pointing.js';
 import { cornersOf, dotsOf, isPolygon, setCorner, takeBack } from './polygon.js';
-import { promptMarks } from './prompt-marks.js';
 
 type Point = readonly [number, number];
 
@@ -29,7 +29,7 @@ const NEXT_POINT = 0.3;
 export class Brush {
   readonly #store: Store;
   readonly #session: Session;
-  readonly #drawing: Drawing;
+  readonly drawing: Drawing;
   readonly #picture: SVGSVGElement;
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
@@ -43,17 +43,17 @@ export class Brush {
   /** The last position of the brush. */
   #at: Point | null = null;
 
-  constructor(stage: HTMLElement, store: Store, session: Session, drawing: Drawing) {
+  constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
     this.#session = session;
-    this.#drawing = drawing;
+    this.drawing = new Drawing(store, session.objects);
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#strokes, this.#prompt, this.#path, this.#corners, this.#circle);
     session.masks.finishStroke = () => this.#finish();
     this.#fit(store.get());
     this.#dress(store.get());
     this.#draw(store.get());
-    this.#mark(store.get());
+    mountPointing(document, this.#prompt, store);
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();
@@ -64,7 +64,6 @@ export class Brush {
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
       const same = now.edits === before.edits && now.tool.name === before.tool.name && now.result === before.result && now.look === before.look;
       if (!same) this.#draw(now);
-      if (!same || now.viewport !== before.viewport || now.tracked !== before.tracked || now.timeline !== before.timeline) this.#mark(now);
     });
   }
 
@@ -118,7 +117,7 @@ export class Brush {
   }
 
   #beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
-    return (this.#store.get().look.kind === 'objects' ? this.#drawing : this.#session.masks).beginStroke(tool);
+    return (this.#store.get().look.kind === 'objects' ? this.drawing : this.#session.masks).beginStroke(tool);
   }
 
   /** `pointing`: what a box or a press is, if that is not what is chosen. */
@@ -127,7 +126,7 @@ export class Brush {
     if (tool.name === 'look') return;
     this.#pressed = true;
     if (!this.#polygon) {
-      const take = tool.name === 'box' ? this.#drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
+      const take = tool.name === 'box' ? this.drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
       if (take !== null) this.#now = { tool: tool.name, points: [...point], take };
     }
     this.hover(point);
@@ -215,14 +214,6 @@ export class Brush {
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
     else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(now)));
-  }
-
-  /** The clicks and the box of the selected object, while others can be added. */
-  #mark(now: State): void {
-    const prompt = now.tool.name === 'box' ? promptIn(now) : null;
-    const masks = prompt && now.tracked?.frames[prompt.frame]?.runs;
-    const marks = prompt && masks ? promptMarks(prompt, (now.pair.first?.width ?? masks.width) / masks.width, 1 / (this.#picture.getScreenCTM()?.a ?? 1)) : [];
-    this.#prompt.replaceChildren(...marks);
   }
 
   #draw({ edits, tool, result, found, look }: State): void {

@@ -15,16 +15,21 @@ export class LateBrush {
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
     this.#load = async () => {
-      const [{ Brush }, { Drawing }] = await Promise.all([import('./brush.js'), import('../session/clip/drawing.js')]);
-      return (this.now = new Brush(stage, store, session, new Drawing(store, session.objects)));
+      const { Brush } = await import('./brush.js');
+      return (this.now = new Brush(stage, store, session));
     };
-    store.subscribe(({ tool }) => {
-      if (tool.name === 'look' || this.#loading !== null) return;
+    const loading = (): Promise<Brush> => {
+      if (this.#loading !== null) return this.#loading;
       this.#loading = this.#load();
       this.#loading.catch(() => {
         this.#loading = null;
         session.say(strings.errors.notLoaded, 'not-loaded');
       });
+      return this.#loading;
+    };
+    session.objects.drawing = () => loading().then(({ drawing }) => drawing, () => null);
+    store.subscribe(({ tool }) => {
+      if (tool.name !== 'look') void loading();
     });
   }
 

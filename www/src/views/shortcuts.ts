@@ -10,7 +10,7 @@ import type { KeyName } from './key-list.js';
 import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
 import { accept } from './review.js';
-import { changeRadius, chooseBox, chooseTool } from './tools.js';
+import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
 
 export interface Key {
@@ -106,6 +106,13 @@ function chosen(store: Store): number[] {
 /** Goes to the class of what is selected. */
 function toClass(): void {
   document.querySelector<HTMLElement>(':is(#several, #objects:not(.choosing) .selected) .class')?.focus();
+}
+
+/** Chooses the box; if it is chosen, what a press is next. */
+function chooseBox(store: Store): void {
+  if (store.get().tool.name !== 'box') return chooseTool(store, 'box');
+  const choices = [...document.querySelectorAll<HTMLInputElement>('[name=pointing]:enabled')];
+  choices[(choices.findIndex(({ checked }) => checked) + 1) % choices.length]?.click();
 }
 
 /** Copies the selected mask to a neighbouring frame and goes there. */

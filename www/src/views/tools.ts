@@ -1,13 +1,10 @@
-//! The tools: view, brush, eraser, polygon, box; the size of the brush, what a press makes, what follows, whether drawing is exact; undo and
-//! redo.
+//! The tools: view, brush, eraser, polygon, box; the size of the brush, what follows, whether drawing is exact; undo and redo.
 
 import type { ClipPropagation } from 'veronese';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
-import { type Pointing, type Store, type ToolName, pointingIn, promptIn } from '../state/state.js';
+import type { Store, ToolName } from '../state/state.js';
 import { find } from './markup.js';
-
-const POINTINGS = ['new', 'add', 'remove'] as const;
 
 export const RADII = { least: 2, most: 60 } as const;
 
@@ -16,7 +13,6 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
   const helps = names.map((name) => ({ name, help: find(document, `#tool-help [data-help=${name}]`, HTMLElement) }));
-  const pointings = POINTINGS.map((pointing) => find(form, `[name=pointing][value=${pointing}]`, HTMLInputElement));
   const spread = find(form, '[name=spread]', HTMLSelectElement);
   const exact = find(form, '[name=exact]', HTMLInputElement);
   const undo = find(form, '#undo', HTMLButtonElement);
@@ -25,7 +21,6 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   form.addEventListener('submit', (event) => event.preventDefault());
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
-  for (const radio of pointings) radio.addEventListener('change', () => store.set({ tool: { ...store.get().tool, pointing: radio.value as Pointing } }));
   spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as ClipPropagation } }));
   exact.addEventListener('change', () => store.set({ tool: { ...store.get().tool, exact: exact.checked } }));
   undo.addEventListener('click', () => session.edited().undo());
@@ -43,24 +38,19 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       if (radio.value === 'box') radio.parentElement!.hidden = clip === null;
     }
     size.value = String(tool.radius);
-    const isRefined = promptIn(store.get()) !== null;
-    for (const radio of pointings) {
-      radio.checked = radio.value === pointingIn(store.get());
-      radio.disabled = !isRefined && radio.value !== 'new';
-    }
     spread.value = tool.spread;
     spread.parentElement!.hidden = clip === null;
     spread.disabled = exact.checked = tool.exact;
     for (const { name, help } of helps) {
-      help.textContent = strings.toolHelp(name, clip !== null, tool.exact, isRefined ? tool.pointing : null);
+      help.textContent = strings.toolHelp(name, clip !== null, tool.exact);
       help.classList.toggle('away', tool.name !== name);
     }
     undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');
     redo.disabled = clip === null ? edits.done === edits.actions.length : clip.future.length === 0;
   };
   store.subscribe((now, before) => {
-    const same = (['tool', 'result', 'edits', 'live', 'tracked', 'timeline'] as const).every((part) => now[part] === before[part]);
-    if (!same || now.look.kind !== before.look.kind || now.look.selected !== before.look.selected) render();
+    const same = (['tool', 'result', 'edits', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
+    if (!same || now.look.kind !== before.look.kind) render();
   });
   render();
 }
@@ -75,14 +65,6 @@ export function chooseTool(store: Store, name: ToolName): void {
   const second = motions[1] ?? motions[0];
   const selected = look.selected ?? (second === undefined ? null : look.kind === 'groups' ? second.group : second.label);
   store.look({ view: 'first', blinking: false, stabilised: null, selected });
-}
-
-/** Chooses the box; where it is chosen and the selected object can be refined, what a press does next. */
-export function chooseBox(store: Store): void {
-  const { tool } = store.get();
-  if (tool.name !== 'box' || promptIn(store.get()) === null) return chooseTool(store, 'box');
-  const next = POINTINGS[(POINTINGS.indexOf(tool.pointing) + 1) % POINTINGS.length]!;
-  store.set({ tool: { ...tool, pointing: next } });
 }
 
 export function changeRadius(store: Store, factor: number): void {

@@ -7,7 +7,7 @@ import { smallerPieces } from '../../correction/pieces.js';
 import { type Runs, packed, unpacked } from '../../correction/runs.js';
 import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
 import { UNLABELLED, keyOf } from '../../result/masks.js';
-import { type Spread, promptOf, seenOf } from '../../state/said.js';
+import { type Spread, seenOf } from '../../state/said.js';
 import { spanAt } from '../../state/spans.js';
 import type { Pointing, Store } from '../../state/state.js';
 import { type Box, type Click, type Painted, type Prompt, isPrompt, namesObjects, paintedOf, points } from '../../state/statement.js';
@@ -157,6 +157,11 @@ export function painted(version: Version, frame: number, object: number, labels:
   const stroked = version.said.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
   const others = [...new Set([...under, ...stroked])].filter((other) => other !== 0 && other !== UNLABELLED && !version.locked.has(other));
   return [...(isOfMasks ? [] : [not(0)]), ...others.map(not)];
+}
+
+/** The prompt of an object in a frame, which may have been merged into this one; `null` if there is none. */
+export function promptOf({ said, became }: Pick<Version, 'said' | 'became'>, frame: number | null, id: number | null): Prompt | null {
+  return said.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
 }
 
 /** A prompt with another click, or with a box. A box has all clicks that are the object's. */

@@ -2,7 +2,6 @@
 //! and clicks. Each becomes something that is said of objects, which is then carried through the clip.
 
 import type { ClipOptions } from 'veronese';
-import { loaded } from '../../common/loaded.js';
 import { nameOf } from '../../common/naming.js';
 import { strings } from '../../common/strings.js';
 import type { Colour } from '../../drawing/palette.js';
@@ -11,13 +10,14 @@ import type { LoadedFrame } from '../../state/pair.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type Notes, toReview } from '../../state/tracked.js';
-import { report } from '../failures.js';
 import type { Carrying } from './carrying.js';
 import type { Drawing } from './drawing.js';
 
 export class Objects {
   readonly #store: Store;
   readonly carrying: Carrying;
+  /** What draws, which is loaded when it is used; `null`, and a notice, if it cannot be. Set by the brush. */
+  drawing: () => Promise<Drawing | null> = () => Promise.resolve(null);
 
   constructor(store: Store, carrying: Carrying) {
     this.#store = store;
@@ -41,23 +41,12 @@ export class Objects {
 
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
   async copyMask(by: 1 | -1): Promise<number | null> {
-    return (await this.#drawing())?.copyMask(by) ?? null;
+    return (await this.drawing())?.copyMask(by) ?? null;
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
   async split(id: number): Promise<void> {
-    (await this.#drawing())?.split(id);
-  }
-
-  /** What draws is loaded when it is used. */
-  async #drawing(): Promise<Drawing | null> {
-    try {
-      const { Drawing } = await loaded(import('./drawing.js'));
-      return new Drawing(this.#store, this);
-    } catch (error) {
-      report(this.#store, error);
-      return null;
-    }
+    (await this.drawing())?.split(id);
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */

@@ -4,8 +4,6 @@
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
 import { codeOf } from '../../common/errors.js';
-import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
-import { UNLABELLED } from '../../result/masks.js';
 import type { Settings } from '../../state/settings.js';
 import { exactly } from '../../state/exact.js';
 import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
@@ -206,9 +204,8 @@ export class ClipSegmenting {
     const isFirst = before.found.every((runs) => runs === null);
     const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
-    const accepted = new Map(acceptedIn(before).filter((index) => contains(range, index)).map((index) => [index, acceptedLabels(before, version, index)]));
     const corrected = said.some(({ frame }) => contains(range, frame)) || became.size > 0;
-    if (corrected || accepted.size > 0) version = await (await this.#spans()).repeated(version, version.spans.at(-1)!, accepted, signal);
+    if (corrected || acceptedIn(before).some((index) => contains(range, index))) version = await (await this.#spans()).repeated(before, version, signal);
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
     version = unchanged(now, version);
@@ -229,15 +226,6 @@ export class ClipSegmenting {
     this.solvedPairs.set(fingerprint, known);
     return known;
   }
-}
-
-/** The labels of an accepted frame at the size that it has now. What was drawn exactly is the page's alone. */
-function acceptedLabels(before: Version, now: Version, index: number): Runs {
-  const runs = resized(before.frames[index]!.runs, now.frames[index]!.runs);
-  const exact = now.exact.get(index);
-  if (exact === undefined) return runs;
-  const drawn = unpacked(exact);
-  return packed(unpacked(runs).map((label, p) => (drawn[p] === UNLABELLED ? label : UNLABELLED)), runs.width, runs.height);
 }
 
 /** The largest number of an object in these frames. */

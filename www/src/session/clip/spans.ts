@@ -2,13 +2,14 @@
 //! Loaded when something is said.
 
 import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
-import type { Runs } from '../../correction/runs.js';
+import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
+import { UNLABELLED } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { exactly, overlaid } from '../../state/exact.js';
 import { contains, fromSpan, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
 import type { Said } from '../../state/statement.js';
-import { editsIn, namesIn, theirNumbers, toSpan, toldOf } from '../../state/told.js';
+import { editsIn, namesIn, saidAtSize, theirNumbers, toSpan, toldOf } from '../../state/told.js';
 import { type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
 import { ClipFrames, blobOf, bytesOf, masksOf } from './frames.js';
 
@@ -38,16 +39,22 @@ export class Spans {
   }
 
   /**
-   * Says in a span that was segmented again all that was said, and then that frames are accepted, with their labels by index. What was locked and
-   * named since is protected from what is said next.
+   * Says in the span that was segmented last all that was said `before`, and then that frames are accepted, with their labels. What was locked
+   * and named since is protected from what is said next.
    */
-  async repeated(version: Version, span: Span, accepted: ReadonlyMap<number, Runs>, signal: AbortSignal): Promise<Version> {
-    const { range } = span;
-    const said = version.said.filter(({ frame }) => contains(range, frame));
-    const after = await this.#answer(version, span, signal, null, (numbers) => ({ ...toldOf(said, range, numbers), accepted: [], locked: [], names: {} }));
-    if (accepted.size === 0 || signal.aborted) return after;
-    return this.#answer(after, after.spans[version.spans.indexOf(span)]!, signal, null, (numbers) => ({
-      accepted: [...accepted].map(([index, runs]) => ({ frame: index - range.first, labels: toSpan(runs, numbers) })),
+  async repeated(before: Version, now: Version, signal: AbortSignal): Promise<Version> {
+    const at = now.spans.length - 1;
+    const { range } = now.spans[at]!;
+    const said = now.said.map((one) => {
+      const [was, is] = [before, now].map(({ frames }) => frames[one.frame]?.runs);
+      return was && is && was.width !== is.width ? saidAtSize(one, was, is) : one;
+    });
+    const own = said.filter(({ frame }) => contains(range, frame));
+    const after = await this.#answer({ ...now, said }, now.spans[at]!, signal, null, (numbers) => ({ ...toldOf(own, range, numbers), accepted: [], locked: [], names: {} }));
+    const accepted = acceptedIn(before).filter((index) => contains(range, index));
+    if (accepted.length === 0 || signal.aborted) return after;
+    return this.#answer(after, after.spans[at]!, signal, null, (numbers) => ({
+      accepted: accepted.map((index) => ({ frame: index - range.first, labels: toSpan(acceptedLabels(before, after, index), numbers) })),
       locked: [],
       names: {},
     }));
@@ -104,4 +111,13 @@ export class Spans {
 function framesOf({ clip }: Tracked, { longestSide }: Version, { range }: Span, { first, second }: State['pair']): ClipFrames {
   const hand = [first, second].filter((frame): frame is LoadedFrame => frame !== null);
   return new ClipFrames(clip, longestSide, range, { hand, room: ROOM });
+}
+
+/** The labels of an accepted frame at the size that it has now. What was drawn exactly is the page's alone. */
+function acceptedLabels(before: Version, now: Version, index: number): Runs {
+  const runs = resized(before.frames[index]!.runs, now.frames[index]!.runs);
+  const exact = now.exact.get(index);
+  if (exact === undefined) return runs;
+  const drawn = unpacked(exact);
+  return packed(unpacked(runs).map((label, p) => (drawn[p] === UNLABELLED ? label : UNLABELLED)), runs.width, runs.height);
 }

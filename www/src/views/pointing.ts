@@ -1,0 +1,61 @@
+//! What a press of the box tool is: a new object, or more or less of the selected one, whose clicks and box are shown.
+
+import { promptOf } from '../session/clip/drawing.js';
+import type { Pointing, State, Store } from '../state/state.js';
+import type { Prompt } from '../state/statement.js';
+import { drawn, find } from './markup.js';
+
+/** Radius of a disc, and half the length of the lines in it, pixels of the screen. */
+const [DISC, LINE] = [7, 4];
+
+const HELP = {
+  new: 'Drag a box around something, or press on it: it becomes a new object. With Shift it is added to the selected one, with Alt or the right button removed.',
+  add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
+  remove: 'Press on what does not belong to the selected object.',
+};
+
+/** What a press is, unless a key says otherwise. */
+export function pointingIn(state: State): Pointing {
+  return promptIn(state) === null ? 'new' : state.tool.pointing;
+}
+
+/** The prompt of the selected object in the frame on screen, which can be refined; `null` if there is none. */
+function promptIn({ tracked, timeline, look }: State): Prompt | null {
+  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, timeline?.first ?? null, look.selected);
+}
+
+export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store): void {
+  const choices = [...form.querySelectorAll<HTMLInputElement>('[name=pointing]')];
+  const help = find(document, '#tool-help [data-help=pointing]', HTMLElement);
+  for (const choice of choices) choice.addEventListener('change', () => store.set({ tool: { ...store.get().tool, pointing: choice.value as Pointing } }));
+  const render = (now: State): void => {
+    const prompt = promptIn(now);
+    for (const choice of choices) {
+      choice.checked = choice.value === pointingIn(now);
+      choice.disabled = prompt === null && choice.value !== 'new';
+    }
+    const isShown = now.tool.name === 'box' && prompt !== null;
+    help.textContent = isShown ? HELP[now.tool.pointing] : '';
+    const masks = isShown ? now.tracked?.frames[prompt.frame]?.runs : undefined;
+    const unit = 1 / (marks.ownerSVGElement?.getScreenCTM()?.a ?? 1);
+    marks.replaceChildren(...(isShown && masks ? marksOf(prompt, (now.pair.first?.width ?? masks.width) / masks.width, unit) : []));
+  };
+  store.subscribe((now, before) => {
+    if ((['tool', 'look', 'tracked', 'timeline', 'viewport', 'pair'] as const).some((part) => now[part] !== before[part])) render(now);
+  });
+  render(store.get());
+}
+
+/** Clicks as discs with a plus or a minus, and the box. `scale`: pixels of the frame for each of the masks; `unit`: for one of the screen. */
+function marksOf({ clicks, box }: Prompt, scale: number, unit: number): SVGElement[] {
+  const place = (value: number): number => (value + 0.5) * scale - 0.5;
+  const [x, y, width, height] = box ?? [];
+  const boxes = x === undefined ? [] : [drawn('rect', { class: 'prompt box', x: x * scale - 0.5, y: y! * scale - 0.5, width: width! * scale, height: height! * scale })];
+  const discs = clicks.map(([column, row, sign]) => {
+    const [radius, half, left] = [DISC * unit, LINE * unit, place(column) - DISC * unit];
+    const plus = sign > 0 ? `M${place(column)} ${place(row) - half}v${2 * half}` : '';
+    const disc = `M${left} ${place(row)}a${radius} ${radius} 0 1 0 ${2 * radius} 0a${radius} ${radius} 0 1 0 ${-2 * radius} 0z`;
+    return drawn('path', { class: sign > 0 ? 'prompt plus' : 'prompt minus', d: `${disc}M${place(column) - half} ${place(row)}h${2 * half}${plus}` });
+  });
+  return [...boxes, ...discs];
+}
