@@ -9,7 +9,7 @@ import { drawn, find } from './markup.js';
 const [DISC, LINE] = [7, 4];
 
 const HELP = {
-  new: 'Drag a box around something, or press on it: it becomes a new object. With Shift it is added to the selected one, with Alt or the right button removed.',
+  new: 'Drag a box around something, or press on it: it becomes a new object. Shift adds to the selected one, Alt removes.',
   add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
   remove: 'Press on what does not belong to the selected object.',
 };
