@@ -11,7 +11,12 @@ import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type Notes, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
-import type { Drawing } from './drawing.js';
+
+/** What is drawn of objects: {@link Objects.copyMask}, {@link Objects.split}. */
+interface Drawing {
+  copyMask(by: 1 | -1): number | null;
+  split(id: number): void;
+}
 
 export class Objects {
   readonly #store: Store;
