@@ -158,28 +158,23 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
     orders(last).into_iter().flat_map(with_last).collect()
 }
 
-/// Asserts that corrections give the same in all orders, but in frames `but`, where what is said depends on what objects have there already.
-fn assert_any_order(shot: &Shot, said: &[Said], but: &[usize]) {
+/// Asserts that corrections give the same in all orders but for a hundredth of each object: what is there holds unless it looks otherwise.
+fn assert_any_order(shot: &Shot, said: &[Said]) {
     let after = |order: &[usize]| {
         let mut shot = shot.clone();
         order.iter().for_each(|&k| drop(shot.say(&said[k])));
-        let (labels, objects, _) = shot.state();
-        (labels, objects)
+        shot.labels().concat()
     };
     let orders = orders(said.len());
-    let (labels, objects) = after(&orders[0]);
-    assert_ne!(labels, shot.labels());
+    let labels = after(&orders[0]);
+    assert_ne!(labels, shot.labels().concat());
     for order in &orders[1..] {
-        let (other_labels, other_objects) = after(order);
-        for (t, (one, other)) in labels.iter().zip(&other_labels).enumerate() {
-            if but.contains(&t) {
-                continue;
-            }
-            let differ: Vec<_> = one.iter().zip(other).enumerate().filter(|(_, (one, other))| one != other).collect();
-            assert!(differ.is_empty(), "frame {t}, order {order:?}: {differ:?}");
-        }
-        for (t, (objects, others)) in objects.iter().zip(&other_objects).enumerate() {
-            assert!(but.contains(&t) || objects == others, "frame {t}, order {order:?}");
+        let other = after(order);
+        for number in 0..=u8::MAX {
+            let pairs = || labels.iter().zip(&other).map(|(one, other)| [*one == number, *other == number]);
+            let [common, all] =
+                [2, 1].map(|least| pairs().filter(|of| of.iter().filter(|is| **is).count() >= least).count());
+            assert!(100 * common >= 99 * all, "order {order:?}: {common} of {all} pixels of {number}");
         }
     }
 }
@@ -192,7 +187,7 @@ fn masks_and_strokes_of_one_object_in_any_order() {
         (4, shot.stroke(9, [92, 66, 12, 8]), Spread::Both),
         (6, shot.stroke(0, [60, 80, 30, 2]), Spread::Both),
     ];
-    assert_any_order(&shot, &said, &[4, 6]);
+    assert_any_order(&shot, &said);
 }
 
 #[test]
@@ -203,7 +198,7 @@ fn two_separate_objects_in_any_order() {
         (5, shot.mask(5, 3, 11), Spread::Both),
         (3, shot.stroke(11, [16, 66, 10, 10]), Spread::Forward),
     ];
-    assert_any_order(&shot, &said, &[1, 3, 5]);
+    assert_any_order(&shot, &said);
 }
 
 #[test]
@@ -214,8 +209,8 @@ fn ground_said_of_a_found_object_and_a_mask_that_takes_it_over_in_any_order() {
         (5, mask(&shot.truths[5], &[(1, 20)]), Spread::Both),
         (3, mask(&shot.truths[3], &[(2, 9)]), Spread::Both),
     ];
-    assert_any_order(&shot, &said[..2], &[]);
-    assert_any_order(&shot, &said, &[]);
+    assert_any_order(&shot, &said[..2]);
+    assert_any_order(&shot, &said);
 }
 
 #[test]

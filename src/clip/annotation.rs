@@ -279,18 +279,19 @@ impl Said {
                 }
             }
             let all: usize = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).sum();
-            let goes = |p: usize| {
-                let part = parts.of[p] as usize;
-                let (Component { size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
+            let goes = |part: usize| {
+                let (Component { label, size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
                 let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
-                let is_cut = drawn[0] <= drawn[2];
+                if label == 0 || is_said[part] || drawn[0] > drawn[2] {
+                    return false;
+                }
                 // A dab in a large piece may be about part of it; a stroke through it is not.
-                let is_small = (size as f32) < model().part * all as f32;
                 let is_through = length(drawn) as f32 > (1.0 - model().part) * length(bounds) as f32;
-                let is_meant = is_cut && (is_small || is_through && 2 * size < all);
-                inside[p] > 0 && !is_said[part] && is_meant
+                (size as f32) < model().part * all as f32 || is_through && 2 * size < all
             };
-            let mut piece: Vec<u8> = (0..now.len()).map(|p| if goes(p) { 0 } else { NOTHING_SAID }).collect();
+            let goes: Vec<bool> = (0..parts.list.len()).map(goes).collect();
+            let mut piece: Vec<u8> =
+                parts.of.iter().map(|&part| if goes[part as usize] { 0 } else { NOTHING_SAID }).collect();
             if !piece.contains(&0) {
                 continue;
             }

@@ -477,7 +477,8 @@ impl FrameCorrection {
         let takes = |from: u8, other: u8| {
             from != 0 && from != other && decided(other) && !persons[usize::from(from)] && !kept[usize::from(from)]
         };
-        local::absorb_rims(&mut labels, &found, &takes, width, 2 * look.step);
+        let is_open = |p: usize| hand.get(p).is_none_or(|hand| *hand == NOTHING_SAID);
+        local::absorb_rims(&mut labels, &found, (&is_open, &takes), width, 2 * look.step);
         let certain = 2.0 * model().certain;
         let erases = said.names_none();
         for (p, hand) in hand.into_iter().enumerate() {

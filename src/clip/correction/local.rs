@@ -48,25 +48,31 @@ pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f3
 }
 
 /// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels
-/// over those that were found, and `takes` tells from which one of them which other one takes.
-pub(super) fn absorb_rims(layer: &mut [u8], found: &[u8], takes: &dyn Fn(u8, u8) -> bool, width: usize, reach: usize) {
+/// over those that were found; pixels that are not `open` stay, and `takes` tells from which one of them which other one takes.
+pub(super) fn absorb_rims(
+    layer: &mut [u8],
+    found: &[u8],
+    (open, takes): (&dyn Fn(usize) -> bool, &dyn Fn(u8, u8) -> bool),
+    width: usize,
+    reach: usize,
+) {
     let mut sizes = [[0usize; 2]; 256];
     for (&found, &label) in found.iter().zip(&*layer) {
         sizes[usize::from(found)][0] += 1;
         sizes[usize::from(found)][1] += usize::from(label != NOTHING_SAID && takes(found, label));
     }
     let is_taken = |label: u8| 2 * sizes[usize::from(label)][1] > sizes[usize::from(label)][0];
-    let is_left = |p: usize, layer: &[u8]| layer[p] == NOTHING_SAID && is_taken(found[p]);
+    let is_left = |p: usize, layer: &[u8]| layer[p] == NOTHING_SAID && open(p) && is_taken(found[p]);
     let left: Vec<u8> = (0..layer.len()).map(|p| if is_left(p, layer) { found[p] } else { 0 }).collect();
     if left.iter().all(|label| *label == 0) {
         return;
     }
     // The nearest of the others within reach.
     let mut nearest = layer.to_vec();
-    let mut open: Vec<usize> = (0..layer.len()).filter(|&p| left[p] > 0).collect();
+    let mut rest: Vec<usize> = (0..layer.len()).filter(|&p| left[p] > 0).collect();
     for _ in 0..reach {
         let before = nearest.clone();
-        open.retain(|&p| {
+        rest.retain(|&p| {
             let x = p % width;
             let around = [
                 (x > 0, p.wrapping_sub(1)),
@@ -82,7 +88,7 @@ pub(super) fn absorb_rims(layer: &mut [u8], found: &[u8], takes: &dyn Fn(u8, u8)
     }
     let parts = components(&left, width, Connectivity::Four);
     let mut is_wide = vec![false; parts.list.len()];
-    open.iter().for_each(|&p| is_wide[parts.of[p] as usize] = true);
+    rest.iter().for_each(|&p| is_wide[parts.of[p] as usize] = true);
     for p in (0..layer.len()).filter(|&p| left[p] > 0 && !is_wide[parts.of[p] as usize]) {
         layer[p] = nearest[p];
     }
