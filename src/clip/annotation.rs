@@ -188,6 +188,7 @@ impl Said {
     }
 
     /// Takes what is painted in the place of what was painted of the same object.
+    #[inline(never)]
     pub(super) fn paint(&mut self, painted: &Painted) {
         let object = painted.object.unwrap_or(0);
         let (labels, spread) = (Runs::of(&painted.labels), painted.spread);
@@ -202,6 +203,7 @@ impl Said {
     }
 
     /// Takes a prompt with what it outlines in the place of that of the same object.
+    #[inline(never)]
     pub(super) fn point(&mut self, prompt: Prompt, labels: &[u8]) {
         self.prompts.retain(|of| of.prompt.object != prompt.object);
         if prompt.points() {
@@ -229,23 +231,29 @@ impl Said {
     }
 
     /// Whether its label map names no object: it says of all where they are not.
+    #[inline(never)]
     pub(super) fn names_none(&self) -> bool {
         self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == NOTHING_SAID))
     }
 
     /// Whether it is about an object by number.
+    #[inline(never)]
     pub(super) fn names(&self, object: u8) -> bool {
         self.names_in_map(object) || self.strokes(object).is_some() || self.outlined(object).is_some()
     }
 
     /// Whether another annotation of the frame says the same of an object by its number; of 0, of all that are under labels which name none.
+    #[inline(never)]
     pub(super) fn agrees(&self, other: &Said, object: u8) -> bool {
-        let map = |said: &Said| {
-            let is_it = if object == 0 { said.names_none() } else { said.names_in_map(object) };
-            said.strokes(0).filter(|_| is_it).cloned()
-        };
-        let strokes = |said: &Said| said.strokes(object).filter(|_| object > 0).cloned();
-        map(self) == map(other) && strokes(self) == strokes(other) && self.outlined(object) == other.outlined(object)
+        self.about(object) == other.about(object)
+    }
+
+    /// The label map, strokes and the outline that are about an object by its number; of 0, labels that name none.
+    #[inline(never)]
+    fn about(&self, object: u8) -> (Option<&Strokes>, Option<&Strokes>, Option<&Outlined>) {
+        let is_map = if object == 0 { self.names_none() } else { self.names_in_map(object) };
+        let map = self.strokes(0).filter(|_| is_map);
+        (map, self.strokes(object).filter(|_| object > 0), self.outlined(object))
     }
 
     /// Whether another annotation of the frame is the same.
@@ -255,6 +263,7 @@ impl Said {
 
     /// Separate pieces of objects that a stroke is in which takes away belong to them no more. `now` is what the frame shows, and `before`
     /// what was said.
+    #[inline(never)]
     pub(super) fn drop_pieces(&mut self, before: &Said, now: &[u8], width: usize) {
         self.pieces.retain(|(object, _)| {
             self.painted.iter().any(|strokes| strokes.labels.names(0) || strokes.object == *object)
@@ -305,6 +314,7 @@ impl Said {
     }
 
     /// Keeps where objects are before strokes change them, by the labels that the frame shows.
+    #[inline(never)]
     pub(super) fn keep_bases(&mut self, shown: &[u8]) {
         let mut is_shown = [false; 256];
         shown.iter().for_each(|&label| is_shown[usize::from(label)] = true);
@@ -329,12 +339,14 @@ impl Said {
     }
 
     /// Where what is said of an object spreads.
+    #[inline(never)]
     pub(super) fn spread_of(&self, object: u8) -> Spread {
         let painted = self.strokes(object).or(self.map_of(object)).map(|strokes| strokes.spread);
         painted.or(self.prompt(object).map(|prompt| prompt.spread)).unwrap_or_default()
     }
 
     /// What is said of each full-size pixel about an object, if anything is. Strokes go before a label map, and that before a prompt.
+    #[inline(never)]
     pub(super) fn seeds(&self, object: u8) -> Option<Vec<Seed>> {
         let mut seeds: Option<Vec<Seed>> = None;
         let layers = [
@@ -354,6 +366,7 @@ impl Said {
     }
 
     /// What is painted by hand at each full-size pixel: the object's number, 0 for ground of a label map, 255 for nothing.
+    #[inline(never)]
     pub(super) fn by_hand(&self) -> Option<Vec<u8>> {
         let mut hand: Option<Vec<u8>> = None;
         for Strokes { object, labels, .. } in &self.painted {
@@ -368,6 +381,14 @@ impl Said {
             }
         }
         hand
+    }
+
+    /// Whether a pixel is within all boxes of prompts.
+    pub(super) fn is_within(&self, [x, y]: [usize; 2]) -> bool {
+        let boxes = self.prompts.iter().filter_map(|of| of.prompt.within);
+        boxes
+            .into_iter()
+            .all(|[left, top, columns, rows]| (left..left + columns).contains(&x) && (top..top + rows).contains(&y))
     }
 
     /// The numbers that prompts outline, with their pixels.

@@ -157,6 +157,7 @@ impl FrameCorrection {
     }
 
     /// Which objects the correction is about. Tells whether the frame says anything else than before.
+    #[inline(never)]
     fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, change: Change) -> bool {
         let [first, last] = self.scene;
         let before = clip.frames[self.index].said.clone().unwrap_or_default();
@@ -245,6 +246,7 @@ impl FrameCorrection {
     }
 
     /// The frames of the scene that speak of an object, and if there are any those with it that a person accepted.
+    #[inline(never)]
     fn starts(&self, clip: &SegmentedClip, number: u8) -> Vec<Start> {
         let is_said = |t: usize| clip.frames[t].said.as_ref().is_some_and(|said| said.speaks_of.contains(&number));
         let frames = self.scene[0]..=self.scene[1];
@@ -260,6 +262,7 @@ impl FrameCorrection {
 
     /// Which objects each frame of the scene speaks of: those named there, and those found automatically of which part is not where labels
     /// that name no object say so. Of one that another object takes over in some frame nothing needs to be said.
+    #[inline(never)]
     fn speak(&self, clip: &mut SegmentedClip) {
         let scene = self.scene[0]..=self.scene[1];
         let mut taken = [false; 256];
@@ -297,6 +300,7 @@ impl FrameCorrection {
     }
 
     /// The corrected frame at once, from what it shows now.
+    #[inline(never)]
     fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, changes: &mut Changes) {
         let now = at_size(&self.before.values(), NOTHING_SAID, clip.size()[0], look);
         let seeds = |number: u8| clip.seeds_at(self.index, number, look);
@@ -393,6 +397,7 @@ impl FrameCorrection {
 
     /// Puts the claims of a frame over what was found: what is locked, what a person painted here, what others hold, what is claimed, in
     /// this order.
+    #[inline(never)]
     fn compose(
         &mut self,
         clip: &mut SegmentedClip,
@@ -477,7 +482,8 @@ impl FrameCorrection {
         let takes = |from: u8, other: u8| {
             from != 0 && from != other && decided(other) && !persons[usize::from(from)] && !kept[usize::from(from)]
         };
-        let is_open = |p: usize| hand.get(p).is_none_or(|hand| *hand == NOTHING_SAID);
+        let is_open =
+            |p: usize| hand.get(p).is_none_or(|hand| *hand == NOTHING_SAID) && said.is_within([p % width, p / width]);
         local::absorb_rims(&mut labels, &found, (&is_open, &takes), width, 2 * look.step);
         let certain = 2.0 * model().certain;
         let erases = said.names_none();
@@ -534,6 +540,7 @@ impl SegmentedClip {
     }
 
     /// What is said of a frame about an object at the size of a look, and where that spreads.
+    #[inline(never)]
     fn seeds_at(&self, t: usize, number: u8, look: &Look) -> Option<(Vec<Seed>, Spread)> {
         let width = self.size()[0];
         let frame = &self.frames[t];
@@ -548,6 +555,7 @@ impl SegmentedClip {
     }
 
     /// Of what was found under each number in a frame: all its pixels, those that are said to be nothing, and those said to be another's.
+    #[inline(never)]
     fn said_of_found(&self, t: usize, said: &Said) -> [[usize; 3]; 256] {
         let size @ [width, height] = self.working_size();
         let hand = said.by_hand().unwrap_or_else(|| vec![NOTHING_SAID; self.size()[0] * self.size()[1]]);
@@ -576,6 +584,7 @@ fn at_size<T: Copy + PartialEq>(said: &[T], nothing: T, full_width: usize, look:
     at_working_size(said, nothing, full_width, look.size, look.step)
 }
 
+#[inline(never)]
 fn at_working_size<T: Copy + PartialEq>(
     said: &[T],
     nothing: T,

@@ -10,6 +10,7 @@ pub(crate) struct Runs(Vec<u8>);
 saved!(Runs { 0 });
 
 impl Runs {
+    #[inline(never)]
     pub(crate) fn of(values: &[u8]) -> Runs {
         let mut code = Vec::new();
         for run in values.chunk_by(|one, other| one == other) {
@@ -26,6 +27,7 @@ impl Runs {
     }
 
     /// The values. Runs from outside the program must be [`valid`](Self::is_valid).
+    #[inline(never)]
     pub(crate) fn values(&self) -> Vec<u8> {
         let mut values: Vec<u8> = Vec::new();
         for (value, length) in self.each() {
@@ -40,11 +42,13 @@ impl Runs {
     }
 
     /// Whether these are runs of `pixels` values.
+    #[inline(never)]
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {
         self.each().try_fold(0usize, |sum, (_, length)| sum.checked_add(length)) == Some(pixels)
     }
 
     /// Whether any pixel has a value.
+    #[inline(never)]
     pub(crate) fn names(&self, value: u8) -> bool {
         self.each().any(|(own, _)| own == value)
     }

@@ -7,6 +7,7 @@ use crate::clip::whole::NOTHING_SAID;
 use crate::components::{Connectivity, components};
 
 /// Takes back what no stroke has changed of an object's mask since it was `before`.
+#[inline(never)]
 pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize) {
     // 1 is added, 2 is taken away.
     let changes: Vec<u8> = mask.iter().zip(before).map(|(now, before)| now + 2 * before).collect();
@@ -29,6 +30,7 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
 
 /// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that way: `looks` are the odds
 /// of the object by its looks. They are weighed over each connected change.
+#[inline(never)]
 pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f32, width: usize) {
     if !before.contains(&1) {
         return;
@@ -49,6 +51,7 @@ pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f3
 
 /// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels
 /// over those that were found; pixels that are not `open` stay, and `takes` tells from which one of them which other one takes.
+#[inline(never)]
 pub(super) fn absorb_rims(
     layer: &mut [u8],
     found: &[u8],

@@ -51,6 +51,7 @@ struct Beginning {
 
 /// What is said of a frame when an object is where a prompt points to: its number at its pixels, 0 elsewhere, 255 where an object is that
 /// keeps what it has. `shown` are the labels of the frame.
+#[inline(never)]
 pub(super) fn outline(
     clip: &SegmentedClip,
     index: usize,
