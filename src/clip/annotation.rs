@@ -102,7 +102,7 @@ pub struct Annotations {
     /// Label maps, for instance made elsewhere. Their numbers are theirs: objects found automatically under one of them get another.
     pub masks: Vec<Painted>,
     /// Label maps and strokes, which go before the mask of their frame where they say anything. Each replaces what was painted in its frame
-    /// of the same object, or as a map.
+    /// of the same object, or as a map; a map that says nothing takes back all that was said in its frame, prompts too.
     pub corrections: Vec<Painted>,
     /// One after another. Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
     pub prompts: Vec<Prompt>,
@@ -187,7 +187,7 @@ impl Said {
         painted.chain(self.prompts.iter().map(|of| &of.labels)).chain(pieces).all(|labels| labels.is_valid(pixels))
     }
 
-    /// Takes what is painted in the place of what was painted of the same object.
+    /// Takes what is painted in the place of what was painted of the same object. A label map that says nothing takes back everything.
     #[inline(never)]
     pub(super) fn paint(&mut self, painted: &Painted) {
         let object = painted.object.unwrap_or(0);
@@ -196,8 +196,13 @@ impl Said {
         if self.painted.contains(&strokes) {
             return;
         }
+        let is_nothing = painted.labels.iter().all(|&label| label == NOTHING_SAID);
+        if is_nothing && painted.object.is_none() {
+            *self = Said::default();
+            return;
+        }
         self.painted.retain(|strokes| strokes.object != object);
-        if painted.labels.iter().any(|&label| label != NOTHING_SAID) {
+        if !is_nothing {
             self.painted.push(strokes);
         }
     }

@@ -49,13 +49,16 @@ pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f3
     }
 }
 
+/// Whether an object is one that another one takes from.
+type Takes<'a> = &'a dyn Fn(u8, u8) -> bool;
+
 /// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels
 /// over those that were found; pixels that are not `open` stay, and `takes` tells from which one of them which other one takes.
 #[inline(never)]
 pub(super) fn absorb_rims(
     layer: &mut [u8],
     found: &[u8],
-    (open, takes): (&dyn Fn(usize) -> bool, &dyn Fn(u8, u8) -> bool),
+    (open, takes): (&dyn Fn(usize) -> bool, Takes<'_>),
     width: usize,
     reach: usize,
 ) {
