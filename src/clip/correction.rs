@@ -178,7 +178,7 @@ impl FrameCorrection {
         (1..NOTHING_SAID).filter(|&number| !said.agrees(&before, number)).for_each(&mut touch);
         if !said.agrees(&before, 0) {
             // Labels that name no object say of those under them that they are not there.
-            said.takes_from.iter().copied().for_each(&mut touch);
+            before.takes_from.iter().copied().for_each(&mut touch);
             let mut loses = [false; 256];
             if said.names_none() {
                 let hand = said.by_hand().unwrap_or_default();
