@@ -1,11 +1,11 @@
 //! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
 
+use super::local;
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::sweep::{centre_of, logit, solved};
 use crate::clip::annotation::Seed;
 use crate::clip::{MAX_LOOK_AHEAD, model};
-use crate::components::{Components, Connectivity, components};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
 use crate::labelling::solver::Solver;
@@ -60,20 +60,9 @@ impl Still {
             weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
         });
         let mut mask = solved(look, look.area(), odds.collect(), Some(said)).mask;
-        keep_near(&mut mask, said, found, look.size[0]);
+        let found: Vec<u8> = found.iter().map(|&inside| u8::from(inside)).collect();
+        local::keep(&mut mask, &found, said, look.size[0]);
         mask
-    }
-}
-
-/// Takes back changes that nothing connects with what is said.
-fn keep_near(mask: &mut [u8], said: &[Seed], found: &[bool], width: usize) {
-    let changed = |p: usize| u8::from(said[p] != Seed::Nothing || (mask[p] > 0) != found[p]);
-    let changes: Vec<u8> = (0..mask.len()).map(changed).collect();
-    let Components { of, list } = components(&changes, width, Connectivity::Eight);
-    let mut is_said = vec![false; list.len()];
-    (0..mask.len()).filter(|&p| said[p] != Seed::Nothing).for_each(|p| is_said[of[p] as usize] = true);
-    for (p, inside) in mask.iter_mut().enumerate().filter(|(p, _)| !is_said[of[*p] as usize]) {
-        *inside = u8::from(found[p]);
     }
 }
 
