@@ -204,7 +204,7 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 0, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: must have an object/],
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 3]]}]}', 'invalid-input', /'prompts', number 0: must have clicks/],
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: is not within the frame/],
-      ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: has a box already/],
+      ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'boxes' of 'f1', object 3: has a click already/],
       ['edits.json', '{"locked": [3], "clicks": {"f1": {"3": [2, 3]}}}', 'object-locked', /object 3 is locked: unlock it to change it/],
       ['edits.json', '{"locked": [3], "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'object-locked', /object 3 is locked/],
       ['edits.json', '{"locked": [3], "delete": [3]}', 'object-locked', /object 3 is locked/],

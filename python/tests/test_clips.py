@@ -297,11 +297,11 @@ def test_accepted_frames_change_by_what_is_said_in_them_alone() -> None:
     assert (restored.frame(3).labels == right).all()
 
 
-def test_all_that_is_said_at_once_is_what_is_said_in_any_order() -> None:
+def test_what_is_painted_comes_before_prompts_wherever_it_is_said() -> None:
     strokes, own = Correction(3, corner(9)), Correction(3, square_mask(1.5, 1, 255), object=1)
     prompts = [Prompt(4, 5, box=(60, 5, 30, 20)), Prompt(1, 5, clicks=[(70, 60, 1)])]
     one = labels_of(FRAMES, corrections=[strokes, own], prompts=prompts)
-    assert labels_of(FRAMES, corrections=[*reversed(prompts), own, strokes]) == one
+    assert labels_of(FRAMES, corrections=[*prompts, strokes, own]) == one
 
 
 def test_objects_are_merged_and_deleted() -> None:

@@ -488,8 +488,9 @@ impl FrameCorrection {
         let certain = 2.0 * model().certain;
         let erases = said.names_none();
         for (p, hand) in hand.into_iter().enumerate() {
-            let below = if shown[p] == NOTHING_SAID { found[p] } else { shown[p] };
-            let is_locked = held[p] && clip.locked[usize::from(below)];
+            // Of what a person painted or pointed to, the hand takes pixels; of what is kept it takes none, but in a frame that was accepted.
+            let below = usize::from(if shown[p] == NOTHING_SAID { found[p] } else { shown[p] });
+            let is_locked = held[p] && (clip.locked[below] || clip.named[below] || kept[below] && !is_accepted);
             // Ground of a label map is that of the objects that it names.
             let is_others = if hand == 0 { labels[p] != NOTHING_SAID && !erases } else { !decided(hand) };
             if hand == NOTHING_SAID || is_locked || is_others {

@@ -208,8 +208,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   await row.locator('.motion-name').press('Enter');
   await expect(lock).toHaveAccessibleName('Lock Disc');
   await expect(lock).toHaveAttribute('aria-pressed', 'false');
-  // What has a name gives way to the brush alone, where that is.
-  expect(await taken(3)).toBe(0);
+  expect(await taken(1)).toBe(0);
   await lock.click();
   await expect(page.locator('#clip-status')).toHaveText('Locked.');
   await expect(lock).toHaveAttribute('aria-pressed', 'true');
@@ -217,7 +216,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   await goTo(page, 3);
   await selectNew(page);
   await drag(page, at(34, 31), at(38, 35));
-  await expect(page.locator('#notice-sentence')).toHaveText('What you painted belongs to a locked object. Unlock it first.');
+  await expect(page.locator('#notice-sentence')).toHaveText('What you painted belongs to an object with a lock or a name, so it stays.');
   await page.locator('#notice-close').click();
 
   // A correction of the object itself changes it once it is unlocked.

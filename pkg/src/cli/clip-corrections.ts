@@ -126,6 +126,7 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
+  // One after another: what was said first keeps its pixels.
   const prompts: FullPrompt[] = [];
   const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
     const pointed = promptOf(entry, bad);
@@ -135,6 +136,15 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = entry;
     prompts.push({ ...rest, object, clicks } as FullPrompt);
   };
+  if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
+  for (const [at, entry] of listed.entries()) {
+    const bad = (reason: string) => wrong(`'prompts', number ${at}: ${reason}`);
+    const unknown = unknownOf(entry, ['frame', 'object', 'clicks', 'box']);
+    if (unknown !== undefined) throw bad(`there is no ${unknown}`);
+    if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+    if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
+    await add({ ...entry, frame: frameOf('prompts', entry['frame']) }, bad);
+  }
   for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
     if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
     for (const [name, objects] of Object.entries(value)) {
@@ -144,15 +154,6 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
         await add({ frame, label: Number(number), [key]: at ?? [] }, (reason) => wrong(`'${list}' of '${name}', object ${number}: ${reason}`));
       }
     }
-  }
-  if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
-  for (const [at, entry] of listed.entries()) {
-    const bad = (reason: string) => wrong(`'prompts', number ${at}: ${reason}`);
-    const unknown = unknownOf(entry, ['frame', 'object', 'clicks', 'box']);
-    if (unknown !== undefined) throw bad(`there is no ${unknown}`);
-    if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
-    if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
-    await add({ ...entry, frame: frameOf('prompts', entry['frame']) }, bad);
   }
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (accepted !== undefined && !isListOf(accepted, isName)) throw wrong("'accepted' must be a list of names of frames");

@@ -255,7 +255,7 @@ export const strings = {
     noPrompt: 'Clicks refine an object that a box or a press made in this frame. Select it first.',
     isLocked: (name: string): string => `${name} is locked, so nothing changes it. Unlock it first.`,
     noFrameThere: 'There is no segmented frame on that side.',
-    locked: 'What you painted belongs to a locked object. Unlock it first.',
+    locked: 'What you painted belongs to an object with a lock or a name, so it stays.',
     otherState:
       'These masks were made by another version of this page, or in a browser that reads the frames differently. ' +
       'They stay and can be exported. To correct them, segment the clip again.',

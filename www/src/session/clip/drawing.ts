@@ -46,8 +46,10 @@ export class Drawing {
       const scale = masks.width / frame.width;
       const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
       const [shown, labels] = [unpacked(masks), nothing(masks)];
+      // What has a name is changed by its own strokes alone.
+      const stays = (id: number): boolean => now.locked.has(id) || (id !== own && keyOf('objects', id) in now.names);
       eachPixel(path, masks.width, masks.height, (p) => {
-        if (!now.locked.has(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
+        if (!stays(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
       });
       if (tool === 'brush' && labels.every((label) => label === UNLABELLED)) return void this.#objects.refuse(strings.notices.locked);
       this.#paint(index, [[own, labels]]);
