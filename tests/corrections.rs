@@ -531,6 +531,28 @@ fn clicks_and_a_box_describe_one_object() {
 }
 
 #[test]
+fn an_eraser_through_a_separate_piece_removes_the_piece_and_gives_it_back() {
+    let things = [thing(5, [40.0, 30.0], |_| [8.0, 30.0]), thing(9, [26.0, 20.0], |_| [70.0, 32.0])];
+    let mut shot = Shot::new([128, 96], &things, 4);
+    shot.correct(0, &mask(&shot.truths[0], &[(0, 0), (1, 9), (2, 9)]));
+    let before = shot.labels();
+    let [x, y, width, height] = shot.around(2, 2);
+    let strip = shot.stroke(0, [x, y + height / 2, width, 2]);
+    let erase = |shot: &mut Shot, labels: Vec<u8>| {
+        let corrections = vec![Painted { frame: 2, object: Some(9), labels, spread: Spread::Both }];
+        annotate(&mut shot.clip, &shot.frames, Annotations { corrections, ..Annotations::default() });
+        shot.labels()
+    };
+    let erased = erase(&mut shot, strip);
+    let is_piece = |p: usize| p % 128 >= 60;
+    let left = (0..128 * 96).filter(|&p| is_piece(p) && erased[2][p] == 9).count();
+    let other = (0..128 * 96).filter(|&p| !is_piece(p) && erased[2][p] != before[2][p]).count();
+    assert_eq!([left, other], [0, 0], "pixels of the piece that are left, and others that have changed");
+    assert_eq!(erased[0], before[0], "the mask that was given stays");
+    assert!(erase(&mut shot, vec![255; 128 * 96]) == before);
+}
+
+#[test]
 fn a_prompt_takes_nothing_from_other_objects_of_a_person_and_must_be_within_the_frame() {
     let mut shot = three();
     let prompts = prompts_of(&shot, 2, 3);

@@ -270,9 +270,13 @@ impl Said {
     /// what was said.
     #[inline(never)]
     pub(super) fn drop_pieces(&mut self, before: &Said, now: &[u8], width: usize) {
-        self.pieces.retain(|(object, _)| {
-            self.painted.iter().any(|strokes| strokes.labels.names(0) || strokes.object == *object)
+        // Those whose stroke was taken back are the object's again.
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.retain(|(object, piece)| {
+            let seeds = self.seeds(*object).unwrap_or_default();
+            seeds.iter().zip(piece.values()).any(|(seed, label)| label == 0 && *seed == Seed::Other)
         });
+        self.pieces = pieces;
         let mut objects = [false; 256];
         now.iter().for_each(|&label| objects[usize::from(label)] = true);
         for object in (1..NOTHING_SAID).filter(|&k| objects[usize::from(k)]) {

@@ -192,9 +192,7 @@ impl FrameCorrection {
         let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
         for number in (1..NOTHING_SAID).filter(|&number| !said.agrees(&before, number)) {
             let now = said.seeds(number).unwrap_or_default();
-            let is_kept = |(p, seed): (usize, &Seed)| {
-                *seed == Seed::Nothing || now.get(p).is_some_and(|now| now != &Seed::Nothing)
-            };
+            let is_kept = |(p, seed): (usize, &Seed)| *seed == Seed::Nothing || now.get(p) == Some(seed);
             self.extends[usize::from(number)] =
                 before.seeds(number).unwrap_or_default().iter().enumerate().all(is_kept);
         }
@@ -513,9 +511,8 @@ impl FrameCorrection {
         });
         let of = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
         let is_same = of(&clip.frames[t].layer) == of(&layer);
-        let was = (!is_same).then(|| clip.overlaid(t, &found, &self.persons[t - self.scene[0]]));
         clip.frames[t].layer = layer;
-        if let Some(was) = was {
+        if !is_same {
             changes.set(t, &was, &clip.overlaid(t, &found, &persons));
         }
     }

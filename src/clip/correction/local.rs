@@ -1,5 +1,6 @@
 //! Strokes change their frame where they are: one that adds to an object takes nothing away, one that takes away adds nothing, and what
-//! nothing connects with a stroke stays. In other frames, what is there holds unless the object looks otherwise. And where an object takes another's place, nothing is left of that around it.
+//! nothing connects with a stroke stays. In other frames, what is there holds unless the object looks otherwise. And where an object takes
+//! another's place, nothing is left of that around it.
 
 use crate::clip::annotation::Seed;
 use crate::clip::model;
