@@ -1,7 +1,7 @@
 //! Evidence carried through time along the motions of the pixels.
 
 use super::evidence::Flow;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::labelling::BACKGROUND;

@@ -1,6 +1,6 @@
 //! Colours of objects and of the background, learned from the frames around a moment.
 
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
 

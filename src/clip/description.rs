@@ -1,13 +1,48 @@
-//! What is said of a frame: its labels at full size, and its objects.
+//! The result for a frame: its labels at full size, and its objects.
+
+use serde::Serialize;
 
 use super::evidence::Flow;
-use super::{ClipFrame, ClipObject};
-use crate::clip::model;
+use super::options::model;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 use crate::motion::AffineMotion;
+
+/// One frame of a clip, segmented.
+#[non_exhaustive]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ClipFrame {
+    /// Position in the clip, from 0.
+    pub index: usize,
+    /// One label per pixel, row by row: 0 for the background, 255 for a pixel that is marked as unknown, else the number of an object.
+    #[serde(skip)]
+    pub labels: Vec<u8>,
+    /// The objects in sight, by number.
+    pub objects: Vec<ClipObject>,
+    /// Motion of the background to the next frame, pixels; none where there is no next frame of the same scene. With a look-ahead, the
+    /// motion with which it came to this frame.
+    pub background: Option<AffineMotion>,
+}
+
+/// An object in one frame of a clip.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ClipObject {
+    /// Its number, 1…254, the same in all frames.
+    pub id: u8,
+    /// Number of its pixels.
+    pub pixels: usize,
+    /// Bounding box of its pixels: x, y, width, height.
+    pub bbox: [usize; 4],
+    /// Mean probability, 0…1, that its pixels belong to an object.
+    pub confidence: f64,
+    /// Motion of its largest part, as [`ClipFrame::background`].
+    pub matrix: Option<AffineMotion>,
+}
 
 /// A frame at the working size.
 pub(crate) struct WorkingFrame<'a> {

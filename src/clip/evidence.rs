@@ -3,7 +3,7 @@
 
 use super::runs::Runs;
 use super::saved::saved;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::counts;

@@ -6,7 +6,7 @@
 
 use super::evidence::Flow;
 use super::identity::MAX_OBJECTS;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::labelling::BACKGROUND;
 use crate::order::sort_few;
 

@@ -9,7 +9,7 @@ mod object;
 mod sharing;
 mod sight;
 
-use crate::clip::model;
+use crate::clip::options::model;
 use std::rc::Rc;
 
 use super::carry::carried_labels;

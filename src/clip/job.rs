@@ -1,14 +1,30 @@
-//! The one place where all that a person says of a clip meets, in one order: numbers that are kept free, locks and names, accepted frames,
-//! what is painted, prompts, and edits of whole objects.
+//! All annotations take effect in one order: numbers that are kept free, locks and names, accepted frames, label maps and strokes, prompts,
+//! and edits of whole objects.
 
 use std::collections::VecDeque;
 
-use super::annotation::{Accepted, Annotations, Change, Painted};
+use super::annotation::{Accepted, Annotations, Painted, Prompt, UNANNOTATED};
 use super::changes::{Changed, Changes};
-use super::correction::{FrameCorrection, check};
-use super::whole::{NOTHING_SAID, SegmentedClip};
+use super::correction::FrameCorrection;
+use super::frame_annotation::{Change, FrameAnnotation};
+use super::segmented_clip::SegmentedClip;
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+
+impl SegmentedClip {
+    /// Takes what a person says. It is checked at once, and takes effect as the job takes the frames that it wants.
+    ///
+    /// Nothing that a person named, painted, gave, prompted, accepted or locked changes when something else is said. An object that was found
+    /// automatically changes by the pixels that another one takes from it or gives back.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), labels that do not fill the frame, prompts that are not
+    /// within the frame, and numbers that are not those of objects; [`Error::ObjectLocked`] for what is said of a locked object. Nothing is
+    /// changed then.
+    pub fn annotate(&mut self, annotations: Annotations) -> Result<ClipJob> {
+        ClipJob::new(self, annotations)
+    }
+}
 
 /// Annotations that take effect in a [`SegmentedClip`]. A job asks for the frames that it needs:
 ///
@@ -52,13 +68,17 @@ enum Step {
 }
 
 impl ClipJob {
-    pub(super) fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
-        check_all(clip, &annotations)?;
+    fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
+        annotations.frames().try_for_each(|frame| clip.check_index(frame))?;
+        annotations.check(clip.size())?;
+        if let Some(object) = said_of_locked(clip, &annotations) {
+            return Err(Error::ObjectLocked { object });
+        }
         let Annotations { mut masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, numbers, changes: Changes::default() };
         let mut is_given = [false; 256];
         masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
-        let given: Vec<u8> = (1..NOTHING_SAID).filter(|&label| is_given[usize::from(label)]).collect();
+        let given: Vec<u8> = (1..UNANNOTATED).filter(|&label| is_given[usize::from(label)]).collect();
         given.iter().for_each(|&label| clip.given[usize::from(label)] = true);
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
@@ -141,10 +161,6 @@ impl ClipJob {
     }
 }
 
-fn is_object(number: u8) -> bool {
-    number != 0 && number != NOTHING_SAID
-}
-
 /// A step for each frame in which something is painted: a correction goes before the mask of its frame where it says anything.
 fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
     let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
@@ -157,7 +173,7 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
         match of_frame.iter_mut().find(|before| before.object == painted.object) {
             None => of_frame.push(painted.clone()),
             Some(mask) => {
-                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != NOTHING_SAID);
+                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNANNOTATED);
                 said.for_each(|(mask, label)| *mask = *label);
                 mask.spread = painted.spread;
             }
@@ -166,83 +182,27 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
     frames.into_iter().map(|(index, painted)| Step::Correct(index, Change::Painted(painted))).collect()
 }
 
-fn check_all(clip: &SegmentedClip, annotations: &Annotations) -> Result<()> {
-    let Annotations { masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
-    let [width, height] = clip.size();
-    let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
-    let fill = |name, labels: &[u8]| match labels.len() == width * height {
-        true => Ok(()),
-        false => {
-            let reason = format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len());
-            invalid(name, reason)
-        }
+/// A locked object that the annotations say anything new of.
+fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
+    let Annotations { corrections, prompts, locked, numbers, .. } = annotations;
+    let is_locked = |object: &u8| match locked {
+        Some(locked) => locked.contains(object),
+        None => clip.locked[usize::from(*object)],
     };
-    for (name, painted) in [("masks", masks), ("corrections", corrections)] {
-        for Painted { frame, object, labels, .. } in painted {
-            clip.check_index(*frame)?;
-            fill(name, labels)?;
-            let Some(object) = *object else { continue };
-            if !is_object(object) || labels.iter().any(|label| ![0, object, NOTHING_SAID].contains(label)) {
-                return invalid(
-                    name,
-                    format!("what is said of object {object} alone has the labels 0, {object} and 255"),
-                );
-            }
-        }
-    }
-    for prompt in prompts {
-        clip.check_index(prompt.frame)?;
-        check(prompt, clip.size())?;
-        if !prompt.points() && !prompt.clicks.is_empty() {
-            let reason = format!("object {} needs a box or a click that is its own", prompt.object);
-            return invalid("prompts", reason);
-        }
-    }
-    for Accepted { frame, labels } in accepted.iter().flatten() {
-        clip.check_index(*frame)?;
-        labels.as_ref().map_or(Ok(()), |labels| fill("accepted", labels))?;
-    }
-    if let Some([object, number]) =
-        numbers.iter().find(|[object, number]| !is_object(*object) || *number == NOTHING_SAID)
-    {
-        let reason =
-            format!("object {object} cannot get the number {number}: objects are 1 to 254, the background is 0");
-        return invalid("objects", reason);
-    }
-    for object in locked.iter().chain(named).flatten() {
-        if !is_object(*object) {
-            return invalid("locked", format!("{object} is no number of an object: these are 1 to 254"));
-        }
-    }
-    let is_locked = |object: u8| match locked {
-        Some(locked) => locked.contains(&object),
-        None => clip.locked[usize::from(object)],
+    let before = |frame: usize| clip.frames[frame].annotation.clone().unwrap_or_default();
+    let painted = |painted: &Painted| {
+        let before = before(painted.frame);
+        let mut now: FrameAnnotation = before.clone();
+        now.paint(painted);
+        (1..UNANNOTATED).find(|object| is_locked(object) && !now.agrees(&before, *object))
     };
-    match said_of_locked(clip, annotations, &is_locked) {
-        Some(object) => Err(Error::ObjectLocked { object }),
-        None => Ok(()),
-    }
-}
-
-/// A locked object of which something new is said.
-fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations, is_locked: &dyn Fn(u8) -> bool) -> Option<u8> {
-    let Annotations { corrections, prompts, numbers, .. } = annotations;
-    let before = |frame: usize| clip.frames[frame].said.clone().unwrap_or_default();
-    for painted in corrections {
-        let (before, mut said) = (before(painted.frame), before(painted.frame));
-        said.paint(painted);
-        let changed = |object: &u8| is_locked(*object) && !said.agrees(&before, *object);
-        if let Some(object) = (1..NOTHING_SAID).find(changed) {
-            return Some(object);
-        }
-    }
-    let prompted = prompts
+    let prompted =
+        |prompt: &&Prompt| is_locked(&prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt);
+    let deleted =
+        |[object, number]: &&[u8; 2]| *number == 0 && is_locked(object) && !clip.frames_with(*object).is_empty();
+    corrections
         .iter()
-        .find(|prompt| is_locked(prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt));
-    let deleted = || {
-        let deletes =
-            |[object, number]: &&[u8; 2]| *number == 0 && is_locked(*object) && !clip.frames_with(*object).is_empty();
-        numbers.iter().find(deletes).map(|[object, _]| *object)
-    };
-    prompted.map(|prompt| prompt.object).or_else(deleted)
+        .find_map(painted)
+        .or_else(|| prompts.iter().find(prompted).map(|prompt| prompt.object))
+        .or_else(|| numbers.iter().find(deleted).map(|[object, _]| *object))
 }

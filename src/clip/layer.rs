@@ -1,16 +1,28 @@
-//! What has come of all that is said in a frame: the layer that lies over the labels found automatically.
+//! Labels of a frame with their odds: those found automatically, and those that annotations lay over them.
 
 use super::evidence::KeptOdds;
 use super::runs::Runs;
 use super::saved::saved;
+use crate::frame::Plane;
 
-/// Labels over those that were found.
+/// Labels and odds.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// Of each full-size pixel: the number of a person's object, 0 where ground is said, 255 where what was found shows.
+    /// The object of each pixel, 0 for the background. Those of annotations have the full size, and 255 where the labels below show.
     pub(super) labels: Runs,
-    /// Odds of object against background, working size.
+    /// Odds of object against background, nats, working size.
     pub(super) odds: KeptOdds,
 }
 
 saved!(Layer { labels, odds });
+
+impl Layer {
+    pub(super) fn of(labels: &[u8], odds: &Plane) -> Layer {
+        Layer { labels: Runs::of(labels), odds: KeptOdds::of(odds) }
+    }
+
+    /// Whether a number labels any pixel.
+    pub(super) fn names(&self, object: u8) -> bool {
+        self.labels.names(object)
+    }
+}

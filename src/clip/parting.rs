@@ -1,7 +1,7 @@
 //! Objects that part were two from the start: the pixels of each are followed back to the frames in which they were one.
 
 use super::evidence::Flow;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::components::absorb_small;
 
 /// Divides what has the number `from` in a frame, whose flow to the next one is `onward`, between it and `new`, as their pixels have

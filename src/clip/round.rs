@@ -9,7 +9,7 @@
 //! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
 //! there, while ground seldom looks like an object. A frame leaves the round when the frames it waits for have come.
 
-use crate::clip::{MAX_LOOK_AHEAD, model};
+use crate::clip::options::{MAX_LOOK_AHEAD, model};
 use std::collections::VecDeque;
 use std::rc::Rc;
 

@@ -1,8 +1,9 @@
 //! Clips whose frames come once.
 
+use super::description::ClipFrame;
 use super::description::WorkingFrame;
+use super::options::{ClipOptions, MAX_LOOK_AHEAD};
 use super::tracker::{Tracked, Tracker};
-use super::{ClipFrame, ClipOptions, MAX_LOOK_AHEAD};
 use crate::error::Result;
 use crate::frame::Frame;
 

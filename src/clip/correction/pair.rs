@@ -144,7 +144,7 @@ impl Correction<'_> {
         }
         let mut divisions: Vec<Division> = Vec::new();
         for (set, &taken) in (0u16..).zip(&taken).filter(|(_, taken)| **taken != 0) {
-            // Strokes either way are of the same division.
+            // Strokes either direction are of the same division.
             let [object, others] =
                 if taken.trailing_zeros() < set.trailing_zeros() { [set, taken] } else { [taken, set] };
             match divisions.iter_mut().find(|known| known.object == object) {

@@ -1,21 +1,21 @@
 //! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
 
-use super::local;
-use super::look::Look;
-use super::memory::{Memory, Part};
-use super::sweep::{centre_of, logit, solved};
+use super::appearance::{AppearanceModel, Source};
+use super::features::FrameFeatures;
+use super::proposal::{Proposal, centre_of, logit};
+use super::strokes;
 use crate::clip::annotation::Seed;
-use crate::clip::{MAX_LOOK_AHEAD, model};
+use crate::clip::options::{MAX_LOOK_AHEAD, model};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
 use crate::labelling::solver::Solver;
 
 /// A frame at the size at which objects are corrected.
-pub(crate) struct Still(Look);
+pub(crate) struct Still(FrameFeatures);
 
 impl Still {
     pub(crate) fn new(frame: &Frame) -> Still {
-        Still(Look::new(frame))
+        Still(FrameFeatures::new(frame))
     }
 
     /// Width and height.
@@ -30,18 +30,18 @@ impl Still {
 
     /// The labels of least energy, given the price of each at every pixel.
     pub(crate) fn labels(&self, costs: &[Plane]) -> Vec<u8> {
-        let (look, smoothness) = (&self.0, model().smoothness);
-        look.borders.times(smoothness).solve(costs, Solver::FAST)
+        let (features, smoothness) = (&self.0, model().smoothness);
+        features.borders.times(smoothness).solve(costs, Solver::FAST)
     }
 
     /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is
     /// connected with something said changes.
     pub(crate) fn mask(&self, said: &[Seed], found: &[bool], motion: &Plane) -> Vec<u8> {
-        let look = &self.0;
-        let shown = look.plane(&|p| if said[p] == Seed::Nothing { found[p] } else { said[p] == Seed::Object });
-        let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
-        let mut memory = Memory::of(&shown);
-        memory.learn_said(look, centre, Some(said));
+        let features = &self.0;
+        let shown = features.plane(&|p| if said[p] == Seed::Nothing { found[p] } else { said[p] == Seed::Object });
+        let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
+        let mut appearance = AppearanceModel::of(&shown);
+        appearance.learn_seeds(features, centre, Some(said));
         // Where the motions clearly contradict what was found, what is said decides between them.
         let smooth = gaussian(motion, model().near);
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
@@ -51,17 +51,18 @@ impl Still {
         let found_weight = model().automatic * MAX_LOOK_AHEAD as f32;
         for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
-            memory.learn(look, centre, Part::Found, weight, &side);
+            appearance.learn(features, centre, Source::Found, weight, &side);
         }
-        let remembered = memory.read(look, &look.area(), centre);
-        let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {
-            let presumed = if presumed(p) { of_colour[0] * model().guess } else { -of_colour[1] * model().guess };
-            let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
-            weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
-        });
-        let mut mask = solved(look, look.area(), odds.collect(), Some(said)).mask;
+        let remembered = appearance.read(features, &features.area(), centre);
+        let odds =
+            remembered.iter().zip(appearance.trusts(features)).enumerate().map(|(p, (remembered, of_colour))| {
+                let presumed = if presumed(p) { of_colour[0] * model().guess } else { -of_colour[1] * model().guess };
+                let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
+                weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
+            });
+        let mut mask = Proposal::solved(features, features.area(), odds.collect(), Some(said)).mask;
         let found: Vec<u8> = found.iter().map(|&inside| u8::from(inside)).collect();
-        local::keep(&mut mask, &found, said, look.size[0]);
+        strokes::keep(&mut mask, &found, said, features.size[0]);
         mask
     }
 }
@@ -91,13 +92,14 @@ mod tests {
         let size @ [width, height] = [120, 80];
         let inside =
             |p: usize, left: usize| (left..left + 24).contains(&(p % width)) && (30..54).contains(&(p / width));
-        let look =
-            Look::painted(size, |x, y| match [10, 46, 82].iter().position(|&left| inside(y * width + x, left)) {
+        let features = FrameFeatures::painted(size, |x, y| {
+            match [10, 46, 82].iter().position(|&left| inside(y * width + x, left)) {
                 Some(0) => [190, 70, 60],
                 Some(1) => [60, 80, 190],
                 Some(_) => [200, 190, 60],
                 None => [110, 120, 115],
-            });
+            }
+        });
         let mut said = vec![Seed::Nothing; width * height];
         for row in 37..47 {
             said[row * width + 50..row * width + 66].fill(Seed::Object);
@@ -105,7 +107,7 @@ mod tests {
         }
         let unknown = Plane::filled(width, height, 0.0);
         let found: Vec<bool> = (0..width * height).map(|p| inside(p, 10) || inside(p, 82)).collect();
-        let mask = Still(look).mask(&said, &found, &unknown);
+        let mask = Still(features).mask(&said, &found, &unknown);
         // Colours of pixels near a border are those of neither side.
         let inner =
             |p: usize, left: usize| (left + 3..left + 21).contains(&(p % width)) && (33..51).contains(&(p / width));

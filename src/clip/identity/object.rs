@@ -2,8 +2,8 @@
 
 use super::sight::{Sight, is_still, mean_motion, moves};
 use crate::clip::evidence::Flow;
+use crate::clip::options::{MAX_LOOK_AHEAD, model};
 use crate::clip::record::Record;
-use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::labelling::BACKGROUND;
 
 /// An object.

@@ -1,7 +1,7 @@
 //! A region of the foreground shared among the objects that lead to it.
 
 use super::sight::telling;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::clip::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;

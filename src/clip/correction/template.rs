@@ -1,16 +1,18 @@
-//! A view of an object, as it was once seen, and where that is seen again.
+//! A template of an object, as it was once seen, and where it is seen again.
 
-use super::look::Look;
-use super::placing::Shift;
-use crate::clip::model;
+use super::features::FrameFeatures;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::order::median;
 
+/// A shift of an object, pixels of the working size.
+pub(super) type Shift = [f32; 2];
+
 /// The object's pixels and their colours.
 #[derive(Clone, Debug)]
-pub(super) struct View {
+pub(super) struct Template {
     /// 1 at the object's pixels.
     pub(super) mask: Plane,
     /// Where these are, and all colours there.
@@ -45,29 +47,29 @@ fn shifted([x, y]: [usize; 2], [dx, dy]: Shift, [width, height]: [usize; 2]) -> 
     inside.then(|| y as usize * width + x as usize)
 }
 
-impl View {
-    pub(super) fn new(mask: &Plane, look: &Look) -> View {
-        let width = look.size[0];
-        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| mask.values()[p] > 0.5).collect();
+impl Template {
+    pub(super) fn new(mask: &Plane, features: &FrameFeatures) -> Template {
+        let width = features.size[0];
+        let inside: Vec<usize> = (0..features.pixels()).filter(|&p| mask.values()[p] > 0.5).collect();
         let area = if inside.is_empty() { Area::whole(0, 0) } else { Area::of(&inside, width) };
-        let colours = area.pixels(width).map(|p| at(&look.fine, p)).collect();
+        let colours = area.pixels(width).map(|p| at(&features.fine, p)).collect();
         let of_coarse =
             |p: &usize| (p % width).is_multiple_of(model().coarse) && (p / width).is_multiple_of(model().coarse);
         let corners: Vec<usize> = inside.into_iter().filter(of_coarse).collect();
-        let coarse_width = look.coarse[0].width();
+        let coarse_width = features.coarse[0].width();
         let sample = |&p: &usize| Sample {
             at: [p % width, p / width],
-            fine: at(&look.fine, p),
-            coarse: at(&look.coarse, p / width / model().coarse * coarse_width + p % width / model().coarse),
+            fine: at(&features.fine, p),
+            coarse: at(&features.coarse, p / width / model().coarse * coarse_width + p % width / model().coarse),
         };
         let samples = corners.iter().step_by((corners.len() / model().pixels).max(1)).map(sample).collect();
-        View { mask: mask.clone(), area, colours, samples }
+        Template { mask: mask.clone(), area, colours, samples }
     }
 
     /// The best shift near the one expected.
-    pub(super) fn nearest(&self, look: &Look, expected: Shift) -> Shift {
+    pub(super) fn nearest(&self, features: &FrameFeatures, expected: Shift) -> Shift {
         let middle = expected.map(|shift| libm::roundf(shift / model().coarse as f32) * model().coarse as f32);
-        let size = [look.coarse[0].width(), look.coarse[0].height()];
+        let size = [features.coarse[0].width(), features.coarse[0].height()];
         let mut cost = |shift: Shift| {
             let of_sample = |sample: &Sample| {
                 let to = shifted(
@@ -75,37 +77,43 @@ impl View {
                     shift.map(|shift| shift / model().coarse as f32),
                     size,
                 );
-                to.map_or(1.0 - model().part, |q| difference(sample.coarse, at(&look.coarse, q)))
+                to.map_or(1.0 - model().part, |q| difference(sample.coarse, at(&features.coarse, q)))
             };
             self.mean(of_sample)
         };
         let reach = (model().margin / model().coarse) as isize;
         let coarse = best_of(reach, model().coarse as f32, middle, middle, &mut cost).0;
-        best_of(model().near as isize, 1.0, coarse, expected, &mut |shift| self.cost(look, shift, &[])).0
+        best_of(model().near as isize, 1.0, coarse, expected, &mut |shift| self.cost(features, shift, &[])).0
     }
 
     /// The best shift close to the one expected, and what it costs.
-    pub(super) fn close(&self, look: &Look, expected: Shift) -> (Shift, f32) {
-        best_of(model().near as isize, 1.0, expected, expected, &mut |shift| self.cost(look, shift, &[]))
+    pub(super) fn close(&self, features: &FrameFeatures, expected: Shift) -> (Shift, f32) {
+        best_of(model().near as isize, 1.0, expected, expected, &mut |shift| self.cost(features, shift, &[]))
     }
 
     /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
     /// are `covered`.
-    pub(super) fn seen_again(&self, look: &Look, expected: Shift, frames: usize, covered: &[bool]) -> Option<Shift> {
+    pub(super) fn seen_again(
+        &self,
+        features: &FrameFeatures,
+        expected: Shift,
+        frames: usize,
+        covered: &[bool],
+    ) -> Option<Shift> {
         let reach =
             ((model().near + model().motion * frames as f32) as isize).min((model().margin / model().coarse) as isize);
         let mut costs = Vec::new();
         let (best, least) = best_of(reach, 1.0, expected, expected, &mut |shift| {
-            costs.push(self.cost(look, shift, covered));
+            costs.push(self.cost(features, shift, covered));
             costs[costs.len() - 1]
         });
         let usual = median(&costs).unwrap_or(0.0);
         (least < 1.0 - model().part && usual - least > model().few).then_some(best)
     }
 
-    fn cost(&self, look: &Look, shift: Shift, covered: &[bool]) -> f32 {
-        self.mean(|sample| match shifted(sample.at, shift, look.size) {
-            Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&look.fine, q)),
+    fn cost(&self, features: &FrameFeatures, shift: Shift, covered: &[bool]) -> f32 {
+        self.mean(|sample| match shifted(sample.at, shift, features.size) {
+            Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&features.fine, q)),
             _ => 1.0 - model().part,
         })
     }
@@ -115,8 +123,8 @@ impl View {
     }
 
     /// Pixels of a frame that look as the object does there, 0…1, unless they are covered.
-    pub(super) fn alike(&self, look: &Look, shift: Shift, covered: &[bool]) -> Plane {
-        let mut alike = Plane::filled(look.size[0], look.size[1], 0.0);
+    pub(super) fn alike(&self, features: &FrameFeatures, shift: Shift, covered: &[bool]) -> Plane {
+        let mut alike = Plane::filled(features.size[0], features.size[1], 0.0);
         for (at_pixel, q) in self.pixels(shift) {
             if covered.get(q) == Some(&true) {
                 continue;
@@ -126,8 +134,8 @@ impl View {
             let mut least = 1.0f32;
             for y in near(at_pixel[1], &self.area.rows) {
                 for x in near(at_pixel[0], &self.area.columns) {
-                    let colours = self.colours[self.area.index_of(y * look.size[0] + x, look.size[0])];
-                    least = least.min(difference(colours, at(&look.fine, q)) * 2.0);
+                    let colours = self.colours[self.area.index_of(y * features.size[0] + x, features.size[0])];
+                    least = least.min(difference(colours, at(&features.fine, q)) * 2.0);
                 }
             }
             alike.values_mut()[q] = 1.0 - least;
@@ -136,11 +144,11 @@ impl View {
     }
 
     /// Where the object may be so many frames after it was seen whole, 0…1, unless that is covered.
-    pub(super) fn around(&self, look: &Look, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
-        let mut there = vec![false; look.pixels()];
+    pub(super) fn around(&self, features: &FrameFeatures, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
+        let mut there = vec![false; features.pixels()];
         self.cover(shift, &mut there);
-        let wide = gaussian(&look.plane(&|p| there[p]), model().motion * (frames as f32 + 1.0));
-        look.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
+        let wide = gaussian(&features.plane(&|p| there[p]), model().motion * (frames as f32 + 1.0));
+        features.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
     }
 
     /// Marks the pixels that the object is at.
@@ -190,11 +198,11 @@ mod tests {
     const SIZE: [usize; 2] = [128, 96];
 
     /// Patches of one coarse texture at places, the last ones in front, over grey ground.
-    fn look(corners: &[[usize; 2]]) -> Look {
+    fn features(corners: &[[usize; 2]]) -> FrameFeatures {
         let mut random = Random::from_seed(5);
         let texture: Vec<[u8; 3]> =
             (0..36).map(|_| std::array::from_fn(|_| random.uniform(20.0, 230.0) as u8)).collect();
-        Look::painted(SIZE, |x, y| {
+        FrameFeatures::painted(SIZE, |x, y| {
             let of = |&[left, top]: &[usize; 2]| match (x.checked_sub(left), y.checked_sub(top)) {
                 (Some(u), Some(v)) if u < 24 && v < 24 => Some(texture[v / 4 * 6 + u / 4]),
                 _ => None,
@@ -203,26 +211,26 @@ mod tests {
         })
     }
 
-    fn inside(look: &Look, [left, top]: [usize; 2]) -> Plane {
-        look.plane(&|p| (left..left + 24).contains(&(p % SIZE[0])) && (top..top + 24).contains(&(p / SIZE[0])))
+    fn inside(features: &FrameFeatures, [left, top]: [usize; 2]) -> Plane {
+        features.plane(&|p| (left..left + 24).contains(&(p % SIZE[0])) && (top..top + 24).contains(&(p / SIZE[0])))
     }
 
-    fn view() -> View {
-        let first = look(&[[16, 20]]);
-        View::new(&inside(&first, [16, 20]), &first)
+    fn template() -> Template {
+        let first = features(&[[16, 20]]);
+        Template::new(&inside(&first, [16, 20]), &first)
     }
 
     #[test]
     fn what_comes_out_behind_its_like_is_found() {
         // The one in front is 10 columns to the left: so many are seen.
-        let here = look(&[[60, 40], [50, 40]]);
+        let here = features(&[[60, 40], [50, 40]]);
         let mut covered = vec![false; here.pixels()];
-        view().cover([34.0, 20.0], &mut covered);
+        template().cover([34.0, 20.0], &mut covered);
         assert_eq!(covered.iter().filter(|covered| **covered).count(), 24 * 24);
         let expected = [42.0, 22.0];
-        let shift = view().seen_again(&here, expected, 8, &covered);
+        let shift = template().seen_again(&here, expected, 8, &covered);
         assert_eq!(shift, Some([44.0, 20.0]));
-        let alike = view().alike(&here, [44.0, 20.0], &covered);
+        let alike = template().alike(&here, [44.0, 20.0], &covered);
         let (mut out, mut elsewhere) = (0, 0);
         for (p, alike) in alike.values().iter().enumerate().filter(|(_, alike)| **alike > 0.5) {
             assert!(*alike <= 1.0 && !covered[p]);
@@ -231,15 +239,15 @@ mod tests {
         }
         assert!(out > 200 && elsewhere == 0, "{out} of 240, {elsewhere}");
         // Nothing of it is seen.
-        assert_eq!(view().seen_again(&look(&[]), expected, 8, &covered), None);
+        assert_eq!(template().seen_again(&features(&[]), expected, 8, &covered), None);
     }
 
     #[test]
     fn where_it_may_be_grows_with_time() {
-        let here = look(&[]);
+        let here = features(&[]);
         let covered: Vec<bool> = (0..here.pixels()).map(|p| p % SIZE[0] < 40).collect();
         let sizes = [1, 8, 20].map(|frames| {
-            let around = view().around(&here, [16.0, 20.0], frames, &covered);
+            let around = template().around(&here, [16.0, 20.0], frames, &covered);
             assert!((0..here.pixels()).all(|p| !covered[p] || around.values()[p] == 0.0));
             around.values().iter().filter(|&&share| share > 0.1).count()
         });

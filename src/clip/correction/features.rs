@@ -1,7 +1,6 @@
-//! What the propagation sees of a frame.
+//! The features of a frame that propagation uses: colours, colour cells and borders.
 
-use super::memory::colour;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::area::Area;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::lab::lab;
@@ -11,9 +10,22 @@ use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
 use crate::view::cost::SMALLEST_NOISE;
 
+/// Number of colour cells along L, and along a and b, of which only the middle half is told apart.
+pub(super) const LIGHTNESS: usize = 22;
+pub(super) const CHROMA: usize = 24;
+pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
+
+/// The colour cell of a pixel.
+fn colour_cell([l, a, b]: [f32; 3]) -> u16 {
+    // From −64 on, half a cell further: the first and the last cell are open.
+    let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
+    let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
+    ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
+}
+
 /// A frame at the working size of the propagation.
 #[derive(Clone, Debug)]
-pub(super) struct Look {
+pub(super) struct FrameFeatures {
     pub(super) size: [usize; 2],
     /// Full-size pixels for each of these.
     pub(super) step: usize,
@@ -36,22 +48,23 @@ fn step_of(size: [usize; 2]) -> usize {
     step
 }
 
-impl Look {
-    pub(super) fn new(frame: &Frame) -> Look {
+impl FrameFeatures {
+    pub(super) fn new(frame: &Frame) -> FrameFeatures {
         let step = step_of([frame.width(), frame.height()]);
         let mut luminance = frame.luminance().clone();
         (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
         let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().motion));
         let size = [picture.luminance.width(), picture.luminance.height()];
-        let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
+        let colours =
+            (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
         let borders = Borders::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
-        Look { size, step, colours, fine, coarse, borders }
+        FrameFeatures { size, step, colours, fine, coarse, borders }
     }
 }
 
-impl Look {
+impl FrameFeatures {
     pub(super) fn pixels(&self) -> usize {
         self.colours.len()
     }
@@ -82,15 +95,15 @@ impl Look {
 }
 
 #[cfg(test)]
-impl Look {
+impl FrameFeatures {
     /// A frame with a colour for each pixel.
-    pub(super) fn painted([width, height]: [usize; 2], colour: impl Fn(usize, usize) -> [u8; 3]) -> Look {
+    pub(super) fn painted([width, height]: [usize; 2], colour: impl Fn(usize, usize) -> [u8; 3]) -> FrameFeatures {
         let rgba: Vec<u8> = (0..width * height)
             .flat_map(|p| {
                 let [r, g, b] = colour(p % width, p / width);
                 [r, g, b, 255]
             })
             .collect();
-        Look::new(&Frame::from_rgba(width, height, rgba).unwrap())
+        FrameFeatures::new(&Frame::from_rgba(width, height, rgba).unwrap())
     }
 }

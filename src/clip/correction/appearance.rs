@@ -1,35 +1,22 @@
-//! What an object and the ground around it look like: how often each colour was seen at each place relative to the object's centre.
+//! Appearance of an object and of the ground around it: how often each colour was seen at each place relative to the object's centre.
 //!
 //! Two counts for every cell of place and colour, of the object's pixels and of others: those of corrected frames, which stay, and those of
 //! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
 
-use super::look::Look;
+use super::features::{CHROMA, COLOURS, FrameFeatures, LIGHTNESS};
 use crate::clip::annotation::Seed;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-
-/// Colour cells: how many of L, and of a and b, of which only the middle half is told apart.
-const LIGHTNESS: usize = 22;
-const CHROMA: usize = 24;
-pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
-
-/// The colour cell of a pixel.
-pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
-    // From −64 on, half a cell further: the first and the last cell are open.
-    let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
-    let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
-    ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
-}
 
 /// Counts of pixels: object, ground.
 type Counts = [f32; 2];
 
 /// Where pixels are learned from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
-    /// What is said of them.
-    Given,
+pub(super) enum Source {
+    /// The seeds of annotations.
+    Annotated,
     /// The frames passed.
     Recent,
     /// Frames in which the object was found automatically.
@@ -37,7 +24,7 @@ pub(super) enum Part {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Memory {
+pub(super) struct AppearanceModel {
     /// Columns and rows of cells.
     size: [usize; 2],
     /// Side of a cell, pixels.
@@ -45,39 +32,39 @@ pub(super) struct Memory {
     /// One more than the place of each colour in the counts; 0 for one that was never seen.
     places: Vec<u16>,
     seen: Vec<u16>,
-    /// Cells of all colours seen, those of corrected frames and recent ones.
-    given: Vec<Counts>,
+    /// Cells of all colours seen, from annotations and from recent frames.
+    annotated: Vec<Counts>,
     recent: Vec<Counts>,
-    /// Cells of what was found automatically; and of each colour, all that was found and all that was said, which silences it where it
-    /// disagrees.
+    /// Cells of frames in which the object was found automatically; and of each colour, how often it was found and how often annotated.
+    /// Annotations silence what was found where they disagree.
     found: Vec<Counts>,
     found_of: Vec<Counts>,
-    said: Vec<Counts>,
+    annotated_of: Vec<Counts>,
 }
 
-impl Memory {
+impl AppearanceModel {
     /// Nothing yet, of an object as large as a mask.
-    pub(super) fn of(mask: &Plane) -> Memory {
+    pub(super) fn of(mask: &Plane) -> AppearanceModel {
         let (width, height) = (mask.width(), mask.height());
         let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
         let around = if pixels.is_empty() { Area::whole(width, height) } else { Area::of(&pixels, width) };
-        Memory::new(&around, model().cell * width.max(height) as f32)
+        AppearanceModel::new(&around, model().cell * width.max(height) as f32)
     }
 
     /// Nothing yet, of an object within an area.
-    pub(super) fn new(area: &Area, cell: f32) -> Memory {
+    pub(super) fn new(area: &Area, cell: f32) -> AppearanceModel {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().near as usize;
         let size = [cells(area.width()), cells(area.height())];
-        Memory {
+        AppearanceModel {
             size,
             cell,
             places: vec![0; COLOURS],
             seen: Vec::new(),
-            given: Vec::new(),
+            annotated: Vec::new(),
             recent: Vec::new(),
             found: Vec::new(),
             found_of: Vec::new(),
-            said: Vec::new(),
+            annotated_of: Vec::new(),
         }
     }
 
@@ -94,12 +81,12 @@ impl Memory {
         [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
     }
 
-    /// What is recent fades.
+    /// Recent counts fade.
     pub(super) fn fade(&mut self, left: f32) {
         self.recent.iter_mut().flatten().for_each(|count| *count *= left);
     }
 
-    /// Forgets what is recent.
+    /// Forgets recent counts.
     pub(super) fn forget_recent(&mut self) {
         self.recent.fill([0.0; 2]);
     }
@@ -107,42 +94,42 @@ impl Memory {
     /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
     pub(super) fn learn(
         &mut self,
-        look: &Look,
+        features: &FrameFeatures,
         centre: [f32; 2],
-        part: Part,
+        source: Source,
         weight: f32,
         sides: &dyn Fn(usize) -> usize,
     ) {
-        self.learn_within(look, &look.area(), centre, part, weight, sides);
+        self.learn_within(features, &features.area(), centre, source, weight, sides);
     }
 
     /// [`learn`](Self::learn) from an area. Not generic, as `learn`: each call would have a copy of its own.
     pub(super) fn learn_within(
         &mut self,
-        look: &Look,
+        features: &FrameFeatures,
         area: &Area,
         centre: [f32; 2],
-        part: Part,
+        source: Source,
         weight: f32,
         sides: &dyn Fn(usize) -> usize,
     ) {
-        let width = look.size[0];
+        let width = features.size[0];
         for y in area.rows.clone() {
             for x in area.columns.clone() {
                 let side = sides(y * width + x);
                 if side > 1 {
                     continue;
                 }
-                let place = self.place_of(look.colours[y * width + x]);
+                let place = self.place_of(features.colours[y * width + x]);
                 let [u, v] = self.at(x, y, centre);
                 let cell = place * self.cells() + (v + 0.5) as usize * self.size[0] + (u + 0.5) as usize;
-                match part {
-                    Part::Given => {
-                        self.said[place][side] += weight;
-                        self.given[cell][side] += weight;
+                match source {
+                    Source::Annotated => {
+                        self.annotated_of[place][side] += weight;
+                        self.annotated[cell][side] += weight;
                     }
-                    Part::Recent => self.recent[cell][side] += weight,
-                    Part::Found => {
+                    Source::Recent => self.recent[cell][side] += weight,
+                    Source::Found => {
                         self.found_of[place][side] += weight;
                         self.found[cell][side] += weight;
                     }
@@ -151,10 +138,10 @@ impl Memory {
         }
     }
 
-    /// Learns what is said of a frame.
-    pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Seed]>) {
-        let Some(said) = said else { return };
-        self.learn(look, centre, Part::Given, 1.0, &|p| match said[p] {
+    /// Learns the seeds of a frame.
+    pub(super) fn learn_seeds(&mut self, features: &FrameFeatures, centre: [f32; 2], seeds: Option<&[Seed]>) {
+        let Some(seeds) = seeds else { return };
+        self.learn(features, centre, Source::Annotated, 1.0, &|p| match seeds[p] {
             Seed::Object => 0,
             Seed::Other => 1,
             Seed::Nothing | Seed::Dropped => 2,
@@ -167,23 +154,23 @@ impl Memory {
             self.seen.push(colour);
             *place = self.seen.len() as u16;
             let cells = self.seen.len() * self.size[0] * self.size[1];
-            self.given.resize(cells, [0.0; 2]);
+            self.annotated.resize(cells, [0.0; 2]);
             self.recent.resize(cells, [0.0; 2]);
             self.found.resize(cells, [0.0; 2]);
             self.found_of.push([0.0; 2]);
-            self.said.push([0.0; 2]);
+            self.annotated_of.push([0.0; 2]);
         }
         usize::from(*place) - 1
     }
 
     /// Probability of the object at every pixel of an area, for an object with the given centre.
-    pub(super) fn read(&self, look: &Look, area: &Area, centre: [f32; 2]) -> Vec<f32> {
-        let (cells, width) = (self.cells(), look.size[0]);
+    pub(super) fn read(&self, features: &FrameFeatures, area: &Area, centre: [f32; 2]) -> Vec<f32> {
+        let (cells, width) = (self.cells(), features.size[0]);
         let mut blurred: Vec<Counts> = self
-            .given
+            .annotated
             .iter()
             .zip(&self.recent)
-            .map(|(given, recent)| [given[0] + recent[0], given[1] + recent[1]])
+            .map(|(annotated, recent)| [annotated[0] + recent[0], annotated[1] + recent[1]])
             .collect();
         for (place, &colour) in self.seen.iter().enumerate() {
             let trust = self.trust(colour);
@@ -206,7 +193,7 @@ impl Memory {
         let mut probabilities = Vec::with_capacity(area.width() * area.height());
         for y in area.rows.clone() {
             for x in area.columns.clone() {
-                let colour = look.colours[y * width + x];
+                let colour = features.colours[y * width + x];
                 if known[usize::from(colour)] == 0 {
                     let from = planes.len();
                     planes.resize(from + cells, [0.0; 2]);
@@ -242,22 +229,22 @@ impl Memory {
         probabilities
     }
 
-    /// How far what was found automatically is trusted for a colour, 0…1: that it is the object's, and that it is ground.
+    /// How far the labels found automatically are trusted for a colour, 0…1: that it is the object's, and that it is ground.
     pub(super) fn trust(&self, colour: u16) -> Counts {
-        let [mut said, mut found] = [[[0.0; 2]]; 2];
-        self.gather(colour, &self.said, &mut said);
+        let [mut annotated, mut found] = [[[0.0; 2]]; 2];
+        self.gather(colour, &self.annotated_of, &mut annotated);
         self.gather(colour, &self.found_of, &mut found);
-        let ([object, ground], [found]) = (said[0], found);
+        let ([object, ground], [found]) = (annotated[0], found);
         let heard = |found: f32| (model().silences * (object + ground) / found.max(1e-6)).min(1.0);
         [(ground, found[0]), (object, found[1])]
             .map(|(disagrees, found)| 1.0 - heard(found) * disagrees / (object + ground + 1.0))
     }
 
     /// [`trust`](Self::trust) of the colour of every pixel.
-    pub(super) fn trusts(&self, look: &Look) -> Vec<Counts> {
+    pub(super) fn trusts(&self, features: &FrameFeatures) -> Vec<Counts> {
         let mut known: Vec<Option<Counts>> = vec![None; COLOURS];
         let mut of = |colour: &u16| *known[usize::from(*colour)].get_or_insert_with(|| self.trust(*colour));
-        look.colours.iter().map(&mut of).collect()
+        features.colours.iter().map(&mut of).collect()
     }
 
     /// Adds the counts of a colour and of those beside it.
@@ -318,58 +305,58 @@ mod tests {
     }
 
     /// The object, and a patch of some colour beside it.
-    fn look(beside: [u8; 3]) -> Look {
+    fn features(beside: [u8; 3]) -> FrameFeatures {
         let colour = |x, y| if is_object(x, y) { RED } else { beside };
-        Look::painted(SIZE, |x, y| if is_object(x, y) || is_beside(x, y) { colour(x, y) } else { GREY })
+        FrameFeatures::painted(SIZE, |x, y| if is_object(x, y) || is_beside(x, y) { colour(x, y) } else { GREY })
     }
 
-    fn memory_of(look: &Look, part: Part) -> Memory {
+    fn appearance_of(features: &FrameFeatures, source: Source) -> AppearanceModel {
         let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
-        let mut memory = Memory::of(&look.plane(&|p| side(p) == 0));
-        memory.learn(look, CENTRE, part, 1.0, &side);
-        memory
+        let mut appearance = AppearanceModel::of(&features.plane(&|p| side(p) == 0));
+        appearance.learn(features, CENTRE, source, 1.0, &side);
+        appearance
     }
 
-    fn at(memory: &Memory, look: &Look, [x, y]: [usize; 2], centre: [f32; 2]) -> f32 {
-        memory.read(look, &look.area(), centre)[y * SIZE[0] + x]
+    fn at(appearance: &AppearanceModel, features: &FrameFeatures, [x, y]: [usize; 2], centre: [f32; 2]) -> f32 {
+        appearance.read(features, &features.area(), centre)[y * SIZE[0] + x]
     }
 
     #[test]
     fn a_colour_is_remembered_at_its_place() {
-        let look = look(RED);
-        for part in [Part::Given, Part::Recent, Part::Found] {
-            let memory = memory_of(&look, part);
-            assert!(at(&memory, &look, [32, 48], CENTRE) > 0.9, "{part:?}");
-            assert!(at(&memory, &look, [76, 48], CENTRE) < 0.1, "{part:?}: the same colour elsewhere");
-            assert!(at(&memory, &look, [50, 48], CENTRE) < 0.1, "{part:?}: ground beside it");
+        let features = features(RED);
+        for source in [Source::Annotated, Source::Recent, Source::Found] {
+            let appearance = appearance_of(&features, source);
+            assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9, "{source:?}");
+            assert!(at(&appearance, &features, [76, 48], CENTRE) < 0.1, "{source:?}: the same colour elsewhere");
+            assert!(at(&appearance, &features, [50, 48], CENTRE) < 0.1, "{source:?}: ground beside it");
             // The place goes with the object.
-            assert!(at(&memory, &look, [76, 48], [76.0, 48.0]) > 0.9, "{part:?}");
-            assert!(at(&memory, &look, [32, 48], [-12.0, 48.0]) < 0.1, "{part:?}");
+            assert!(at(&appearance, &features, [76, 48], [76.0, 48.0]) > 0.9, "{source:?}");
+            assert!(at(&appearance, &features, [32, 48], [-12.0, 48.0]) < 0.1, "{source:?}");
         }
     }
 
     #[test]
     fn where_a_colour_was_not_seen_all_places_count() {
-        let memory = memory_of(&look(GREY), Part::Given);
-        assert!(at(&memory, &look(RED), [76, 48], CENTRE) > 0.9);
-        let unknown = at(&memory, &look(BLUE), [76, 48], CENTRE);
+        let appearance = appearance_of(&features(GREY), Source::Annotated);
+        assert!(at(&appearance, &features(RED), [76, 48], CENTRE) > 0.9);
+        let unknown = at(&appearance, &features(BLUE), [76, 48], CENTRE);
         assert!((unknown - 0.5).abs() < 0.05, "{unknown}");
     }
 
     #[test]
-    fn what_is_said_silences_what_was_found() {
-        let look = look(RED);
-        let mut memory = memory_of(&look, Part::Found);
-        let red = look.colours[48 * SIZE[0] + 32];
-        assert_eq!(memory.trust(red), [1.0, 1.0]);
-        assert!(at(&memory, &look, [32, 48], CENTRE) > 0.9);
+    fn annotations_silence_what_was_found() {
+        let features = features(RED);
+        let mut appearance = appearance_of(&features, Source::Found);
+        let red = features.colours[48 * SIZE[0] + 32];
+        assert_eq!(appearance.trust(red), [1.0, 1.0]);
+        assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9);
         // Half of it is ground: so is what was found of the other half.
-        memory.learn(&look, CENTRE, Part::Given, 1.0, &|p| {
+        appearance.learn(&features, CENTRE, Source::Annotated, 1.0, &|p| {
             if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
         });
-        let [object, ground] = memory.trust(red);
+        let [object, ground] = appearance.trust(red);
         assert!(object < 0.05 && ground == 1.0, "{object}, {ground}");
-        let silenced = at(&memory, &look, [32, 54], CENTRE);
+        let silenced = at(&appearance, &features, [32, 54], CENTRE);
         assert!(silenced < 0.5, "{silenced}");
     }
 }

@@ -1,19 +1,16 @@
 //! An object as a whole: where it was last seen whole, and by which shift its pixels are found again, whatever the pairs know of its motion.
 
-use super::look::Look;
-use super::view::View;
+use super::features::FrameFeatures;
+use super::template::{Shift, Template};
 use crate::clip::evidence::Flow;
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::order::median;
-
-/// A shift of an object, pixels of the working size.
-pub(super) type Shift = [f32; 2];
 
 /// The object where it was last seen whole.
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
-    pub(super) view: View,
+    pub(super) template: Template,
     centre: [f32; 2],
     /// From there to the frame that the sweep has reached, and how far it goes in a frame.
     shift: Shift,
@@ -31,7 +28,7 @@ pub(super) struct Whole {
 
 /// Where an object is in a frame.
 #[derive(Clone, Debug)]
-pub(super) struct Placed {
+pub(super) struct Placement {
     /// From where it was seen whole.
     pub(super) shift: Shift,
     /// Whether it is seen there; else it is taken to move on.
@@ -41,9 +38,9 @@ pub(super) struct Placed {
 }
 
 impl Whole {
-    pub(super) fn new(mask: &Plane, look: &Look, centre: [f32; 2], known: bool) -> Whole {
+    pub(super) fn new(mask: &Plane, features: &FrameFeatures, centre: [f32; 2], known: bool) -> Whole {
         Whole {
-            view: View::new(mask, look),
+            template: Template::new(mask, features),
             centre,
             shift: [0.0; 2],
             velocity: None,
@@ -56,14 +53,20 @@ impl Whole {
     }
 
     /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
-    pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], placed: Option<&Placed>) -> Whole {
+    pub(super) fn gone_on(
+        self,
+        mask: &Plane,
+        features: &FrameFeatures,
+        centre: [f32; 2],
+        placed: Option<&Placement>,
+    ) -> Whole {
         let pixels: f32 = mask.values().iter().sum();
         let expected = if self.now { model().shrinking * self.pixels } else { self.pixels };
         let (shift, found) = placed.map_or((self.shift, false), |placed| (placed.shift, placed.found));
         let velocity = self.velocity.unwrap_or_default();
         let onward = |share: f32, step: Shift| [0, 1].map(|k| velocity[k] + share * (step[k] - velocity[k]));
         let has_changed = || {
-            let alike = self.view.alike(look, shift, &[]);
+            let alike = self.template.alike(features, shift, &[]);
             let same = mask.values().iter().zip(alike.values()).filter(|(mask, alike)| **mask > 0.5 && **alike > 0.5);
             pixels > 0.5 * expected && (same.count() as f32) < (1.0 - model().part) * pixels
         };
@@ -83,7 +86,7 @@ impl Whole {
         }
         let step = [0, 1].map(|k| (centre[k] - self.centre[k]) / (self.frames as f32 + 1.0));
         let velocity = Some(self.velocity.map_or(step, |_| onward(1.0 - model().decay, step)));
-        Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
+        Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, features, centre, self.known) }
     }
 
     /// The object when the sweep turns: it goes back where it came from.
@@ -93,29 +96,29 @@ impl Whole {
     }
 
     /// The centre of an object that is hidden.
-    pub(super) fn expected_centre(&self, placed: Option<&Placed>) -> Option<[f32; 2]> {
+    pub(super) fn expected_centre(&self, placed: Option<&Placement>) -> Option<[f32; 2]> {
         placed.filter(|_| !self.now).map(|placed| [0, 1].map(|k| self.centre[k] + placed.shift[k]))
     }
 
     /// Where the object is in a frame; none for one that is too small. `flow` leads to that frame from the one before it. Objects in front
     /// of it have the pixels that are `covered`.
-    pub(super) fn place(&self, look: &Look, flow: &Flow, covered: &[bool]) -> Option<Placed> {
-        let [width, height] = look.size;
-        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.view.mask.values()[p] > 0.5).collect();
+    pub(super) fn place(&self, features: &FrameFeatures, flow: &Flow, covered: &[bool]) -> Option<Placement> {
+        let [width, height] = features.size;
+        let inside: Vec<usize> = (0..features.pixels()).filter(|&p| self.template.mask.values()[p] > 0.5).collect();
         if (inside.len() as f32) < model().pixels as f32 {
             return None;
         }
         let velocity = self.velocity.unwrap_or_default();
         let onward = [0, 1].map(|k| self.shift[k] + velocity[k]);
-        let again = || self.view.seen_again(look, onward, self.frames, covered);
+        let again = || self.template.seen_again(features, onward, self.frames, covered);
         if !self.now {
             let seen = again();
             let shift = seen.unwrap_or(onward);
-            let alike = self.view.alike(look, shift, covered);
-            let around = self.view.around(look, shift, self.frames, covered);
-            return Some(Placed { shift, found: seen.is_some(), hidden: Some([alike, around]) });
+            let alike = self.template.alike(features, shift, covered);
+            let around = self.template.around(features, shift, self.frames, covered);
+            return Some(Placement { shift, found: seen.is_some(), hidden: Some([alike, around]) });
         }
-        let placed = |shift: Shift| Some(Placed { shift, found: true, hidden: None });
+        let placed = |shift: Shift| Some(Placement { shift, found: true, hidden: None });
         if let Some(shift) = (self.frames > 0).then(again).flatten() {
             return placed(shift);
         }
@@ -124,11 +127,12 @@ impl Whole {
             let flow = |&p: &usize| flow.at(at(p % width, 0, width), at(p / width, 1, height))[k] as f32;
             self.shift[k] + median(&inside.iter().map(flow).collect::<Vec<f32>>()).unwrap_or(0.0)
         });
-        let [(by_flow, one), (by_velocity, other)] = [along, onward].map(|expected| self.view.close(look, expected));
+        let [(by_flow, one), (by_velocity, other)] =
+            [along, onward].map(|expected| self.template.close(features, expected));
         if self.frames > 0 || one.min(other) < model().part {
             return placed(if other < one { by_velocity } else { by_flow });
         }
-        placed(self.view.nearest(look, along))
+        placed(self.template.nearest(features, along))
     }
 }
 
@@ -140,50 +144,50 @@ mod tests {
     const SIZE: [usize; 2] = [128, 96];
 
     /// A patch of coarse texture at a place, over grey ground.
-    fn look(place: [usize; 2]) -> Look {
+    fn features(place: [usize; 2]) -> FrameFeatures {
         look_behind(place, SIZE[0])
     }
 
-    /// As [`look`], behind what begins at a column.
-    fn look_behind([left, top]: [usize; 2], column: usize) -> Look {
+    /// As [`features`], behind what begins at a column.
+    fn look_behind([left, top]: [usize; 2], column: usize) -> FrameFeatures {
         let mut random = Random::from_seed(3);
         let texture: Vec<[u8; 3]> =
             (0..36).map(|_| std::array::from_fn(|_| random.uniform(20.0, 230.0) as u8)).collect();
-        Look::painted(SIZE, |x, y| match (x.checked_sub(left), y.checked_sub(top)) {
+        FrameFeatures::painted(SIZE, |x, y| match (x.checked_sub(left), y.checked_sub(top)) {
             _ if x >= column => [30, 30, 90],
             (Some(u), Some(v)) if u < 24 && v < 24 => texture[v / 4 * 6 + u / 4],
             _ => [110, 120, 115],
         })
     }
 
-    fn mask(look: &Look, [left, top]: [usize; 2]) -> Plane {
+    fn mask(features: &FrameFeatures, [left, top]: [usize; 2]) -> Plane {
         let inside = |at: usize, from: usize| (from..from + 24).contains(&at);
-        look.plane(&|p| inside(p % SIZE[0], left) && inside(p / SIZE[0], top))
+        features.plane(&|p| inside(p % SIZE[0], left) && inside(p / SIZE[0], top))
     }
 
     fn begun() -> Whole {
-        let first = look([16, 20]);
+        let first = features([16, 20]);
         Whole::new(&mask(&first, [16, 20]), &first, [28.0, 32.0], true)
     }
 
-    fn place(whole: &Whole, look: &Look) -> Option<Placed> {
-        whole.place(look, &Flow::still(SIZE), &vec![false; look.pixels()])
+    fn place(whole: &Whole, features: &FrameFeatures) -> Option<Placement> {
+        whole.place(features, &Flow::still(SIZE), &vec![false; features.pixels()])
     }
 
     #[test]
     fn a_patch_that_has_moved_is_found() {
         for [dx, dy] in [[12, 8], [40, -16], [0, 0], [3, -5]] {
-            let here = look([16 + dx, 20 + dy].map(|at: isize| at as usize));
+            let here = features([16 + dx, 20 + dy].map(|at: isize| at as usize));
             let shift = place(&begun(), &here).unwrap().shift;
             assert_eq!(shift, [dx as f32, dy as f32], "the pairs know nothing of its motion");
         }
-        let first = look([16, 20]);
+        let first = features([16, 20]);
         let nothing = Plane::filled(SIZE[0], SIZE[1], 0.0);
         assert!(place(&Whole::new(&nothing, &first, [28.0, 32.0], true), &first).is_none());
     }
 
     /// The object a frame later, whole.
-    fn moved_on(seen: &Look, corner: [usize; 2]) -> Whole {
+    fn moved_on(seen: &FrameFeatures, corner: [usize; 2]) -> Whole {
         let placed = place(&begun(), seen);
         let centre = corner.map(|at| at as f32 + 12.0);
         begun().gone_on(&mask(seen, corner), seen, centre, placed.as_ref())
@@ -191,7 +195,7 @@ mod tests {
 
     #[test]
     fn one_that_is_hidden_moves_on() {
-        let (gone, seen) = (look([200, 200]), look([24, 24]));
+        let (gone, seen) = (features([200, 200]), features([24, 24]));
         let mut whole = moved_on(&seen, [24, 24]);
         assert!(whole.now && whole.expected_centre(place(&whole, &seen).as_ref()).is_none());
         // It comes behind something until two thirds of it are left, and then nothing.
@@ -209,25 +213,26 @@ mod tests {
             assert_eq!(whole.expected_centre(placed.as_ref()), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
         }
         // What it looked like is kept until it comes out again.
-        assert_eq!(whole.view.mask, mask(&seen, [24, 24]));
+        assert_eq!(whole.template.mask, mask(&seen, [24, 24]));
         let corner = [24 + 32, 24 + 16];
-        let out = look(corner);
+        let out = features(corner);
         let placed = place(&whole, &out);
         whole = whole.gone_on(&mask(&out, corner), &out, [68.0, 52.0], placed.as_ref());
         assert!(whole.now);
-        assert_eq!(whole.view.mask, mask(&out, corner));
+        assert_eq!(whole.template.mask, mask(&out, corner));
     }
 
     #[test]
     fn one_that_has_changed_is_not_hidden() {
-        let seen = look([24, 24]);
+        let seen = features([24, 24]);
         let whole = moved_on(&seen, [24, 24]);
         // Two thirds of what it was, in another colour.
         let left = |p: usize| (32..48).contains(&(p % SIZE[0])) && (28..52).contains(&(p / SIZE[0]));
-        let other = Look::painted(SIZE, |x, y| if left(y * SIZE[0] + x) { [40, 200, 60] } else { [110, 120, 115] });
+        let other =
+            FrameFeatures::painted(SIZE, |x, y| if left(y * SIZE[0] + x) { [40, 200, 60] } else { [110, 120, 115] });
         let mask = other.plane(&left);
         let whole = whole.clone().gone_on(&mask, &other, [39.5, 39.5], place(&whole, &other).as_ref());
         assert!(whole.now);
-        assert_eq!(whole.view.mask, mask);
+        assert_eq!(whole.template.mask, mask);
     }
 }

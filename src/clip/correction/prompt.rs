@@ -14,16 +14,16 @@
 
 use std::ops::Range;
 
-use super::evidence::Evidence;
-use super::look::Look;
-use super::memory::{Memory, Part};
-use super::sweep::{CERTAIN, cut, logit};
+use super::appearance::{AppearanceModel, Source};
+use super::features::FrameFeatures;
+use super::label_evidence::LabelEvidence;
+use super::proposal::{CERTAIN, cut, logit};
+use crate::clip::annotation::UNANNOTATED;
 use crate::clip::annotation::{Click, Prompt};
 use crate::clip::evidence::Flow;
-use crate::clip::model;
-use crate::clip::whole::{NOTHING_SAID, SegmentedClip};
+use crate::clip::options::model;
+use crate::clip::segmented_clip::SegmentedClip;
 use crate::components::{Connectivity, components};
-use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
@@ -32,7 +32,7 @@ use crate::model::Model;
 
 /// What is seen of a frame.
 struct View<'a> {
-    look: &'a Look,
+    features: &'a FrameFeatures,
     /// Labels found automatically, and those of the motions to the next frame and the one before.
     found: Vec<Vec<u8>>,
     /// What clicks say of each pixel: 0 for the object, 1 for ground, 2 for nothing.
@@ -56,35 +56,35 @@ pub(super) fn outline(
     clip: &SegmentedClip,
     index: usize,
     frame: &Frame,
-    look: &Look,
+    features: &FrameFeatures,
     shown: &[u8],
     prompt: &Prompt,
 ) -> Vec<u8> {
     let width = frame.width();
-    let mut labels = vec![NOTHING_SAID; shown.len()];
+    let mut labels = vec![UNANNOTATED; shown.len()];
     if !prompt.points() {
         return labels;
     }
-    let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(look.size).labels);
-    let own = clip.found_at(index, look.size);
+    let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(features.size).labels);
+    let own = clip.found_at(index, features.size);
     let found = [Some(own), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
-    let mut view = View { look, found, sure: vec![2; look.pixels()] };
+    let mut view = View { features, found, sure: vec![2; features.pixels()] };
     let clicks: Vec<(usize, bool)> =
         prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
     for (at, inside) in &clicks {
-        let centre = view.place(look.pixel(*at, width));
-        for p in 0..look.pixels() {
+        let centre = view.place(features.pixel(*at, width));
+        for p in 0..features.pixels() {
             if view.square(p, centre, [model().near; 2]) < 1.0 {
                 view.sure[p] = u8::from(!inside);
             }
         }
     }
-    let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
+    let full = |mask: &[u8]| upsample(mask, features.size, 2, frame.luminance(), &Model::DEFAULT);
     let mut mask = match prompt.within {
         None => {
-            let mut mask = vec![0; look.pixels()];
+            let mut mask = vec![0; features.pixels()];
             for (at, _) in clicks.iter().filter(|(_, inside)| *inside) {
-                let own = view.clicked(look.pixel(*at, width));
+                let own = view.clicked(features.pixel(*at, width));
                 mask.iter_mut().zip(own).for_each(|(mask, own)| *mask |= own);
             }
             full(&mask)
@@ -100,10 +100,12 @@ pub(super) fn outline(
         }
     };
     clicks.iter().for_each(|&(at, inside)| mask[at] = u8::from(inside));
-    let (persons, kept) = (clip.persons_in(index), clip.kept());
+    let (user_objects, kept) = (clip.user_objects_in(index), clip.protected());
     let is_others = |label: u8| {
         label != prompt.object
-            && (persons[usize::from(label)] || kept[usize::from(label)] || clip.frames[index].accepted && label != 0)
+            && (user_objects[usize::from(label)]
+                || kept[usize::from(label)]
+                || clip.frames[index].accepted && label != 0)
     };
     for (p, label) in labels.iter_mut().enumerate().filter(|(p, _)| !is_others(shown[*p])) {
         *label = if mask[p] > 0 { prompt.object } else { 0 };
@@ -111,40 +113,9 @@ pub(super) fn outline(
     labels
 }
 
-/// Whether a prompt is within a frame, and says something that can be.
-pub(in crate::clip) fn check(prompt: &Prompt, [width, height]: [usize; 2]) -> Result<()> {
-    let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
-    if prompt.object == 0 || prompt.object == NOTHING_SAID {
-        return invalid("label", format!("{} is no number of an object: these are 1 to 254", prompt.object));
-    }
-    let fits = |from: usize, count: usize, side: usize| count > 0 && from < side && count <= side - from;
-    let outside = |name, [x, y, columns, rows]: [usize; 4]| {
-        let what =
-            format!("{columns}×{rows} pixels from ({x}, {y}) on are not within a frame of {width}×{height} pixels");
-        invalid(name, what)
-    };
-    for Click { at: [x, y], inside } in &prompt.clicks {
-        if *x >= width || *y >= height {
-            return outside("click", [*x, *y, 1, 1]);
-        }
-        if let Some([left, top, columns, rows]) = prompt.within
-            && *inside
-            && !(fits(x.wrapping_sub(left), 1, columns) && fits(y.wrapping_sub(top), 1, rows))
-        {
-            return invalid("click", format!("({x}, {y}) is to be the object's, but is not within its box"));
-        }
-    }
-    match prompt.within {
-        Some(sides @ [x, y, columns, rows]) if !fits(x, columns, width) || !fits(y, rows, height) => {
-            outside("box", sides)
-        }
-        _ => Ok(()),
-    }
-}
-
 impl View<'_> {
     fn boxed(&self, full: &Area) -> Vec<u8> {
-        let ([width, height], step) = (self.look.size, self.look.step);
+        let ([width, height], step) = (self.features.size, self.features.step);
         let part = |side: &Range<usize>, size: usize| side.start / step..side.end.div_ceil(step).min(size);
         let area = Area { columns: part(&full.columns, width), rows: part(&full.rows, height) };
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
@@ -157,7 +128,7 @@ impl View<'_> {
     fn without_pieces(&self, mut mask: Vec<u8>) -> Vec<u8> {
         let touched: Vec<u8> =
             mask.iter().zip(&self.sure).map(|(&inside, &sure)| u8::from(inside > 0 || sure == 1)).collect();
-        let parts = components(&touched, self.look.size[0], Connectivity::Four);
+        let parts = components(&touched, self.features.size[0], Connectivity::Four);
         let (mut is_kept, mut is_cut) = (vec![false; parts.list.len()], vec![false; parts.list.len()]);
         for (p, sure) in self.sure.iter().enumerate() {
             is_kept[parts.of[p] as usize] |= *sure == 0;
@@ -172,7 +143,7 @@ impl View<'_> {
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
-        let (pixels, [width, height]) = (self.look.pixels(), self.look.size);
+        let (pixels, [width, height]) = (self.features.pixels(), self.features.size);
         let centre = self.place(click);
         let whole = 1.0 - model().part;
         let disc = |radius: f32| {
@@ -205,7 +176,7 @@ impl View<'_> {
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
         let odds = votes.iter().map(|votes| 2.0 * model().guess * (votes - model().part)).collect();
-        let area = self.around(&Area::of(&agreed, self.look.size[0]));
+        let area = self.around(&Area::of(&agreed, self.features.size[0]));
         self.part_of(click, self.fitted(Beginning { area, odds, sides }))
     }
 
@@ -213,9 +184,9 @@ impl View<'_> {
     /// middle with the squared distance, to none at `even`.
     fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
         let object = 1.0 - model().part;
-        let squares: Vec<f32> = (0..self.look.pixels()).map(|p| self.square(p, centre, radii)).collect();
+        let squares: Vec<f32> = (0..self.features.pixels()).map(|p| self.square(p, centre, radii)).collect();
         let mut sides = vec![1; squares.len()];
-        for p in area.pixels(self.look.size[0]).filter(|&p| squares[p] < ground * ground) {
+        for p in area.pixels(self.features.size[0]).filter(|&p| squares[p] < ground * ground) {
             sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
         Beginning { area, sides, odds: squares.iter().map(|square| model().guess * (even - square)).collect() }
@@ -223,7 +194,7 @@ impl View<'_> {
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
     fn region(&self, labels: &[u8], click: usize) -> Option<Beginning> {
-        let width = self.look.size[0];
+        let width = self.features.size[0];
         let parts = components(labels, width, Connectivity::Eight);
         let part = parts.list[parts.of[click] as usize];
         let alike = labels.iter().filter(|label| **label == labels[click]).count();
@@ -235,7 +206,7 @@ impl View<'_> {
         Some(Beginning {
             area: self.around(&Area { columns: left..right + 1, rows: top..bottom + 1 }),
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
-            odds: gaussian(&self.look.plane(&inside), model().near)
+            odds: gaussian(&self.features.plane(&inside), model().near)
                 .values()
                 .iter()
                 .map(|share| model().guess * (2.0 * share - 1.0))
@@ -245,7 +216,7 @@ impl View<'_> {
 
     /// Learns from a mask what the object looks like, cuts the next one, and so on.
     fn fitted(&self, from: Beginning) -> Vec<u8> {
-        let (look, [width, height]) = (self.look, self.look.size);
+        let (features, [width, height]) = (self.features, self.features.size);
         let Beginning { area, odds: prior, mut sides } = from;
         sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
         let seen = area.grown(model().margin, width, height);
@@ -253,14 +224,14 @@ impl View<'_> {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
             // Ground counts less where there is more of it.
             let weight = (count(0) / count(1).max(1.0)).sqrt();
-            let mut memory = Memory::new(&Area::whole(0, 0), f32::INFINITY);
+            let mut appearance = AppearanceModel::new(&Area::whole(0, 0), f32::INFINITY);
             for (side, weight) in [(0, 1.0), (1, weight)] {
                 let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
-                memory.learn_within(look, &seen, [0.0; 2], Part::Recent, weight, &of);
+                appearance.learn_within(features, &seen, [0.0; 2], Source::Recent, weight, &of);
             }
-            let remembered = memory.read(look, &area, [0.0; 2]);
-            let evidence: Vec<Evidence> =
-                self.found.iter().map(|found| Evidence::of(found, &sides, &seen, width)).collect();
+            let remembered = appearance.read(features, &area, [0.0; 2]);
+            let evidence: Vec<LabelEvidence> =
+                self.found.iter().map(|found| LabelEvidence::of(found, &sides, &seen, width)).collect();
             let odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
                 match self.sure[p] {
@@ -270,7 +241,7 @@ impl View<'_> {
                 }
             };
             let odds: Vec<f32> = area.pixels(width).zip(remembered).map(odds).collect();
-            let mask = cut(look, &area, &odds);
+            let mask = cut(features, &area, &odds);
             if !mask.contains(&1) {
                 break;
             }
@@ -282,18 +253,18 @@ impl View<'_> {
 
     /// The connected part of a mask that the click is in.
     fn part_of(&self, click: usize, mut mask: Vec<u8>) -> Vec<u8> {
-        let parts = components(&mask, self.look.size[0], Connectivity::Four);
+        let parts = components(&mask, self.features.size[0], Connectivity::Four);
         mask.iter_mut().enumerate().for_each(|(p, inside)| *inside &= u8::from(parts.of[p] == parts.of[click]));
         mask
     }
 
     /// Where an object may reach that lies in an area.
     fn around(&self, area: &Area) -> Area {
-        area.grown(model().margin, self.look.size[0], self.look.size[1])
+        area.grown(model().margin, self.features.size[0], self.features.size[1])
     }
 
     fn place(&self, p: usize) -> [f32; 2] {
-        [p % self.look.size[0], p / self.look.size[0]].map(|at| at as f32)
+        [p % self.features.size[0], p / self.features.size[0]].map(|at| at as f32)
     }
 
     /// Squared distance of a pixel from a centre, in units of the radii.

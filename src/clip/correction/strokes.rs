@@ -2,9 +2,8 @@
 //! nothing connects with a stroke stays. In other frames, what is there holds unless the object looks otherwise. And where an object takes
 //! another's place, nothing is left of that around it.
 
-use crate::clip::annotation::Seed;
-use crate::clip::model;
-use crate::clip::whole::NOTHING_SAID;
+use crate::clip::annotation::{Seed, UNANNOTATED};
+use crate::clip::options::model;
 use crate::components::{Connectivity, components};
 
 /// Takes back what no stroke has changed of an object's mask since it was `before`.
@@ -29,7 +28,7 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     smooth(mask, before, seeds, width);
 }
 
-/// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that way: `looks` are the odds
+/// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that direction: `looks` are the odds
 /// of the object by its looks. They are weighed over each connected change.
 #[inline(never)]
 pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f32, width: usize) {
@@ -66,10 +65,10 @@ pub(super) fn absorb_rims(
     let mut sizes = [[0usize; 2]; 256];
     for (&found, &label) in found.iter().zip(&*layer) {
         sizes[usize::from(found)][0] += 1;
-        sizes[usize::from(found)][1] += usize::from(label != NOTHING_SAID && takes(found, label));
+        sizes[usize::from(found)][1] += usize::from(label != UNANNOTATED && takes(found, label));
     }
     let is_taken = |label: u8| 2 * sizes[usize::from(label)][1] > sizes[usize::from(label)][0];
-    let is_left = |p: usize, layer: &[u8]| layer[p] == NOTHING_SAID && open(p) && is_taken(found[p]);
+    let is_left = |p: usize, layer: &[u8]| layer[p] == UNANNOTATED && open(p) && is_taken(found[p]);
     let left: Vec<u8> = (0..layer.len()).map(|p| if is_left(p, layer) { found[p] } else { 0 }).collect();
     if left.iter().all(|label| *label == 0) {
         return;
@@ -89,7 +88,7 @@ pub(super) fn absorb_rims(
             ];
             let beside =
                 around.into_iter().filter(|&(is_inside, q)| is_inside && q < before.len()).map(|(_, q)| before[q]);
-            let other = beside.into_iter().find(|&label| label != NOTHING_SAID && takes(found[p], label));
+            let other = beside.into_iter().find(|&label| label != UNANNOTATED && takes(found[p], label));
             other.inspect(|other| nearest[p] = *other).is_none()
         });
     }

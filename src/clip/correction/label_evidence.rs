@@ -1,26 +1,26 @@
-//! What the labels that were found automatically say of an object, as far as they agreed with it so far.
+//! The evidence of labels found automatically for an object, as far as they agreed with it so far.
 
-use crate::clip::model;
+use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
 /// How many of the object's pixels, and of the ground near it, had each label.
 #[derive(Clone, Debug)]
-pub(super) struct Evidence {
+pub(super) struct LabelEvidence {
     counts: Vec<[f32; 2]>,
     ratios: Vec<f32>,
 }
 
-impl Default for Evidence {
-    fn default() -> Evidence {
-        Evidence { counts: vec![[0.0; 2]; 256], ratios: vec![0.0; 256] }
+impl Default for LabelEvidence {
+    fn default() -> LabelEvidence {
+        LabelEvidence { counts: vec![[0.0; 2]; 256], ratios: vec![0.0; 256] }
     }
 }
 
-impl Evidence {
+impl LabelEvidence {
     /// That of one frame, in which pixels have a side: 0 for the object, 1 for ground, else neither.
-    pub(super) fn of(found: &[u8], sides: &[u8], area: &Area, width: usize) -> Evidence {
-        let mut evidence = Evidence::default();
+    pub(super) fn of(found: &[u8], sides: &[u8], area: &Area, width: usize) -> LabelEvidence {
+        let mut evidence = LabelEvidence::default();
         evidence.count([0.0, 1.0], found, area, width, &|p| usize::from(sides[p]));
         evidence
     }

@@ -1,0 +1,110 @@
+//! Which frames tell where an object is, and what they tell.
+
+use super::features::FrameFeatures;
+use super::plan::Anchor;
+use super::scaling::{at_features, at_working_size};
+use crate::clip::annotation::{ObjectSet, Seed, Spread, UNANNOTATED};
+use crate::clip::frame_annotation::FrameAnnotation;
+use crate::clip::segmented_clip::SegmentedClip;
+
+/// Pixels under the number of an object found automatically.
+#[derive(Clone, Copy, Default)]
+struct Covered {
+    all: usize,
+    /// Those annotated as ground by a label map that names no object.
+    ground: usize,
+    /// Those annotated as another object's.
+    others: usize,
+}
+
+impl SegmentedClip {
+    /// The anchors of each object in a scene, by number: the frames annotated about it, and if there are any those accepted with it.
+    #[inline(never)]
+    pub(super) fn anchors(&self, [first, last]: [usize; 2]) -> Vec<Vec<Anchor>> {
+        let of = |object: u8| {
+            let frames = &self.frames[first..=last];
+            if !frames.iter().any(|frame| frame.anchors(object)) {
+                return Vec::new();
+            }
+            let spread = |t: usize| match &self.frames[t].annotation {
+                Some(annotation) if annotation.anchored.contains(&object) => Some(annotation.spread_of(object)),
+                _ => self.frames[t].accepts(object).then_some(Spread::Both),
+            };
+            (first..=last).filter_map(|frame| Some(Anchor { frame, spread: spread(frame)? })).collect()
+        };
+        (0..UNANNOTATED).map(of).collect()
+    }
+
+    /// Decides which objects each frame of a scene is an anchor of: those that it names, and those found automatically that it erases partly.
+    /// An object that another one takes over in some frame needs no annotation.
+    #[inline(never)]
+    pub(super) fn update_anchors(&mut self, [first, last]: [usize; 2]) {
+        let names = |clip: &SegmentedClip, t: usize, object: u8| {
+            clip.frames[t].annotation.as_ref().is_some_and(|annotation| annotation.names(object))
+        };
+        let mut is_taken = [false; 256];
+        let mut erased: Vec<ObjectSet> = Vec::new();
+        for t in first..=last {
+            let mut erases = [false; 256];
+            if let Some(annotation) = &self.frames[t].annotation {
+                let covered = self.covered(t, annotation);
+                for (label, Covered { all, ground, others }) in covered.into_iter().enumerate().skip(1) {
+                    is_taken[label] |= 2 * others > all;
+                    // A lock that came later takes nothing back.
+                    let is_free = !self.locked[label] || annotation.anchored.contains(&(label as u8));
+                    erases[label] = ground > 0 && ground + others < all && is_free;
+                }
+            }
+            erased.push(erases);
+        }
+        let is_named: ObjectSet = std::array::from_fn(|k| (first..=last).any(|t| names(self, t, k as u8)));
+        for (erases, t) in erased.iter().zip(first..=last) {
+            let is_anchor = |&object: &u8| {
+                let k = usize::from(object);
+                names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k])
+            };
+            let anchored = (1..UNANNOTATED).filter(is_anchor).collect();
+            if let Some(annotation) = &mut self.frames[t].annotation {
+                annotation.anchored = anchored;
+            }
+        }
+    }
+
+    /// The seeds of an object in a frame at the size of its features, and where they spread.
+    #[inline(never)]
+    pub(super) fn seeds_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<(Vec<Seed>, Spread)> {
+        let frame = &self.frames[t];
+        let annotated = frame.annotation.as_ref().and_then(|of| Some((of.seeds(object)?, of.spread_of(object))));
+        let accepted = || {
+            let labels = frame.layer.as_ref().filter(|_| frame.accepted)?.labels.values();
+            let seed = |label: u8| if label == object { Seed::Object } else { Seed::Other };
+            Some((labels.into_iter().map(seed).collect(), Spread::Both))
+        };
+        let (seeds, spread) = annotated.or_else(accepted)?;
+        Some((at_features(&seeds, Seed::Nothing, self.size()[0], features), spread))
+    }
+
+    /// How an annotation covers each object found automatically, by number.
+    #[inline(never)]
+    fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {
+        let (size, step, full_width) = (self.working_size(), self.working_step(), self.size()[0]);
+        let scaled = |labels: &[u8]| at_working_size(labels, UNANNOTATED, full_width, size, step);
+        let painted =
+            annotation.painted_labels().map_or_else(|| vec![UNANNOTATED; size[0] * size[1]], |of| scaled(&of));
+        let erases = annotation.names_no_object();
+        let (found, _) = self.found(t);
+        let mut covered = [Covered::default(); 256];
+        for (&found, &painted) in found.iter().zip(&painted) {
+            let of = &mut covered[usize::from(found)];
+            of.all += 1;
+            of.ground += usize::from(painted == 0 && erases);
+            of.others += usize::from(painted != 0 && painted != UNANNOTATED && painted != found);
+        }
+        for (object, outline) in annotation.outlines() {
+            for (p, _) in scaled(&outline).into_iter().enumerate().filter(|(_, label)| *label == object) {
+                covered[usize::from(found[p])].others += usize::from(found[p] != object && painted[p] == UNANNOTATED);
+            }
+        }
+        covered
+    }
+}

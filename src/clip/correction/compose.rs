@@ -1,0 +1,213 @@
+//! The layer of a frame from the proposals of its objects.
+//!
+//! Locked objects come first, then a person's own hand in this frame, then objects that are not to change, then proposals: the likeliest one
+//! has the pixel.
+
+use super::features::FrameFeatures;
+use super::proposal::Proposal;
+use super::strokes;
+use crate::clip::annotation::{ObjectSet, Seed, UNANNOTATED};
+use crate::clip::frame_annotation::FrameAnnotation;
+use crate::clip::layer::Layer;
+use crate::clip::options::model;
+use crate::clip::segmented_clip::SegmentedClip;
+use crate::frame::Frame;
+use crate::labelling::resolution::upsampling::upsample;
+use crate::model::Model;
+
+/// A frame whose layer is made anew.
+pub(super) struct Composition<'a> {
+    pub(super) clip: &'a SegmentedClip,
+    pub(super) index: usize,
+    pub(super) frame: &'a Frame,
+    pub(super) features: &'a FrameFeatures,
+    /// The objects that change, and their proposals if they are there.
+    pub(super) proposals: &'a [(u8, Option<Proposal>)],
+    /// Objects that something is added to, and that nothing is taken back of.
+    pub(super) extended: &'a ObjectSet,
+    /// Full-size labels found automatically.
+    pub(super) found: &'a [u8],
+    /// Full-size labels that the frame has shown so far.
+    pub(super) before: &'a [u8],
+}
+
+/// Rules that no proposal changes.
+struct Rules {
+    annotation: FrameAnnotation,
+    /// Full-size painted labels; empty if there are none.
+    painted: Vec<u8>,
+    /// Labels of the layer so far.
+    layer: Vec<u8>,
+    /// Objects of a user in this frame.
+    users: ObjectSet,
+    /// Objects that only annotations of themselves change.
+    protected: ObjectSet,
+    is_accepted: bool,
+}
+
+/// The layer while it is made, at full size.
+struct Draft {
+    labels: Vec<u8>,
+    /// Odds of the objects that have the pixels.
+    odds: Vec<f32>,
+    /// Pixels that keep the object they have.
+    is_held: Vec<bool>,
+}
+
+impl Composition<'_> {
+    /// The layer, if it says anything.
+    pub(super) fn layer(&self) -> Option<Layer> {
+        let (clip, state) = (self.clip, &self.clip.frames[self.index]);
+        let annotation = state.annotation.clone().unwrap_or_default();
+        let layer = state.layer.as_ref();
+        let rules = Rules {
+            painted: annotation.painted_labels().unwrap_or_default(),
+            annotation,
+            layer: layer.map_or_else(|| vec![UNANNOTATED; self.found.len()], |layer| layer.labels.values()),
+            users: clip.user_objects_in(self.index),
+            protected: clip.protected(),
+            is_accepted: state.accepted,
+        };
+        let mut draft = self.held(&rules);
+        self.propose(&rules, &mut draft);
+        self.absorb_rims(&rules, &mut draft);
+        self.paint(&rules, &mut draft);
+        self.give_nothing_back(&rules, &mut draft);
+        let (old, most) = (layer.map(|layer| clip.odds_of(layer)), 2.0 * model().certain);
+        clip.layer_of(&draft.labels, &|p, at| match draft.is_held[p] {
+            true => old.as_ref().map_or(0.0, |old| old.values()[at]),
+            false => draft.odds[p].min(most),
+        })
+    }
+
+    /// Whether an object changes.
+    fn changes(&self, object: u8) -> bool {
+        self.proposals.iter().any(|(of, _)| *of == object)
+    }
+
+    /// Objects of a user that do not change keep their pixels, and all objects do in an accepted frame.
+    fn held(&self, rules: &Rules) -> Draft {
+        let Rules { layer, users, protected, is_accepted, .. } = rules;
+        let holds = |label: u8| {
+            let k = usize::from(label);
+            (users[k] || protected[k] || *is_accepted) && !self.changes(label)
+        };
+        // A pixel that was taken from an object before it was protected stays taken.
+        let holds_found = |p: usize| layer[p] == UNANNOTATED && self.is_protected_below(rules, p);
+        let is_held = |(p, &label): (usize, &u8)| match label {
+            0 => false,
+            UNANNOTATED => holds_found(p),
+            label => holds(label),
+        };
+        let is_held: Vec<bool> = layer.iter().enumerate().map(is_held).collect();
+        let label = |(&label, &is_held): (&u8, &bool)| match label {
+            label if is_held => label,
+            label if *is_accepted && !self.changes(label) => 0,
+            _ => UNANNOTATED,
+        };
+        let labels = layer.iter().zip(&is_held).map(label).collect();
+        Draft { labels, odds: vec![0.0; layer.len()], is_held }
+    }
+
+    /// Whether the object that was found at a pixel is one that does not change.
+    fn is_protected_below(&self, rules: &Rules, p: usize) -> bool {
+        let below = self.found[p];
+        rules.protected[usize::from(below)] && !rules.users[usize::from(below)] && !self.changes(below)
+    }
+
+    /// Each pixel that is not held goes to the likeliest of the objects that propose it.
+    fn propose(&self, rules: &Rules, draft: &mut Draft) {
+        for (object, proposal) in self.proposals {
+            let proposal = proposal.as_ref().filter(|proposal| proposal.mask.contains(&1));
+            let seeds = rules.annotation.seeds(*object);
+            if proposal.is_none() && seeds.is_none() {
+                continue;
+            }
+            let mask = self.mask(rules, *object, proposal, seeds.as_deref());
+            let odds = |p: usize| {
+                let odds = |of: &Proposal| of.odds_at(self.pixel(p), self.features.size[0]);
+                proposal.map_or(0.0, odds).max(f32::MIN_POSITIVE)
+            };
+            // The ground of a label map stays ground, but for objects that were there.
+            let is_free =
+                |p: usize| !draft.is_held[p] && (rules.painted.get(p) != Some(&0) || rules.layer[p] == *object);
+            for p in (0..mask.len()).filter(|&p| mask[p] > 0 && is_free(p)) {
+                let odds = odds(p);
+                if odds > draft.odds[p] {
+                    (draft.odds[p], draft.labels[p]) = (odds, *object);
+                }
+            }
+        }
+    }
+
+    /// The full-size mask that an object proposes.
+    fn mask(&self, rules: &Rules, object: u8, proposal: Option<&Proposal>, seeds: Option<&[Seed]>) -> Vec<u8> {
+        let (features, width) = (self.features, self.frame.width());
+        let mut mask = vec![0; self.found.len()];
+        if let Some(proposal) = proposal {
+            let mut working = vec![0u8; features.pixels()];
+            proposal.area.pixels(features.size[0]).zip(&proposal.mask).for_each(|(p, &inside)| working[p] = inside);
+            mask = upsample(&working, features.size, 2, self.frame.luminance(), &Model::DEFAULT);
+        }
+        if let Some(seeds) = seeds {
+            for (inside, seed) in mask.iter_mut().zip(seeds).filter(|(_, seed)| **seed != Seed::Nothing) {
+                *inside = u8::from(*seed == Seed::Object);
+            }
+            if let Some(base) = rules.annotation.base(object) {
+                strokes::keep(&mut mask, &base, seeds, width);
+            }
+        } else if self.extended[usize::from(object)] {
+            let before: Vec<u8> = self.before.iter().map(|label| u8::from(*label == object)).collect();
+            let appearance = |p: usize| proposal.map_or(0.0, |proposal| proposal.appearance_at(self.pixel(p)));
+            strokes::settle(&mut mask, &before, &appearance, width);
+        }
+        mask
+    }
+
+    /// Nothing is left around an object of another one whose place it takes.
+    fn absorb_rims(&self, rules: &Rules, draft: &mut Draft) {
+        let width = self.frame.width();
+        let takes = |from: u8, other: u8| {
+            let k = usize::from(from);
+            from != 0 && from != other && self.changes(other) && !rules.users[k] && !rules.protected[k]
+        };
+        let is_open = |p: usize| {
+            let is_painted = rules.painted.get(p).is_some_and(|label| *label != UNANNOTATED);
+            !is_painted && rules.annotation.is_within([p % width, p / width])
+        };
+        strokes::absorb_rims(&mut draft.labels, self.found, (&is_open, &takes), width, 2 * self.features.step);
+    }
+
+    /// A person's hand takes pixels of other annotated objects, but of protected ones only in an accepted frame, and of locked and named ones
+    /// nowhere.
+    fn paint(&self, rules: &Rules, draft: &mut Draft) {
+        let erases = rules.annotation.names_no_object();
+        for (p, &label) in rules.painted.iter().enumerate().filter(|(_, label)| **label != UNANNOTATED) {
+            let below = usize::from(if rules.layer[p] == UNANNOTATED { self.found[p] } else { rules.layer[p] });
+            let is_named = self.clip.locked[below] || self.clip.named[below];
+            let is_kept = draft.is_held[p] && (is_named || rules.protected[below] && !rules.is_accepted);
+            // The ground of a label map is that of the objects that it names.
+            let is_others = match label {
+                0 => draft.labels[p] != UNANNOTATED && !erases,
+                label => !self.changes(label),
+            };
+            if !is_kept && !is_others {
+                (draft.odds[p], draft.labels[p], draft.is_held[p]) = (2.0 * model().certain, label, false);
+            }
+        }
+    }
+
+    /// A protected object gets no pixel back that it had lost.
+    fn give_nothing_back(&self, rules: &Rules, draft: &mut Draft) {
+        for (p, label) in draft.labels.iter_mut().enumerate().filter(|(_, label)| **label == UNANNOTATED) {
+            if rules.layer[p] != UNANNOTATED && self.is_protected_below(rules, p) {
+                *label = 0;
+            }
+        }
+    }
+
+    /// The pixel of the working size that a full-size pixel belongs to.
+    fn pixel(&self, p: usize) -> usize {
+        self.features.pixel(p, self.frame.width())
+    }
+}

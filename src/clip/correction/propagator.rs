@@ -1,0 +1,300 @@
+//! Propagation of one object from frame to frame in one direction: predict, cut, update.
+//!
+//! ```text
+//! z(p) = bias + w_T logit p_T + w_M logit p_M + evidence        odds of the object against everything else, nats
+//! ```
+//! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
+//! probability of the pixel's colour at its place by the appearance model; the evidence is that of the labels found automatically. One cut
+//! gives the mask.
+
+use super::appearance::{AppearanceModel, Source};
+use super::features::FrameFeatures;
+use super::label_evidence::LabelEvidence;
+use super::placement::{Placement, Whole};
+use super::proposal::{Proposal, centre_of, logit};
+use crate::clip::annotation::Seed;
+use crate::clip::evidence::Flow;
+use crate::clip::options::model;
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::frame::filter::gaussian;
+use crate::frame::warp::Footprint;
+
+/// A frame, and all that is known there about an object.
+#[derive(Clone, Copy)]
+pub(super) struct Observation<'a> {
+    pub(super) features: &'a FrameFeatures,
+    /// Labels found automatically.
+    pub(super) found: &'a [u8],
+    /// From this frame to the one before in the direction of the propagation, and from that one to this.
+    pub(super) flows: Option<[&'a Flow; 2]>,
+    pub(super) seeds: Option<&'a [Seed]>,
+    /// Whether the seeds are of an anchor of the object. Else they count only where they contradict its propagation.
+    pub(super) is_anchor: bool,
+    /// Whether the annotation spreads in this direction.
+    pub(super) spreads: bool,
+    /// Whether it spreads to all frames.
+    pub(super) spreads_to_all: bool,
+}
+
+/// The expectation of an object in the next frame.
+pub(super) struct Prediction {
+    pub(super) area: Area,
+    pub(super) odds: Vec<f32>,
+    appearance: Vec<f32>,
+    centre: [f32; 2],
+    placement: Option<Placement>,
+    /// How much each pixel is awaited to be that of a hidden object.
+    pub(super) awaited: Option<Plane>,
+}
+
+/// The object in the frame reached last.
+#[derive(Clone, Debug)]
+struct Reached {
+    /// 1 at the object's pixels.
+    mask: Plane,
+    centre: [f32; 2],
+    whole: Whole,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Propagator {
+    reached: Option<Reached>,
+    appearance: Option<AppearanceModel>,
+    label_evidence: LabelEvidence,
+    /// Whether it has learnt the annotations that spread to all frames.
+    knows_annotations: bool,
+}
+
+impl Propagator {
+    pub(super) fn has_begun(&self) -> bool {
+        self.reached.is_some()
+    }
+
+    /// The same in the other direction: annotations stay learnt, frames that were passed are forgotten.
+    pub(super) fn turned(&self, features: &FrameFeatures, found: &[u8]) -> Propagator {
+        let (mut appearance, mut label_evidence) = (self.appearance.clone(), LabelEvidence::default());
+        if let (Some(appearance), Some(reached)) = (&mut appearance, &self.reached) {
+            appearance.forget_recent();
+            appearance.learn(features, reached.centre, Source::Recent, 1.0 - model().decay, &side(&reached.mask));
+            label_evidence.learn(found, &reached.mask, true);
+        }
+        let reached = self.reached.as_ref().map(|reached| Reached { whole: reached.whole.turned(), ..reached.clone() });
+        Propagator { reached, appearance, label_evidence, knows_annotations: self.knows_annotations }
+    }
+
+    /// Learns the appearance of an object from its mask in a frame, before the propagation begins.
+    pub(super) fn learn(
+        &mut self,
+        features: &FrameFeatures,
+        source: Source,
+        weight: f32,
+        inside: &dyn Fn(usize) -> bool,
+    ) {
+        let mask = features.plane(inside);
+        let Some(centre) = centre_of(&mask) else { return };
+        let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&mask));
+        appearance.learn(features, centre, source, weight, &side(&mask));
+    }
+
+    /// Learns an annotation that spreads to all frames, before the propagation begins.
+    pub(super) fn learn_seeds(&mut self, features: &FrameFeatures, seeds: &[Seed], found: &[u8], object: u8) {
+        let shown = shown(features, Some(seeds), found, object);
+        let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
+        let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
+        appearance.learn_seeds(features, centre, Some(seeds));
+        self.knows_annotations = true;
+    }
+
+    /// Whether it has learnt the annotation of a frame already.
+    fn knows(&self, of: &Observation<'_>) -> bool {
+        self.knows_annotations && of.spreads_to_all
+    }
+
+    /// Begins in an anchor of an object.
+    pub(super) fn begin(&mut self, of: &Observation<'_>, object: u8) -> Proposal {
+        let features = of.features;
+        let is_found = of.found.contains(&object);
+        let unannotated = |p: usize| match is_found {
+            true if of.found[p] == object => model().guess,
+            true => -model().guess,
+            false => -2.0 * model().certain,
+        };
+        let mut odds: Vec<f32> = (0..features.pixels()).map(unannotated).collect();
+        let shown = shown(features, of.seeds, of.found, object);
+        let partly = of.seeds.is_none_or(|seeds| seeds.contains(&Seed::Nothing));
+        let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
+        let knows = self.knows(of);
+        let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
+        if !knows {
+            appearance.learn_seeds(features, centre, of.seeds);
+        }
+        let area = features.area();
+        if partly {
+            if !is_found {
+                // Most pixels without a seed are ground.
+                let has_seed = |p: usize| of.seeds.is_some_and(|seeds| seeds[p] != Seed::Nothing);
+                let ground = |p: usize| if has_seed(p) { 2 } else { 1 };
+                appearance.learn(features, centre, Source::Recent, model().few, &ground);
+            }
+            let remembered = appearance.read(features, &area, centre);
+            for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(appearance.trusts(features)) {
+                *odds = trust[usize::from(*odds < 0.0)] * *odds + model().bias + model().memory * logit(remembered);
+            }
+        }
+        let proposal = Proposal::solved(features, area, odds, of.seeds);
+        let mask = proposal.plane(features);
+        let centre = centre_of(&mask).unwrap_or(centre);
+        let whole = Whole::new(&mask, features, centre, !partly);
+        self.reach(of, Reached { mask, centre, whole }, [partly, true]);
+        proposal
+    }
+
+    /// The share of the object that was seen last.
+    pub(super) fn share(&self) -> f32 {
+        self.reached.as_ref().map_or(0.0, |reached| reached.whole.share)
+    }
+
+    /// Where the object is in the next frame, behind others that have the pixels `covered`.
+    pub(super) fn place(&self, of: &Observation<'_>, covered: &[bool]) -> Option<Placement> {
+        let reached = self.reached.as_ref()?;
+        let still = Flow::still(of.features.size);
+        let [_, from] = of.flows.unwrap_or([&still, &still]);
+        reached.whole.place(of.features, from, covered)
+    }
+
+    /// Marks where the object is expected.
+    pub(super) fn cover(&self, placement: &Placement, covered: &mut [bool]) {
+        if let Some(reached) = &self.reached {
+            reached.whole.template.cover(placement.shift, covered);
+        }
+    }
+
+    /// Predicts the object in the next frame.
+    pub(super) fn predict(&mut self, of: &Observation<'_>, placement: Option<Placement>) -> Option<Prediction> {
+        let reached = self.reached.as_ref()?;
+        let (features, [width, height]) = (of.features, of.features.size);
+        let still = Flow::still(features.size);
+        let [to, _] = of.flows.unwrap_or([&still, &still]);
+        let soft = gaussian(&reached.mask, model().motion);
+        let all = gaussian(&reached.whole.template.mask, model().motion);
+        let near = |p: usize| {
+            let (x, y) = ((p % width) as f32, (p / width) as f32);
+            let [u, v] = to.at(p % width, p / width);
+            let along = Footprint::new(x + u as f32, y + v as f32, width, height).sample(soft.values());
+            let with_all = placement.as_ref().map(|Placement { shift: [dx, dy], .. }| {
+                let footprint = Footprint::new(x - dx, y - dy, width, height);
+                if footprint.inside { footprint.sample(all.values()) } else { 0.0 }
+            });
+            [along, with_all.unwrap_or(along)]
+        };
+        let mut both: Vec<[f32; 2]> = (0..width * height).map(near).collect();
+        let hidden = placement.as_ref().and_then(|placement| placement.hidden.as_ref());
+        let mut awaited = None;
+        if let Some([alike, around]) = hidden {
+            let alike = gaussian(alike, model().motion);
+            both.iter_mut().zip(alike.values()).for_each(|(both, &alike)| *both = [both[0].max(alike); 2]);
+            awaited = Some(features.plane_of(&|p| alike.values()[p] + around.values()[p]));
+        }
+        let weight = if hidden.is_some() { 1.0 } else { model().trust };
+        let is_near =
+            |p: &usize| both[*p][0] > model().few || both[*p][1] > model().few || soft.values()[*p] > model().few;
+        let area = Area::of(&(0..width * height).filter(is_near).collect::<Vec<usize>>(), width);
+        let area = if area.width() == 0 { features.area() } else { area.grown(model().margin, width, height) };
+        let carried = features.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
+        let central =
+            features.plane_of(&|p| if carried.values()[p] > model().part { carried.values()[p] } else { 0.0 });
+        let centre =
+            reached.whole.expected_centre(placement.as_ref()).or_else(|| centre_of(&central)).unwrap_or(reached.centre);
+        let learns = of.is_anchor && of.spreads && !self.knows(of);
+        if let Some(appearance) = self.appearance.as_mut().filter(|_| learns) {
+            appearance.learn_seeds(features, centre, of.seeds);
+        }
+        let remembered = self.appearance.as_ref().map(|appearance| appearance.read(features, &area, centre));
+        let odds = area.pixels(width).enumerate().map(|(k, p)| {
+            let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
+            let evidence = self.label_evidence.ratio(of.found[p]);
+            let z = model().bias + weight * logit(carried.values()[p]) + model().memory * memory + evidence;
+            // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
+            let most = if hidden.is_some() && carried.values()[p] < model().few {
+                -model().undecided
+            } else {
+                model().certain
+            };
+            z.clamp(-model().certain, most)
+        });
+        let odds = odds.collect();
+        let mut appearance = vec![0.0; features.pixels()];
+        if let Some(remembered) = &remembered {
+            area.pixels(width).zip(remembered).for_each(|(p, r)| appearance[p] = logit(*r));
+        }
+        Some(Prediction { area, odds, appearance, centre, placement, awaited })
+    }
+
+    /// Cuts the next frame by its prediction and its seeds, and goes on from there.
+    pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction) -> Proposal {
+        let features = of.features;
+        let Prediction { area, odds, appearance, centre, placement, .. } = prediction;
+        let solve = |seeds| Proposal::solved(features, area.clone(), odds.clone(), seeds);
+        let contradicts = |proposal: &Proposal, seeds: &[Seed]| {
+            let mut pixels = proposal.area.pixels(features.size[0]).zip(&proposal.mask);
+            pixels.any(|(p, &inside)| inside > 0 && seeds[p] == Seed::Other)
+        };
+        // The proposal of this frame, and the one to go on from if that is another.
+        let (mut proposal, goes_on) = match of.seeds {
+            None => (solve(None), None),
+            Some(seeds) if of.is_anchor && of.spreads => (solve(Some(seeds)), None),
+            Some(seeds) => {
+                let free = solve(None);
+                if !of.is_anchor && !contradicts(&free, seeds) {
+                    (free, None)
+                } else if of.spreads {
+                    let proposal = solve(Some(seeds));
+                    let centre = centre_of(&proposal.plane(features)).unwrap_or(centre);
+                    if let Some(appearance) = &mut self.appearance {
+                        appearance.learn_seeds(features, centre, Some(seeds));
+                    }
+                    (proposal, None)
+                } else {
+                    (solve(Some(seeds)), Some(free))
+                }
+            }
+        };
+        let mask = goes_on.as_ref().unwrap_or(&proposal).plane(features);
+        if let Some(reached) = self.reached.take() {
+            let seen = centre_of(&mask).unwrap_or(centre);
+            let whole = reached.whole.gone_on(&mask, features, seen, placement.as_ref());
+            let centre = if whole.now { seen } else { centre };
+            self.reach(of, Reached { mask, centre, whole }, [true, false]);
+        }
+        proposal.appearance = appearance;
+        proposal
+    }
+
+    /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
+    fn reach(&mut self, of: &Observation<'_>, reached: Reached, [knows_little, begins]: [bool; 2]) {
+        // Of an object that is partly hidden it would learn the one in front.
+        if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.whole.now) {
+            appearance.fade(model().decay);
+            if knows_little {
+                let weight = 1.0 - model().decay;
+                appearance.learn(of.features, reached.centre, Source::Recent, weight, &side(&reached.mask));
+            }
+        }
+        self.label_evidence.learn(of.found, &reached.mask, begins);
+        self.reached = Some(reached);
+    }
+}
+
+/// The object in an anchor: where it was annotated, and elsewhere where it was found.
+fn shown(features: &FrameFeatures, seeds: Option<&[Seed]>, found: &[u8], object: u8) -> Plane {
+    features.plane(&|p| match seeds.map_or(Seed::Nothing, |seeds| seeds[p]) {
+        Seed::Nothing => found[p] == object,
+        seed => seed == Seed::Object,
+    })
+}
+
+/// 0 for the pixels of a mask, 1 for the others.
+fn side(mask: &Plane) -> impl Fn(usize) -> usize {
+    |p| usize::from(mask.values()[p] < 0.5)
+}

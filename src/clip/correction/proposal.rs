@@ -1,0 +1,107 @@
+//! The mask that an object proposes for a frame, and its odds.
+
+use super::features::FrameFeatures;
+use crate::clip::annotation::Seed;
+use crate::clip::options::model;
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::labelling::solver::Solver;
+
+/// Odds of a seed, nats: more than all borders of a pixel cost.
+pub(super) const CERTAIN: f32 = 99.0;
+
+/// Where an object may be in a frame, and how likely.
+#[derive(Clone, Debug)]
+pub(super) struct Proposal {
+    pub(super) area: Area,
+    /// Odds of the object against everything else at the pixels of the area, nats.
+    pub(super) odds: Vec<f32>,
+    /// 1 for the object.
+    pub(super) mask: Vec<u8>,
+    /// Odds by the object's appearance alone at every pixel of the frame, 0 where they are not known; empty if they are nowhere.
+    pub(super) appearance: Vec<f32>,
+}
+
+impl Proposal {
+    /// The mask of least energy, with the seeds of the frame if it has any.
+    pub(super) fn solved(features: &FrameFeatures, area: Area, odds: Vec<f32>, seeds: Option<&[Seed]>) -> Proposal {
+        let Some(seeds) = seeds else {
+            let mask = cut(features, &area, &odds);
+            return Proposal { area, odds, mask, appearance: Vec::new() };
+        };
+        let odds: Vec<f32> = (0..features.pixels())
+            .map(|p| match seeds[p] {
+                Seed::Nothing => odds_at(&area, &odds, p, features.size[0]),
+                Seed::Other | Seed::Dropped => -CERTAIN,
+                Seed::Object => CERTAIN,
+            })
+            .collect();
+        let area = features.area();
+        let mask = if seeds.contains(&Seed::Nothing) {
+            cut(features, &area, &odds)
+        } else {
+            odds.iter().map(|&z| u8::from(z > 0.0)).collect()
+        };
+        Proposal { area, odds, mask, appearance: Vec::new() }
+    }
+
+    /// The odds of two proposals, by the weights of each.
+    pub(super) fn joined(features: &FrameFeatures, proposals: [&Proposal; 2], weights: [f32; 2]) -> Proposal {
+        let (area, width) = (proposals[0].area.with(&proposals[1].area), features.size[0]);
+        let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
+        let odds: Vec<f32> = area.pixels(width).map(|p| mean(proposals.map(|of| of.odds_at(p, width)))).collect();
+        let appearance = (0..features.pixels()).map(|p| mean(proposals.map(|of| of.appearance_at(p)))).collect();
+        let mask = cut(features, &area, &odds);
+        Proposal { area, odds, mask, appearance }
+    }
+
+    /// The mask as a plane.
+    pub(super) fn plane(&self, features: &FrameFeatures) -> Plane {
+        let mut plane = Plane::filled(features.size[0], features.size[1], 0.0);
+        for (p, &inside) in self.area.pixels(features.size[0]).zip(&self.mask) {
+            plane.values_mut()[p] = f32::from(inside);
+        }
+        plane
+    }
+
+    /// Odds at a pixel.
+    pub(super) fn odds_at(&self, p: usize, width: usize) -> f32 {
+        odds_at(&self.area, &self.odds, p, width)
+    }
+
+    /// Odds at a pixel by the object's appearance alone; 0 if they are not known.
+    pub(super) fn appearance_at(&self, p: usize) -> f32 {
+        self.appearance.get(p).copied().unwrap_or(0.0)
+    }
+}
+
+/// Odds at a pixel that need not be in the area of which they are known.
+pub(super) fn odds_at(area: &Area, odds: &[f32], p: usize, width: usize) -> f32 {
+    let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
+    if inside { odds[area.index_of(p, width)] } else { -2.0 * model().certain }
+}
+
+/// The mask of least energy.
+pub(super) fn cut(features: &FrameFeatures, area: &Area, odds: &[f32]) -> Vec<u8> {
+    let (width, height) = (area.width(), area.height());
+    let borders = features.borders.cropped(area, model().smoothness);
+    let object = Plane::from_vec(width, height, odds.iter().map(|&z| -z).collect());
+    borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
+}
+
+/// Centre of the object's pixels, if there are any.
+pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
+    let mut moments = [0.0f64; 3];
+    for y in 0..mask.height() {
+        for (x, &share) in mask.row(y).iter().enumerate() {
+            let share = f64::from(share);
+            moments = [moments[0] + share, moments[1] + share * x as f64, moments[2] + share * y as f64];
+        }
+    }
+    (moments[0] > 0.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
+}
+
+/// Odds of a probability, nats.
+pub(super) fn logit(p: f32) -> f32 {
+    libm::logf((p + model().doubt) / (1.0 - p + model().doubt))
+}

@@ -1,0 +1,294 @@
+//! A person's annotations of one frame, as they were given, and the seeds of each object that follow from them.
+
+use super::annotation::{Painted, Prompt, Seed, Spread, UNANNOTATED};
+use super::options::model;
+use super::runs::Runs;
+use super::saved::saved;
+use crate::components::{Component, Connectivity, components};
+
+/// The annotations of a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct FrameAnnotation {
+    /// In the order in which they were last changed: later ones go over earlier ones.
+    painted: Vec<Strokes>,
+    /// By object, ascending.
+    prompts: Vec<Outlined>,
+    /// By object, ascending: 0 at separate pieces that strokes have taken away, 255 elsewhere.
+    pieces: Vec<(u8, Runs)>,
+    /// By object, ascending: 1 where it was when strokes were first drawn in the frame.
+    bases: Vec<(u8, Runs)>,
+    /// Objects that are propagated from here.
+    pub(super) anchored: Vec<u8>,
+    /// Other objects of a user that a label map which names none takes pixels from.
+    pub(super) takes_from: Vec<u8>,
+}
+
+saved!(FrameAnnotation { painted, prompts, pieces, bases, anchored, takes_from });
+
+/// A label of each full-size pixel, or 255 for nothing.
+#[derive(Clone, Debug, PartialEq)]
+struct Strokes {
+    /// 0 for a label map.
+    object: u8,
+    labels: Runs,
+    spread: Spread,
+}
+
+saved!(Strokes { object, labels, spread });
+
+/// A prompt, and its outline: the object's number, 0 elsewhere, 255 where another object is.
+#[derive(Clone, Debug, PartialEq)]
+struct Outlined {
+    prompt: Prompt,
+    labels: Runs,
+}
+
+saved!(Outlined { prompt, labels });
+
+/// A new annotation of a frame.
+#[derive(Clone, Debug)]
+pub(super) enum Change {
+    /// Label maps and strokes; empty ones take back.
+    Painted(Vec<Painted>),
+    Prompt(Prompt),
+}
+
+impl FrameAnnotation {
+    pub(super) fn is_empty(&self) -> bool {
+        self.painted.is_empty() && self.prompts.is_empty()
+    }
+
+    pub(super) fn is_valid(&self, pixels: usize) -> bool {
+        let painted = self.painted.iter().map(|strokes| &strokes.labels);
+        let pieces = self.pieces.iter().chain(&self.bases).map(|(_, labels)| labels);
+        painted.chain(self.prompts.iter().map(|of| &of.labels)).chain(pieces).all(|labels| labels.is_valid(pixels))
+    }
+
+    /// Puts a label map or strokes in the place of those of the same object. An empty label map takes back everything.
+    #[inline(never)]
+    pub(super) fn paint(&mut self, painted: &Painted) {
+        let object = painted.object.unwrap_or(0);
+        let (labels, spread) = (Runs::of(&painted.labels), painted.spread);
+        let strokes = Strokes { object, labels, spread };
+        if self.painted.contains(&strokes) {
+            return;
+        }
+        let is_nothing = painted.labels.iter().all(|&label| label == UNANNOTATED);
+        if is_nothing && painted.object.is_none() {
+            *self = FrameAnnotation::default();
+            return;
+        }
+        self.painted.retain(|strokes| strokes.object != object);
+        if !is_nothing {
+            self.painted.push(strokes);
+        }
+    }
+
+    /// Puts a prompt with its outline in the place of that of the same object.
+    #[inline(never)]
+    pub(super) fn point(&mut self, prompt: Prompt, labels: &[u8]) {
+        self.prompts.retain(|of| of.prompt.object != prompt.object);
+        if prompt.points() {
+            let at = self.prompts.partition_point(|of| of.prompt.object < prompt.object);
+            self.prompts.insert(at, Outlined { prompt, labels: Runs::of(labels) });
+        }
+    }
+
+    /// The prompt of an object.
+    pub(super) fn prompt(&self, object: u8) -> Option<&Prompt> {
+        self.outlined(object).map(|of| &of.prompt)
+    }
+
+    fn outlined(&self, object: u8) -> Option<&Outlined> {
+        self.prompts.iter().find(|of| of.prompt.object == object)
+    }
+
+    fn strokes(&self, object: u8) -> Option<&Strokes> {
+        self.painted.iter().find(|strokes| strokes.object == object)
+    }
+
+    /// The label map, if it is about an object: if it names it, or none.
+    fn map_of(&self, object: u8) -> Option<&Strokes> {
+        self.strokes(0).filter(|_| self.names_in_map(object) || self.names_no_object())
+    }
+
+    /// Whether its label map names no object: where it is 0, there is none.
+    #[inline(never)]
+    pub(super) fn names_no_object(&self) -> bool {
+        self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == UNANNOTATED))
+    }
+
+    /// Whether anything is about an object by its number.
+    #[inline(never)]
+    pub(super) fn names(&self, object: u8) -> bool {
+        self.names_in_map(object) || self.strokes(object).is_some() || self.outlined(object).is_some()
+    }
+
+    /// Whether other annotations of the frame say the same of an object by its number; of 0, of all under a label map that names none.
+    #[inline(never)]
+    pub(super) fn agrees(&self, other: &FrameAnnotation, object: u8) -> bool {
+        self.about(object) == other.about(object)
+    }
+
+    /// The label map, strokes and outline that are about an object by its number; of 0, a label map that names none.
+    #[inline(never)]
+    fn about(&self, object: u8) -> (Option<&Strokes>, Option<&Strokes>, Option<&Outlined>) {
+        let is_map = if object == 0 { self.names_no_object() } else { self.names_in_map(object) };
+        let map = self.strokes(0).filter(|_| is_map);
+        (map, self.strokes(object).filter(|_| object > 0), self.outlined(object))
+    }
+
+    /// Whether seeds of an object were added to those before, and none taken back.
+    pub(super) fn extends(&self, before: &FrameAnnotation, object: u8) -> bool {
+        if self.agrees(before, object) {
+            return true;
+        }
+        let now = self.seeds(object).unwrap_or_default();
+        let is_kept = |(p, seed): (usize, &Seed)| *seed == Seed::Nothing || now.get(p) == Some(seed);
+        before.seeds(object).unwrap_or_default().iter().enumerate().all(is_kept)
+    }
+
+    /// Whether other annotations of the frame are the same.
+    pub(super) fn is_same(&self, other: &FrameAnnotation) -> bool {
+        self.painted == other.painted && self.prompts == other.prompts
+    }
+
+    /// A separate piece of an object goes as a whole when a stroke in it takes pixels away. The frame shows the labels `now`, and `before`
+    /// are its annotations so far.
+    #[inline(never)]
+    pub(super) fn drop_pieces(&mut self, before: &FrameAnnotation, now: &[u8], width: usize) {
+        // A piece whose stroke was taken back is the object's again.
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.retain(|(object, piece)| {
+            let seeds = self.seeds(*object).unwrap_or_default();
+            seeds.iter().zip(piece.values()).any(|(seed, label)| label == 0 && *seed == Seed::Other)
+        });
+        self.pieces = pieces;
+        let mut objects = [false; 256];
+        now.iter().for_each(|&label| objects[usize::from(label)] = true);
+        for object in (1..UNANNOTATED).filter(|&k| objects[usize::from(k)]) {
+            let is_about = self.names_no_object() && !self.agrees(before, 0) || !self.agrees(before, object);
+            let Some(seeds) = is_about.then(|| self.seeds(object)).flatten() else { continue };
+            let old = before.seeds(object);
+            let inside: Vec<u8> = now.iter().map(|&label| u8::from(label == object)).collect();
+            let parts = components(&inside, width, Connectivity::Eight);
+            let mut is_said = vec![false; parts.list.len()];
+            // First and last column and row of the strokes in each.
+            let mut strokes = vec![[usize::MAX, usize::MAX, 0, 0]; parts.list.len()];
+            for p in 0..now.len() {
+                let part = parts.of[p] as usize;
+                is_said[part] |= seeds[p] == Seed::Object;
+                if seeds[p] == Seed::Other && old.as_ref().is_none_or(|old| old[p] != Seed::Other) {
+                    let ([x, y], [left, top, right, bottom]) = ([p % width, p / width], strokes[part]);
+                    strokes[part] = [left.min(x), top.min(y), right.max(x), bottom.max(y)];
+                }
+            }
+            let all: usize = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).sum();
+            let goes = |part: usize| {
+                let (Component { label, size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
+                let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
+                if label == 0 || is_said[part] || drawn[0] > drawn[2] {
+                    return false;
+                }
+                // A dab in a large piece may be about part of it; a stroke through it is not.
+                let is_through = length(drawn) as f32 > (1.0 - model().part) * length(bounds) as f32;
+                (size as f32) < model().part * all as f32 || is_through && 2 * size < all
+            };
+            let goes: Vec<bool> = (0..parts.list.len()).map(goes).collect();
+            let mut piece: Vec<u8> =
+                parts.of.iter().map(|&part| if goes[part as usize] { 0 } else { UNANNOTATED }).collect();
+            if !piece.contains(&0) {
+                continue;
+            }
+            if let Some(at) = self.pieces.iter().position(|(of, _)| *of == object) {
+                let (_, before) = self.pieces.swap_remove(at);
+                piece.iter_mut().zip(before.values()).for_each(|(piece, before)| *piece = (*piece).min(before));
+            }
+            let at = self.pieces.partition_point(|(of, _)| *of < object);
+            self.pieces.insert(at, (object, Runs::of(&piece)));
+        }
+    }
+
+    /// Keeps where objects are before strokes change them, by the labels that the frame shows.
+    #[inline(never)]
+    pub(super) fn keep_bases(&mut self, shown: &[u8]) {
+        let mut is_shown = [false; 256];
+        shown.iter().for_each(|&label| is_shown[usize::from(label)] = true);
+        let is_stroked = |k: u8| {
+            self.strokes(k).is_some() || self.map_of(k).is_some() && (is_shown[usize::from(k)] || self.names_in_map(k))
+        };
+        let base = |k: u8| {
+            let known = self.bases.iter().find(|(of, _)| *of == k).map(|(_, base)| base.clone());
+            let now = || Runs::of(&shown.iter().map(|&label| u8::from(label == k)).collect::<Vec<u8>>());
+            (k, known.unwrap_or_else(now))
+        };
+        self.bases = (1..UNANNOTATED).filter(|&k| is_stroked(k)).map(base).collect();
+    }
+
+    /// Where an object was before strokes were drawn: 1 at its pixels. There is none without strokes.
+    pub(super) fn base(&self, object: u8) -> Option<Vec<u8>> {
+        self.bases.iter().find(|(of, _)| *of == object).map(|(_, base)| base.values())
+    }
+
+    fn names_in_map(&self, object: u8) -> bool {
+        self.strokes(0).is_some_and(|map| map.labels.names(object))
+    }
+
+    /// Where the annotations of an object spread.
+    #[inline(never)]
+    pub(super) fn spread_of(&self, object: u8) -> Spread {
+        let painted = self.strokes(object).or(self.map_of(object)).map(|strokes| strokes.spread);
+        painted.or(self.prompt(object).map(|prompt| prompt.spread)).unwrap_or_default()
+    }
+
+    /// The seeds of an object at full size, if anything is said of it. Strokes go before a label map, and that before a prompt.
+    #[inline(never)]
+    pub(super) fn seeds(&self, object: u8) -> Option<Vec<Seed>> {
+        let mut seeds: Option<Vec<Seed>> = None;
+        let layers = [
+            (self.pieces.iter().find(|(of, _)| *of == object).map(|(_, labels)| labels), Seed::Dropped),
+            (self.outlined(object).map(|of| &of.labels), Seed::Other),
+            (self.map_of(object).map(|map| &map.labels), Seed::Other),
+            (self.strokes(object).map(|strokes| &strokes.labels), Seed::Other),
+        ];
+        for (labels, other) in layers.into_iter().filter_map(|(labels, other)| Some((labels?, other))) {
+            let labels = labels.values();
+            let seeds = seeds.get_or_insert_with(|| vec![Seed::Nothing; labels.len()]);
+            for (seed, label) in seeds.iter_mut().zip(labels).filter(|(_, label)| *label != UNANNOTATED) {
+                *seed = if label == object { Seed::Object } else { other };
+            }
+        }
+        seeds
+    }
+
+    /// The painted labels at full size: the number of an object, 0 for the ground of a label map, 255 for nothing.
+    #[inline(never)]
+    pub(super) fn painted_labels(&self) -> Option<Vec<u8>> {
+        let mut painted: Option<Vec<u8>> = None;
+        for Strokes { object, labels, .. } in &self.painted {
+            let labels = labels.values();
+            let painted = painted.get_or_insert_with(|| vec![UNANNOTATED; labels.len()]);
+            for (painted, label) in painted.iter_mut().zip(labels) {
+                if label != UNANNOTATED && (label != 0 || *object == 0) {
+                    *painted = label;
+                } else if label == 0 && *painted == *object {
+                    *painted = UNANNOTATED;
+                }
+            }
+        }
+        painted
+    }
+
+    /// Whether a pixel is within all boxes of prompts.
+    pub(super) fn is_within(&self, [x, y]: [usize; 2]) -> bool {
+        let boxes = self.prompts.iter().filter_map(|of| of.prompt.within);
+        boxes
+            .into_iter()
+            .all(|[left, top, columns, rows]| (left..left + columns).contains(&x) && (top..top + rows).contains(&y))
+    }
+
+    /// The numbers that prompts outline, with their pixels.
+    pub(super) fn outlines(&self) -> impl Iterator<Item = (u8, Vec<u8>)> + '_ {
+        self.prompts.iter().map(|of| (of.prompt.object, of.labels.values()))
+    }
+}

@@ -1,0 +1,122 @@
+//! The labels of a frame: those found automatically, with the layer of annotations over them.
+
+use super::annotation::{ObjectSet, UNANNOTATED};
+use super::description::{ClipFrame, WorkingFrame};
+use super::layer::Layer;
+use super::options::model;
+use super::segmented_clip::SegmentedClip;
+use crate::error::Result;
+use crate::frame::{Frame, Plane};
+
+impl SegmentedClip {
+    /// The labels and objects of a frame, which must be the one that was segmented.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`](crate::Error::InvalidOption) for an index that is not below [`len`](Self::len),
+    /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch), [`Error::OtherFrame`](crate::Error::OtherFrame).
+    pub fn frame(&self, index: usize, frame: &Frame) -> Result<ClipFrame> {
+        self.check(index, frame)?;
+        let state = &self.frames[index];
+        let user_objects = self.user_objects_in(index);
+        let is_users = |label: u8| user_objects[usize::from(label)];
+        // A label that the layer must tell apart keeps its number until then.
+        let given = |label: u8| match self.numbers[usize::from(label)] {
+            number if is_users(label) || is_users(number) => label,
+            number => number,
+        };
+        let (mut labels, mut odds) = self.found(index);
+        labels.iter_mut().for_each(|label| *label = given(*label));
+        let onward = self.onward(index);
+        let working = |labels: &[u8], odds: &Plane, mark_unknown| {
+            WorkingFrame { index, labels, odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
+        };
+        let is_final = |label: &u8| self.numbers[usize::from(*label)] == *label && !is_users(*label);
+        if state.layer.is_none() && labels.iter().all(is_final) {
+            return Ok(working(&labels, &odds, self.mark_unknown));
+        }
+        let found = working(&labels, &odds, false).labels;
+        let mut full = self.overlaid(index, &found, &user_objects);
+        full.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
+        let layer = state.layer.as_ref().map(|layer| self.odds_of(layer)).zip(self.layer_labels(index));
+        let corner = self.corner();
+        for at in 0..labels.len() {
+            let p = corner(at);
+            let odds = &mut odds.values_mut()[at];
+            match &layer {
+                Some((of_layer, above)) if above[p] != UNANNOTATED => *odds = of_layer.values()[at],
+                _ if full[p] == 0 && found[p] > 0 => *odds = -model().certain,
+                _ => {}
+            }
+            labels[at] = full[p];
+        }
+        let (onward, mark_unknown) = (onward.as_ref(), self.mark_unknown);
+        Ok(WorkingFrame { index, labels: &labels, odds: &odds, onward, mark_unknown }.marked(full, frame.width()))
+    }
+
+    /// The labels of a frame found automatically, at full size.
+    pub(super) fn found_full(&self, index: usize, luminance: &Plane) -> Vec<u8> {
+        let (labels, odds) = self.found(index);
+        WorkingFrame { index, labels: &labels, odds: &odds, onward: None, mark_unknown: false }.upsampled(luminance)
+    }
+
+    /// The labels of a frame, before objects are merged or deleted.
+    pub(super) fn shown(&self, index: usize, luminance: &Plane) -> Vec<u8> {
+        self.overlaid(index, &self.found_full(index, luminance), &self.user_objects_in(index))
+    }
+
+    /// Full-size labels found automatically, with the layer of a frame over them. The found pixels of a user's object do not show, nor the
+    /// rest of an object most of which lies under one that was given as masks.
+    pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
+        let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNANNOTATED; found.len()]);
+        let mut sizes = [[0usize; 2]; 256];
+        for (&found, &label) in found.iter().zip(&layer) {
+            sizes[usize::from(found)][0] += 1;
+            sizes[usize::from(found)][1] += usize::from(self.given[usize::from(label)]);
+        }
+        let protected = self.protected();
+        let is_hidden = |label: u8| {
+            let k = usize::from(label);
+            user_objects[k] || !protected[k] && 2 * sizes[k][1] > sizes[k][0]
+        };
+        let hidden: Vec<bool> = (0..=u8::MAX).map(is_hidden).collect();
+        let label = |(&layer, &found): (&u8, &u8)| match layer {
+            UNANNOTATED if hidden[usize::from(found)] => 0,
+            UNANNOTATED => found,
+            label => label,
+        };
+        layer.iter().zip(found).map(label).collect()
+    }
+
+    /// The labels of the layer of a frame, if it has one. Where a user's objects were deleted, the labels below show again.
+    fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
+        let is_deleted = |label: u8| label > 0 && label != UNANNOTATED && self.numbers[usize::from(label)] == 0;
+        let mut labels = self.frames[index].layer.as_ref()?.labels.values();
+        labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNANNOTATED);
+        Some(labels)
+    }
+
+    /// A layer of full-size labels, if they say anything. `odds` has those of a full-size pixel, and of the working pixel that it is the
+    /// corner of.
+    pub(super) fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
+        if labels.iter().all(|&label| label == UNANNOTATED) {
+            return None;
+        }
+        let ([width, height], corner) = (self.working_size(), self.corner());
+        let odds = Plane::from_fn(width, height, |x, y| {
+            let at = y * width + x;
+            let p = corner(at);
+            match labels[p] {
+                UNANNOTATED => 0.0,
+                0 => -2.0 * model().certain,
+                _ => odds(p, at),
+            }
+        });
+        Some(Layer::of(labels, &odds))
+    }
+
+    /// The full-size pixel at the corner of each working pixel.
+    fn corner(&self) -> impl Fn(usize) -> usize {
+        let ([width, height], working, step) = (self.size(), self.working_size()[0], self.working_step());
+        move |at| (at / working * step).min(height - 1) * width + (at % working * step).min(width - 1)
+    }
+}

@@ -1,0 +1,203 @@
+//! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
+
+use super::annotation::ObjectSet;
+use super::evidence::Flow;
+use super::frame_state::FrameState;
+use super::layer::Layer;
+use super::options::ClipOptions;
+use super::saved::{Format, saved};
+use crate::error::{Error, Result};
+use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
+use crate::options::{Quality, SegmentOptions};
+use crate::pair::settings::Settings;
+
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP5 ", env!("CARGO_PKG_VERSION"), "\n") };
+
+/// A clip whose objects are known in every frame. It keeps some kilobytes per frame and not the frames themselves.
+#[derive(Clone, Debug)]
+pub struct SegmentedClip {
+    /// Width and height of the frames.
+    pub(super) size: [usize; 2],
+    pub(super) mark_unknown: bool,
+    /// Whether the quality is the best.
+    pub(super) best: bool,
+    /// Whether the clip was segmented as a stream is, with a look-ahead.
+    pub(super) stream: bool,
+    pub(super) dropped: usize,
+    /// The number that each object is given, itself unless it was merged or removed.
+    pub(super) numbers: Vec<u8>,
+    /// By number: whether nothing changes the object.
+    pub(super) locked: Vec<bool>,
+    /// By number: whether the object is a person's, and only annotations of itself change it.
+    pub(super) named: Vec<bool>,
+    /// By number: whether masks of the object were given, which take the place of the object that was found there.
+    pub(super) given: Vec<bool>,
+    /// Of every frame as it was segmented.
+    pub(super) hashes: Vec<u64>,
+    pub(super) frames: Vec<FrameState>,
+}
+
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames });
+
+impl SegmentedClip {
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// Width and height of the frames; 0 if there is none.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Number of objects that were seen when all numbers had been given, and count as background.
+    pub fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// Whether pixels whose evidence does not decide are to have the label 255 from now on.
+    pub fn mark_unknown(&mut self, mark: bool) {
+        self.mark_unknown = mark;
+    }
+
+    /// Indices of the frames in which an object is, by its number of now.
+    pub fn frames_with(&self, object: u8) -> Vec<usize> {
+        let is_it = |(label, _): (u8, usize)| self.numbers[usize::from(label)] == object;
+        let is_there = |frame: &FrameState| {
+            let layers = [Some(&frame.found), frame.layer.as_ref()];
+            layers.into_iter().flatten().any(|layer| layer.labels.each().any(is_it))
+        };
+        (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
+    }
+
+    /// First and last frame of the scene of a frame.
+    pub(super) fn scene(&self, index: usize) -> [usize; 2] {
+        let (mut first, mut last) = (index, index);
+        while self.frames[first].back.is_some() && first > 0 {
+            first -= 1;
+        }
+        while last + 1 < self.len() && self.frames[last + 1].back.is_some() {
+            last += 1;
+        }
+        [first, last]
+    }
+
+    /// The objects that annotations of the scene propagate to a frame. There, nothing that was found under their numbers shows.
+    pub(super) fn user_objects_in(&self, index: usize) -> ObjectSet {
+        let [first, last] = self.scene(index);
+        let mut objects = [false; 256];
+        for t in first..=last {
+            let Some(annotation) = &self.frames[t].annotation else { continue };
+            for &object in &annotation.anchored {
+                let [forward, backward] = annotation.spread_of(object).directions();
+                objects[usize::from(object)] |= t == index || (t < index && forward) || (t > index && backward);
+            }
+        }
+        objects
+    }
+
+    /// The objects that only annotations of themselves change: a person locked or named them, or accepted them in some frame.
+    pub(super) fn protected(&self) -> ObjectSet {
+        let mut protected: ObjectSet = std::array::from_fn(|k| self.locked[k] || self.named[k]);
+        for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
+            layer.labels.each().for_each(|(label, _)| protected[usize::from(label)] = true);
+        }
+        protected[0] = false;
+        protected
+    }
+
+    /// The bytes of this clip, for [`from_bytes`](Self::from_bytes) of the same version.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        CLIP.written(self)
+    }
+
+    /// A clip from its bytes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
+    pub fn from_bytes(bytes: &[u8]) -> Result<SegmentedClip> {
+        let clip: SegmentedClip = CLIP.read(bytes)?;
+        if clip.is_valid() { Ok(clip) } else { Err(CLIP.damaged()) }
+    }
+
+    fn is_valid(&self) -> bool {
+        let [width, height] = self.size;
+        if [self.numbers.len(), self.locked.len(), self.named.len(), self.given.len()] != [256; 4]
+            || self.hashes.len() != self.frames.len()
+        {
+            return false;
+        }
+        if self.frames.is_empty() {
+            return self.size == [0, 0];
+        }
+        if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) {
+            return false;
+        }
+        let [w, h] = self.working_size();
+        self.frames.iter().all(|frame| frame.is_valid(w * h, width * height))
+    }
+
+    pub(super) fn check_index(&self, index: usize) -> Result<()> {
+        let reason = || format!("there is no frame {index} in a clip of {} frames", self.len());
+        if index < self.len() { Ok(()) } else { Err(Error::InvalidOption { name: "frame", reason: reason() }) }
+    }
+
+    pub(super) fn check(&self, index: usize, frame: &Frame) -> Result<()> {
+        self.check_index(index)?;
+        let (first, second) = ((self.size[0], self.size[1]), (frame.width(), frame.height()));
+        if first != second {
+            return Err(Error::FrameSizeMismatch { first, second });
+        }
+        if frame.hash() == self.hashes[index] { Ok(()) } else { Err(Error::OtherFrame { index }) }
+    }
+
+    fn settings(&self) -> Settings {
+        let quality = if self.best { Quality::Best } else { Quality::Fast };
+        let pair = SegmentOptions { quality, ..SegmentOptions::default() };
+        ClipOptions { pair, look_ahead: self.stream.then_some(0) }.settings(self.size)
+    }
+
+    /// Width and height of the working size.
+    pub(super) fn working_size(&self) -> [usize; 2] {
+        self.settings().working_size(self.size)
+    }
+
+    /// Full-size pixels for each pixel of the working size, along a side.
+    pub(super) fn working_step(&self) -> usize {
+        self.size[0].div_ceil(self.working_size()[0]).next_power_of_two()
+    }
+
+    /// The odds of a layer.
+    pub(super) fn odds_of(&self, layer: &Layer) -> Plane {
+        let [width, height] = self.working_size();
+        layer.odds.odds(width, height)
+    }
+
+    /// Labels and odds of a frame as the clip was segmented.
+    pub(super) fn found(&self, index: usize) -> (Vec<u8>, Plane) {
+        let found = &self.frames[index].found;
+        (found.labels.values(), self.odds_of(found))
+    }
+
+    /// Labels of a frame as the clip was segmented, at another size.
+    pub(super) fn found_at(&self, index: usize, [width, height]: [usize; 2]) -> Vec<u8> {
+        let (labels, [w, h]) = (self.frames[index].found.labels.values(), self.working_size());
+        let place = |p: usize| (p / width * h / height).min(h - 1) * w + (p % width * w / width).min(w - 1);
+        (0..width * height).map(|p| labels[place(p)]).collect()
+    }
+
+    /// To the next frame of the scene; after the last one there is none.
+    pub(super) fn onward(&self, index: usize) -> Option<Flow> {
+        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+    }
+
+    /// To the frame before; before the first one of a scene there is none.
+    pub(super) fn back(&self, index: usize) -> Option<Flow> {
+        self.frames[index].back.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+    }
+}

@@ -1,0 +1,207 @@
+//! Segmentation of a whole clip, frame by frame.
+
+use super::description::{ClipFrame, WorkingFrame};
+use super::evidence::{KeptPairs, Pairs};
+use super::frame_state::FrameState;
+use super::grouping::Census;
+use super::identity::{Identities, Parting};
+use super::options::ClipOptions;
+use super::parting::divide;
+use super::runs::Runs;
+use super::saved::{Format, saved};
+use super::segmented_clip::SegmentedClip;
+use super::tracker::{Latest, Tracker};
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::hash::hash;
+use crate::options::{MotionCount, Quality, SegmentOptions};
+
+/// Segments a whole clip. Frames go in one after another; [`conclude`](Self::conclude) gives the segmented clip.
+///
+/// ```
+/// use veronese::clip::{ClipOptions, ClipSegmenter};
+///
+/// # fn main() -> veronese::Result<()> {
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+/// # let frames = [scene.first(), scene.second()];
+/// let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+/// for frame in frames {
+///     segmenter.push(frame.clone())?;
+/// }
+/// let clip = segmenter.conclude();
+/// let first = clip.frame(0, frames[0])?;
+/// assert_eq!(first.labels.len(), 160 * 120);
+/// assert_eq!(first.objects[0].id, 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct ClipSegmenter {
+    tracker: Tracker,
+    frames: Vec<FrameState>,
+    /// Of every frame so far.
+    hashes: Vec<u64>,
+    /// Of the options.
+    options: u64,
+    /// Of what the pairs of the newest frame follow from.
+    origin: u64,
+    /// The objects of the previews, and the index of the last one.
+    previews: (Identities, Option<usize>),
+}
+
+/// The solved pairs of a frame with the one before: nearly all the work of [`ClipSegmenter::push`].
+///
+/// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again. Without a look-ahead
+/// they follow from the two frames and the options alone, so that several segmenters can each solve a part of a clip for another one.
+#[derive(Clone, Debug)]
+pub struct FramePairs {
+    origin: u64,
+    pairs: KeptPairs,
+}
+
+saved!(FramePairs { origin, pairs });
+
+const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR5 ", env!("CARGO_PKG_VERSION"), "\n") };
+
+impl FramePairs {
+    /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        PAIRS.written(self)
+    }
+
+    /// Pairs from their bytes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
+    pub fn from_bytes(bytes: &[u8]) -> Result<FramePairs> {
+        PAIRS.read(bytes)
+    }
+}
+
+impl ClipSegmenter {
+    /// A segmenter for one clip.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
+    pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
+        let tracker = Tracker::new(options, false)?;
+        // What decides how pairs are solved.
+        let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
+        let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
+        let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
+        let options = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
+        let (frames, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(), None));
+        Ok(ClipSegmenter { tracker, frames, hashes, options, origin: options, previews })
+    }
+
+    /// Takes the next frame. What it returns need not be kept.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`]; the clip may go on with another frame.
+    pub fn push(&mut self, frame: Frame) -> Result<FramePairs> {
+        let pairs = self.take(frame, None)?;
+        Ok(FramePairs { origin: self.origin, pairs: pairs.kept() })
+    }
+
+    /// Takes the next frame, whose pairs were solved before by [`push`](Self::push).
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs that were not solved with these options, of this frame and
+    /// the one before it, with a look-ahead all those before it; the frame can be pushed then.
+    pub fn push_known(&mut self, frame: Frame, pairs: &FramePairs) -> Result<()> {
+        self.take(frame, Some(pairs)).map(|_| ())
+    }
+
+    /// The newest frame whose pairs are all solved, with the masks that they tell alone: without the evidence of other frames, and with numbers
+    /// that need not be those of the segmented clip. There is none before there are such pairs, and none twice. Asked after each frame,
+    /// previews are those of all frames but the last, and objects keep their number from one to the next.
+    pub fn preview(&mut self) -> Option<ClipFrame> {
+        let Latest { record, frame, odds } = self.tracker.latest()?;
+        let (objects, last) = &mut self.previews;
+        if last.replace(record.index) != record.index.checked_sub(1) {
+            *objects = Identities::new();
+        }
+        let mask: Vec<u8> = odds.values().iter().map(|&odds| u8::from(odds > 0.0)).collect();
+        let labels = objects.assign(&record, &mask);
+        let mark_unknown = self.tracker.options().pair.mark_unknown;
+        let onward = record.onward.as_ref();
+        let preview = WorkingFrame { index: record.index, labels: &labels, odds: &odds, onward, mark_unknown };
+        Some(preview.described(frame.luminance()))
+    }
+
+    fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
+        let size = [frame.width(), frame.height()];
+        let own = frame.hash();
+        // A stream follows what it found in the frames before.
+        let before = match (self.tracker.options().look_ahead, self.hashes.last()) {
+            (None, Some(last)) => hash(self.options, &last.to_le_bytes()),
+            _ => self.origin,
+        };
+        let origin = hash(before, &own.to_le_bytes());
+        let working = self.tracker.options().settings(size).working_size(size);
+        let is_of_these = |known: &FramePairs| known.origin == origin && known.pairs.is_valid(working[0] * working[1]);
+        if !known.is_none_or(is_of_these) {
+            return Err(invalid("pairs", "they are of other frames or options"));
+        }
+        let (tracked, pairs) = self.tracker.push(frame, known.map(|known| known.pairs.pairs(working)))?;
+        self.frames.extend(tracked.map(FrameState::new));
+        self.hashes.push(own);
+        self.origin = origin;
+        Ok(pairs)
+    }
+
+    /// The clip of the frames so far.
+    pub fn conclude(mut self) -> SegmentedClip {
+        let size = self.tracker.size().unwrap_or_default();
+        let ClipOptions { pair: options, look_ahead } = *self.tracker.options();
+        let dropped = self.tracker.dropped();
+        self.frames.extend(self.tracker.finish().into_iter().map(FrameState::new));
+        if let Some(last) = self.frames.last_mut() {
+            last.onward = None;
+        }
+        // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
+        if look_ahead.is_none() {
+            let width = self.tracker.options().settings(size).working_size(size)[0];
+            self.part(width);
+            self.group(width);
+        }
+        let numbers = (0..=u8::MAX).collect();
+        let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
+        let stream = look_ahead.is_some();
+        let ClipSegmenter { hashes, frames, .. } = self;
+        let [locked, named, given] = [(); 3].map(|()| vec![false; 256]);
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames }
+    }
+
+    /// Divides what was one object before it was two.
+    fn part(&mut self, width: usize) {
+        for &Parting { frame, from, new } in self.tracker.parted().iter().rev() {
+            for t in (0..frame).rev() {
+                let [Some(here), Some(later)] = [t, t + 1].map(|t| self.frames.get(t)) else { break };
+                let Some(onward) = here.onward.as_ref().map(|flow| flow.flow(width)) else { break };
+                let mut labels = here.found.labels.values();
+                if !divide(&mut labels, &later.found.labels.values(), &onward, from, new) {
+                    break;
+                }
+                self.frames[t].found.labels = Runs::of(&labels);
+            }
+        }
+    }
+
+    /// Gives the objects the numbers that the whole clip tells.
+    fn group(&mut self, width: usize) {
+        let mut census = Census::new();
+        for (index, frame) in self.frames.iter().enumerate() {
+            let onward = frame.onward.as_ref().map(|flow| flow.flow(width));
+            census.add(index, &frame.found.labels.values(), width, onward.as_ref(), frame.back.is_none());
+        }
+        let numbers = census.final_numbers();
+        for frame in &mut self.frames {
+            frame.found.labels = frame.found.labels.map(|label| numbers[usize::from(label)]);
+        }
+    }
+}
+
+fn invalid(name: &'static str, reason: &str) -> Error {
+    Error::InvalidOption { name, reason: reason.into() }
+}
