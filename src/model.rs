@@ -218,6 +218,9 @@ model! {
     /// Odds of a first guess, nats: the cut of the first round, what was found where a person begins, the middle of a box or of a disc,
     /// votes, and at most those of labels found automatically. 1.5 costs .004 J where a mask is given, .03 where a click is. Real.
     guess: f32 = 2.0;
+    /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .006 J after the second
+    /// round of strokes, and rounds lose in five clips of twelve instead of one; 2 costs .004 after the first. Real.
+    seen: f32 = 1.0;
     /// Odds within which evidence does not tell an object from ground, nats: probabilities of .27 to .73. Also what it costs a pixel to
     /// leave the objects of its motion, half of what it costs to leave its own. Real; insensitive.
     undecided: f32 = 1.0;

@@ -221,7 +221,7 @@ fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
 }
 
 /// Length of the mark before what is kept.
-const MARK: usize = concat!("VERCLIP5 ", env!("CARGO_PKG_VERSION"), "\n").len();
+const MARK: usize = concat!("VERCLIP6 ", env!("CARGO_PKG_VERSION"), "\n").len();
 
 /// Bytes with one bit changed, cut off, left out, added.
 fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {

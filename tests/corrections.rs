@@ -353,6 +353,32 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
 }
 
 #[test]
+fn one_that_is_locked_together_with_its_mask_has_the_mask() {
+    let mut shot = crossing();
+    let corrections = vec![Painted { frame: 0, object: None, labels: shot.mask(0, 1, 1), spread: Spread::Both }];
+    let mut unlocked = shot.clone();
+    annotate(
+        &mut unlocked.clip,
+        &unlocked.frames,
+        Annotations { corrections: corrections.clone(), ..Annotations::default() },
+    );
+    annotate(
+        &mut shot.clip,
+        &shot.frames,
+        Annotations { corrections, locked: Some(vec![1]), ..Annotations::default() },
+    );
+    assert_eq!(shot.labels(), unlocked.labels());
+    // From now on it is locked.
+    let more = vec![Painted { frame: 1, object: None, labels: shot.mask(1, 1, 1), spread: Spread::Both }];
+    let error = shot.clip.annotate(Annotations { corrections: more, ..Annotations::default() }).unwrap_err();
+    assert!(matches!(error, Error::ObjectLocked { object: 1 }), "{error}");
+    // It does not grow by another one either.
+    let other = (2..255).find(|&k| !shot.clip.frames_with(k).is_empty()).unwrap();
+    let error = shot.clip.annotate(Annotations { numbers: vec![[other, 1]], ..Annotations::default() }).unwrap_err();
+    assert!(matches!(error, Error::ObjectLocked { object: 1 }), "{error}");
+}
+
+#[test]
 fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
     let start = three();
     let (number, found) = (start.found(1), start.state());

@@ -93,17 +93,17 @@ impl FrameCorrection {
     pub(super) fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame, changes: &mut Changes) -> Result<()> {
         let Some(index) = self.wanted() else { return Ok(()) };
         clip.check(index, frame)?;
-        let seen = Seen { index, frame, features: &FrameFeatures::new(frame) };
+        let arrived = Arrived { index, frame, features: &FrameFeatures::new(frame) };
         if let Some(change) = self.change.take() {
-            self.begin(clip, &seen, change, changes);
+            self.begin(clip, &arrived, change, changes);
         }
         // A frame may be wanted for several tasks after one another.
         while let Some(visit) = self.visits.pop_if(|visit| visit.frame == index) {
             match &visit.task {
-                Task::Learn(objects) => self.learn(clip, &seen, objects),
-                Task::Anchor => self.propagate(clip, &seen, Direction::Backward, false, changes),
+                Task::Learn(objects) => self.learn(clip, &arrived, objects),
+                Task::Anchor => self.propagate(clip, &arrived, Direction::Backward, false, changes),
                 Task::Propagate { direction, is_kept } => {
-                    self.propagate(clip, &seen, *direction, *is_kept, changes);
+                    self.propagate(clip, &arrived, *direction, *is_kept, changes);
                 }
             }
         }
@@ -115,14 +115,14 @@ impl FrameCorrection {
 
     /// Takes the annotation, changes its frame at once if it is new, and plans the visits.
     #[inline(never)]
-    fn begin(&mut self, clip: &mut SegmentedClip, seen: &Seen<'_>, change: Change, changes: &mut Changes) {
+    fn begin(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, change: Change, changes: &mut Changes) {
         let before = clip.frames[self.index].annotation.clone().unwrap_or_default();
-        let shown = clip.shown(self.index, seen.frame.luminance());
+        let shown = clip.shown(self.index, arrived.frame.luminance());
         let mut now = before.clone();
         match change {
             Change::Painted(painted) => painted.iter().for_each(|painted| now.paint(painted)),
             Change::Prompt(prompt) => {
-                let labels = outline(clip, self.index, seen.frame, seen.features, &shown, &prompt);
+                let labels = outline(clip, self.index, arrived.frame, arrived.features, &shown, &prompt);
                 now.point(prompt, &labels);
             }
         }
@@ -149,7 +149,11 @@ impl FrameCorrection {
         self.visits = visits(self.scene, &members, &found);
         self.groups = members.into_iter().map(|members| Group::new(members, last + 1)).collect();
         if is_new {
-            self.at_once(clip, seen, &shown, changes);
+            self.at_once(clip, arrived, &shown, changes);
+            let labels = clip.frames[self.index].layer.as_ref().map(|layer| layer.labels.values()).unwrap_or_default();
+            if let Some(annotation) = &mut clip.frames[self.index].annotation {
+                annotation.keep_seen(&labels, &changing);
+            }
         }
     }
 
@@ -168,11 +172,11 @@ impl FrameCorrection {
 
     /// The annotated frame at once, by the labels that it has shown so far.
     #[inline(never)]
-    fn at_once(&mut self, clip: &mut SegmentedClip, seen: &Seen<'_>, shown: &[u8], changes: &mut Changes) {
-        let Seen { index, features, .. } = *seen;
+    fn at_once(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, shown: &[u8], changes: &mut Changes) {
+        let Arrived { index, features, .. } = *arrived;
         let shown = at_features(shown, UNANNOTATED, clip.size()[0], features);
         let seeds = |object: u8| clip.seeds_at(index, object, features);
-        let scene = Scene { features, seeds: &seeds, found: &shown, flows: None };
+        let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &shown, flows: None };
         let mut proposals = Vec::new();
         for &object in self.groups.iter().flat_map(|group| &group.changing) {
             let anchor = Anchor { frame: index, spread: Spread::Both };
@@ -181,12 +185,12 @@ impl FrameCorrection {
             let mut group = Group { tracks: vec![track], changing: vec![object] };
             proposals.append(&mut group.visit(index, Direction::Forward, false, &scene));
         }
-        self.compose(clip, seen, &proposals, changes);
+        self.compose(clip, arrived, &proposals, changes);
     }
 
     /// Learns annotations that spread to all frames, and the appearance of objects found automatically.
-    fn learn(&mut self, clip: &SegmentedClip, seen: &Seen<'_>, objects: &[u8]) {
-        let Seen { index, features, .. } = *seen;
+    fn learn(&mut self, clip: &SegmentedClip, arrived: &Arrived<'_>, objects: &[u8]) {
+        let Arrived { index, features, .. } = *arrived;
         let found = clip.found_at(index, features.size);
         for track in self.groups.iter_mut().flat_map(|group| &mut group.tracks) {
             if track.anchor(index).is_some_and(|anchor| anchor.spread == Spread::Both)
@@ -203,12 +207,12 @@ impl FrameCorrection {
     fn propagate(
         &mut self,
         clip: &mut SegmentedClip,
-        seen: &Seen<'_>,
+        arrived: &Arrived<'_>,
         direction: Direction,
         is_kept: bool,
         changes: &mut Changes,
     ) {
-        let (Seen { index: t, features, .. }, [first, last]) = (*seen, self.scene);
+        let (Arrived { index: t, features, .. }, [first, last]) = (*arrived, self.scene);
         let found = clip.found_at(t, features.size);
         let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(features.size));
         let [to, from] = match direction {
@@ -217,13 +221,14 @@ impl FrameCorrection {
         };
         let seeds = |object: u8| clip.seeds_at(t, object, features);
         let flows = to.as_ref().zip(from.as_ref()).map(|(to, from)| [to, from]);
-        let scene = Scene { features, seeds: &seeds, found: &found, flows };
+        let seen = |object: u8| clip.seen_at(t, object, features);
+        let scene = Scene { features, seeds: &seeds, seen: &seen, found: &found, flows };
         let mut proposals = Vec::new();
         for group in &mut self.groups {
             proposals.append(&mut group.visit(t, direction, is_kept, &scene));
         }
         if !is_kept {
-            self.compose(clip, seen, &proposals, changes);
+            self.compose(clip, arrived, &proposals, changes);
             self.is_done[t - first] = true;
         }
     }
@@ -233,7 +238,7 @@ impl FrameCorrection {
     fn compose(
         &mut self,
         clip: &mut SegmentedClip,
-        &Seen { index, frame, features }: &Seen<'_>,
+        &Arrived { index, frame, features }: &Arrived<'_>,
         proposals: &[(u8, Option<Proposal>)],
         changes: &mut Changes,
     ) {
@@ -273,7 +278,7 @@ impl FrameCorrection {
 
 /// A frame that has come.
 #[derive(Clone, Copy)]
-struct Seen<'a> {
+struct Arrived<'a> {
     index: usize,
     frame: &'a Frame,
     features: &'a FrameFeatures,

@@ -1,6 +1,6 @@
 //! A person's annotations of one frame, as they were given, and the seeds of each object that follow from them.
 
-use super::annotation::{Painted, Prompt, Seed, Spread, UNANNOTATED};
+use super::annotation::{ObjectSet, Painted, Prompt, Seed, Spread, UNANNOTATED};
 use super::options::model;
 use super::runs::Runs;
 use super::saved::saved;
@@ -17,13 +17,15 @@ pub(super) struct FrameAnnotation {
     pieces: Vec<(u8, Runs)>,
     /// By object, ascending: 1 where it was when strokes were first drawn in the frame.
     bases: Vec<(u8, Runs)>,
+    /// By object, ascending: 1 where it was right after it was annotated with strokes, which a person has seen.
+    seen: Vec<(u8, Runs)>,
     /// Objects that are propagated from here.
     pub(super) anchored: Vec<u8>,
     /// Other objects of a user that a label map which names none takes pixels from.
     pub(super) takes_from: Vec<u8>,
 }
 
-saved!(FrameAnnotation { painted, prompts, pieces, bases, anchored, takes_from });
+saved!(FrameAnnotation { painted, prompts, pieces, bases, seen, anchored, takes_from });
 
 /// A label of each full-size pixel, or 255 for nothing.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +62,7 @@ impl FrameAnnotation {
 
     pub(super) fn is_valid(&self, pixels: usize) -> bool {
         let painted = self.painted.iter().map(|strokes| &strokes.labels);
-        let pieces = self.pieces.iter().chain(&self.bases).map(|(_, labels)| labels);
+        let pieces = self.pieces.iter().chain(&self.bases).chain(&self.seen).map(|(_, labels)| labels);
         painted.chain(self.prompts.iter().map(|of| &of.labels)).chain(pieces).all(|labels| labels.is_valid(pixels))
     }
 
@@ -228,6 +230,22 @@ impl FrameAnnotation {
     /// Where an object was before strokes were drawn: 1 at its pixels. There is none without strokes.
     pub(super) fn base(&self, object: u8) -> Option<Vec<u8>> {
         self.bases.iter().find(|(of, _)| *of == object).map(|(_, base)| base.values())
+    }
+
+    /// Keeps where changed objects with strokes are in the labels of the frame.
+    #[inline(never)]
+    pub(super) fn keep_seen(&mut self, labels: &[u8], changing: &ObjectSet) {
+        let seen = |k: u8| {
+            let known = self.seen.iter().find(|(of, _)| *of == k && !changing[usize::from(k)]);
+            let now = || Runs::of(&labels.iter().map(|&label| u8::from(label == k)).collect::<Vec<u8>>());
+            (k, known.map_or_else(now, |(_, seen)| seen.clone()))
+        };
+        self.seen = self.bases.iter().map(|(k, _)| seen(*k)).filter(|(_, seen)| seen.names(1)).collect();
+    }
+
+    /// Where an object was right after strokes were drawn, if it was anywhere: 1 at its pixels.
+    pub(super) fn seen(&self, object: u8) -> Option<Vec<u8>> {
+        self.seen.iter().find(|(of, _)| *of == object).map(|(_, seen)| seen.values())
     }
 
     fn names_in_map(&self, object: u8) -> bool {

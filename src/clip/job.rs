@@ -56,6 +56,8 @@ impl SegmentedClip {
 pub struct ClipJob {
     steps: VecDeque<Step>,
     correction: Option<FrameCorrection>,
+    /// Objects that are locked when all steps are done.
+    locks: Vec<u8>,
     /// Objects and their new numbers, when all steps are done.
     numbers: Vec<[u8; 2]>,
     changes: Changes,
@@ -74,8 +76,9 @@ impl ClipJob {
         if let Some(object) = said_of_locked(clip, &annotations) {
             return Err(Error::ObjectLocked { object });
         }
+        let locks = locked_last(clip, &annotations);
         let Annotations { mut masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
-        let mut job = ClipJob { steps: VecDeque::new(), correction: None, numbers, changes: Changes::default() };
+        let mut job = ClipJob { steps: VecDeque::new(), correction: None, locks, numbers, changes: Changes::default() };
         let mut is_given = [false; 256];
         masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
         let given: Vec<u8> = (1..UNANNOTATED).filter(|&label| is_given[usize::from(label)]).collect();
@@ -89,6 +92,7 @@ impl ClipJob {
                 objects.iter().for_each(|&object| set[usize::from(object)] = true);
             }
         }
+        job.locks.iter().for_each(|&object| clip.locked[usize::from(object)] = false);
         if let Some(accepted) = accepted {
             for (index, frame) in clip.frames.iter_mut().enumerate() {
                 frame.accepted &= accepted.iter().any(|of| of.frame == index);
@@ -104,7 +108,7 @@ impl ClipJob {
         }
         job.steps.extend(painted(&masks, &corrections));
         job.steps.extend(prompts.into_iter().map(|prompt| Step::Correct(prompt.frame, Change::Prompt(prompt))));
-        job.renumber(clip);
+        job.conclude(clip);
         Ok(job)
     }
 
@@ -147,13 +151,14 @@ impl ClipJob {
                 self.correction = None;
             }
         }
-        self.renumber(clip);
+        self.conclude(clip);
         Ok(())
     }
 
-    /// Gives objects their new numbers once all else is done.
-    fn renumber(&mut self, clip: &mut SegmentedClip) {
+    /// Locks objects and gives them their new numbers once all else is done.
+    fn conclude(&mut self, clip: &mut SegmentedClip) {
         if self.wanted().is_none() {
+            std::mem::take(&mut self.locks).into_iter().for_each(|object| clip.locked[usize::from(object)] = true);
             for numbers in std::mem::take(&mut self.numbers) {
                 clip.renumber(numbers).into_iter().for_each(|frame| self.changes.add(frame));
             }
@@ -182,13 +187,26 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
     frames.into_iter().map(|(index, painted)| Step::Correct(index, Change::Painted(painted))).collect()
 }
 
-/// A locked object that the annotations say anything new of.
+/// The objects that are locked together with annotations of themselves, which hold.
+fn locked_last(clip: &SegmentedClip, annotations: &Annotations) -> Vec<u8> {
+    let Annotations { masks, corrections, prompts, locked, .. } = annotations;
+    let is_about = |object: u8| {
+        let names =
+            |painted: &Painted| painted.object.map_or_else(|| painted.labels.contains(&object), |of| of == object);
+        masks.iter().chain(corrections).any(names) || prompts.iter().any(|prompt| prompt.object == object)
+    };
+    let is_new = |object: &u8| !clip.locked[usize::from(*object)] && is_about(*object);
+    locked.iter().flatten().copied().filter(is_new).collect()
+}
+
+/// An object that was locked before and stays so, of which the annotations say anything new.
 fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
     let Annotations { corrections, prompts, locked, numbers, .. } = annotations;
-    let is_locked = |object: &u8| match locked {
+    let stays_locked = |object: &u8| match locked {
         Some(locked) => locked.contains(object),
         None => clip.locked[usize::from(*object)],
     };
+    let is_locked = |object: &u8| clip.locked[usize::from(*object)] && stays_locked(object);
     let before = |frame: usize| clip.frames[frame].annotation.clone().unwrap_or_default();
     let painted = |painted: &Painted| {
         let before = before(painted.frame);
@@ -198,11 +216,14 @@ fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8>
     };
     let prompted =
         |prompt: &&Prompt| is_locked(&prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt);
-    let deleted =
-        |[object, number]: &&[u8; 2]| *number == 0 && is_locked(object) && !clip.frames_with(*object).is_empty();
+    // An object cannot be deleted and locked at once, and a locked one does not grow.
+    let edited = |[object, number]: &&[u8; 2]| {
+        let is_kept = if *number == 0 { stays_locked(object) } else { number != object && is_locked(number) };
+        is_kept && !clip.frames_with(*object).is_empty()
+    };
     corrections
         .iter()
         .find_map(painted)
         .or_else(|| prompts.iter().find(prompted).map(|prompt| prompt.object))
-        .or_else(|| numbers.iter().find(deleted).map(|[object, _]| *object))
+        .or_else(|| numbers.iter().find(edited).map(|[object, number]| if *number == 0 { *object } else { *number }))
 }

@@ -11,7 +11,7 @@ use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
 use crate::options::{Quality, SegmentOptions};
 use crate::pair::settings::Settings;
 
-const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP5 ", env!("CARGO_PKG_VERSION"), "\n") };
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP6 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 /// A clip whose objects are known in every frame. It keeps some kilobytes per frame and not the frames themselves.
 #[derive(Clone, Debug)]

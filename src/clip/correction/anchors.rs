@@ -84,6 +84,13 @@ impl SegmentedClip {
         Some((at_features(&seeds, Seed::Nothing, self.size()[0], features), spread))
     }
 
+    /// 1 where a person has seen an object of a frame when strokes were drawn, at the size of the features.
+    #[inline(never)]
+    pub(super) fn seen_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<Vec<u8>> {
+        let seen = self.frames[t].annotation.as_ref()?.seen(object)?;
+        Some(at_features(&seen, u8::MAX, self.size()[0], features))
+    }
+
     /// How an annotation covers each object found automatically, by number.
     #[inline(never)]
     fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {

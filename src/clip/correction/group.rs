@@ -17,6 +17,8 @@ pub(super) struct Scene<'a> {
     pub(super) features: &'a FrameFeatures,
     /// The seeds of an object by its number, if there are any, and where they spread.
     pub(super) seeds: &'a dyn Fn(u8) -> Option<(Vec<Seed>, Spread)>,
+    /// 1 where a person has seen an object, by its number, when strokes were drawn.
+    pub(super) seen: &'a dyn Fn(u8) -> Option<Vec<u8>>,
     /// Labels found automatically.
     pub(super) found: &'a [u8],
     /// From this frame to the one before in the direction of the propagation, and from that one to this.
@@ -47,14 +49,17 @@ impl Group {
     ) -> Vec<(u8, Option<Proposal>)> {
         let seeds: Vec<Option<(Vec<Seed>, Spread)>> =
             self.tracks.iter().map(|track| (scene.seeds)(track.object)).collect();
+        let seen: Vec<Option<Vec<u8>>> = self.tracks.iter().map(|track| (scene.seen)(track.object)).collect();
         let observations: Vec<Observation<'_>> = self
             .tracks
             .iter()
             .zip(&seeds)
-            .map(|(track, seeds)| Observation {
+            .zip(&seen)
+            .map(|((track, seeds), seen)| Observation {
                 features: scene.features,
                 found: scene.found,
                 flows: scene.flows,
+                seen: seen.as_deref(),
                 seeds: seeds.as_ref().map(|(seeds, _)| &seeds[..]),
                 is_anchor: track.anchor(frame).is_some(),
                 spreads: seeds.as_ref().is_none_or(|(_, spread)| spread.directions()[direction as usize]),
@@ -172,7 +177,7 @@ mod tests {
         let found = vec![0; features.pixels()];
         for t in 0..3 {
             let seeds = |number: u8| (t == 0).then(|| (of_object(&said, number), Spread::Both));
-            let scene = Scene { features: &features, seeds: &seeds, found: &found, flows: None };
+            let scene = Scene { features: &features, seeds: &seeds, seen: &|_| None, found: &found, flows: None };
             let proposals = group.visit(t, Direction::Forward, false, &scene);
             let mut owners = vec![0; features.pixels()];
             for (number, proposal) in proposals {
@@ -216,7 +221,7 @@ mod tests {
             }
             let mut group = Group { tracks: vec![track], changing: vec![1] };
             let seeds = |number: u8| Some((of_object(&here, number), Spread::Both));
-            let scene = Scene { features: &features, seeds: &seeds, found: &found, flows: None };
+            let scene = Scene { features: &features, seeds: &seeds, seen: &|_| None, found: &found, flows: None };
             let proposals = group.visit(0, Direction::Forward, true, &scene);
             let proposal = proposals[0].1.as_ref().unwrap();
             let of = |part: usize| {
@@ -266,7 +271,7 @@ mod tests {
             };
             let flows = [flow(t, -4.0), flow(t.saturating_sub(1), 4.0)];
             let flows = (t > 0).then_some([&flows[0], &flows[1]]);
-            let scene = Scene { features: &features, seeds: &seeds, found: &found, flows };
+            let scene = Scene { features: &features, seeds: &seeds, seen: &|_| None, found: &found, flows };
             for (number, proposal) in group.visit(t, Direction::Forward, false, &scene) {
                 let proposal = proposal.unwrap();
                 let mut own = vec![false; truth.len()];

@@ -29,6 +29,8 @@ pub(super) struct Observation<'a> {
     /// From this frame to the one before in the direction of the propagation, and from that one to this.
     pub(super) flows: Option<[&'a Flow; 2]>,
     pub(super) seeds: Option<&'a [Seed]>,
+    /// 1 where a person has seen the object when strokes were drawn.
+    pub(super) seen: Option<&'a [u8]>,
     /// Whether the seeds are of an anchor of the object. Else they count only where they contradict its propagation.
     pub(super) is_anchor: bool,
     /// Whether the annotation spreads in this direction.
@@ -64,6 +66,17 @@ pub(super) struct Propagator {
     label_evidence: LabelEvidence,
     /// Whether it has learnt the annotations that spread to all frames.
     knows_annotations: bool,
+}
+
+impl Observation<'_> {
+    /// Odds of the object because a person has seen where it is, nats.
+    fn odds_seen(&self, p: usize) -> f32 {
+        match self.seen {
+            Some(seen) if seen[p] > 0 => model().seen,
+            Some(_) => -model().seen,
+            None => 0.0,
+        }
+    }
 }
 
 impl Propagator {
@@ -142,6 +155,7 @@ impl Propagator {
                 *odds = trust[usize::from(*odds < 0.0)] * *odds + model().bias + model().memory * logit(remembered);
             }
         }
+        odds.iter_mut().enumerate().for_each(|(p, odds)| *odds += of.odds_seen(p));
         let proposal = Proposal::solved(features, area, odds, of.seeds);
         let mask = proposal.plane(features);
         let centre = centre_of(&mask).unwrap_or(centre);
@@ -214,7 +228,11 @@ impl Propagator {
         let odds = area.pixels(width).enumerate().map(|(k, p)| {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             let evidence = self.label_evidence.ratio(of.found[p]);
-            let z = model().bias + weight * logit(carried.values()[p]) + model().memory * memory + evidence;
+            let z = of.odds_seen(p)
+                + model().bias
+                + weight * logit(carried.values()[p])
+                + model().memory * memory
+                + evidence;
             // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
             let most = if hidden.is_some() && carried.values()[p] < model().few {
                 -model().undecided
