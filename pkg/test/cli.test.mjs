@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, openSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette, fitMotions, groupLabels, segmentPair } from 'veronese';
@@ -52,21 +53,6 @@ describe('veronese pair', () => {
     const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true });
     assert.deepEqual(timeless(found), timeless(withoutLabels(direct)));
     assert.equal(json(await veronese(['pair', first, second, '--motions=auto'])).settings.motions, 'auto');
-  });
-
-  test('--seed does nothing, and a line on stderr says so', async (t) => {
-    const { folder, first, second } = frames(t);
-    const without = await veronese(['pair', first, second]);
-    assert.equal(without.stderr, '');
-    const run = await veronese(['pair', first, second, '--seed', '42']);
-    assert.equal(run.code, 0);
-    assert.match(run.stderr, /^veronese: warning: '--seed' of 'pair' does nothing[^\n]*\n$/);
-    assert.deepEqual(timeless(JSON.parse(run.stdout)), timeless(json(without)));
-    for (const args of [['batch', first, second], ['clip', first, second, '--out', folder.path('out')]]) {
-      const { code, stderr } = await veronese([...args, '--seed', '42']);
-      assert.equal(code, 0, stderr);
-      assert.match(stderr, /^veronese: warning: '--seed' of '(batch|clip)' does nothing[^\n]*\n$/);
-    }
   });
 
   for (const grouped of [false, true]) {
@@ -310,9 +296,11 @@ describe('usage', () => {
     'three frames': ['usage', ['pair', 'a', 'b', 'c']],
     'no points': ['usage', ['points']],
     'two files of points': ['usage', ['points', 'a', 'b']],
-    'an unknown option': ['usage', ['pair', 'a', 'b', '--speed', '3']],
-    'an unknown short option': ['usage', ['pair', 'a', 'b', '-x']],
-    'an option of the other command': ['usage', ['points', 'a', '--quality', 'best']],
+    'an unknown option': ['wrong-usage', ['pair', 'a', 'b', '--speed', '3']],
+    'an unknown short option': ['wrong-usage', ['pair', 'a', 'b', '-x']],
+    'an option of the other command': ['wrong-usage', ['points', 'a', '--quality', 'best']],
+    'a seed of a pair': ['wrong-usage', ['pair', 'a', 'b', '--seed', '1']],
+    'a frame before': ['wrong-usage', ['pair', 'a', 'b', '--before', 'c']],
     'an option without its value': ['usage', ['pair', 'a', 'b', '--out']],
     'an empty value': ['usage', ['pair', 'a', 'b', '--out', '']],
     'an empty name': ['usage', ['pair', '', 'b']],
@@ -328,19 +316,12 @@ describe('usage', () => {
     'a negative seed': ['invalid-option', ['points', 'a', '--seed=-1']],
     'a clip without frames': ['usage', ['clip', '--out', 'a']],
     'a clip without --out': ['usage', ['clip', 'a']],
-    'an option of pairs for a clip': ['usage', ['clip', 'a', '--out', 'b', '--grouped']],
+    'an option of pairs for a clip': ['wrong-usage', ['clip', 'a', '--out', 'b', '--grouped']],
     'a look-ahead below 0': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead=-1']],
     'a look-ahead above 8': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', '9']],
     'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
     'a seed too large': ['invalid-option', ['points', 'a', '--seed', '9007199254740992']],
   };
-  for (const args of [['pair', 'a', 'b', '--before', 'c'], ['batch', 'a', '--with-before'], ['video', 'a', '--with-before']]) {
-    test(`'${args.join(' ')}' names what replaces it`, async () => {
-      const run = await veronese(args);
-      checkError(run, 2, 'wrong-usage');
-      assert.match(run.stderr, /veronese clip/);
-    });
-  }
   for (const [title, [code, args]] of Object.entries(wrong)) {
     test(`${title} is wrong`, async () => checkError(await veronese(args), 2, code));
   }
@@ -350,7 +331,7 @@ describe('usage', () => {
       const { code, stdout, stderr } = await veronese(args);
       assert.equal(code, 0);
       assert.equal(stderr, '');
-      for (const word of ['pair', 'points', 'clip', '--look-ahead', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
+      for (const word of ['pair', 'points', 'clip', '--look-ahead', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--force', '--method']) {
         assert.ok(stdout.includes(word), word);
       }
     }
@@ -361,24 +342,27 @@ describe('usage', () => {
 
 describe('Output', () => {
   const text = (name) => ({ name, bytes: Buffer.from(name) });
+  const made = (t) => {
+    const folder = temporaryFolder(t).path('.');
+    return { folder, output: new Output(folder, { force: false }) };
+  };
 
   test('a failure in the middle leaves the files of before, whole', async (t) => {
-    const folder = temporaryFolder(t);
+    const { folder, output } = made(t);
     const broken = { name: 'result.json', bytes: Symbol('cannot be written') };
-    await new Output().write(folder.path('.'), [{ name: 'labels.png', bytes: Buffer.from('old') }]);
-    await assert.rejects(new Output().write(folder.path('.'), [text('labels.png'), broken]), { code: 'write-failed' });
-    assert.deepEqual(entries(folder.path('.')), ['labels.png']);
-    assert.equal(readFileSync(folder.path('labels.png'), 'utf8'), 'old');
+    await output.writeAll([{ name: 'labels.png', bytes: Buffer.from('old') }]);
+    await assert.rejects(output.writeAll([text('labels.png'), broken]), { code: 'write-failed' });
+    assert.deepEqual(entries(folder), ['labels.png']);
+    assert.equal(readFileSync(join(folder, 'labels.png'), 'utf8'), 'old');
   });
 
   test('discard in the middle removes what is half-written', async (t) => {
-    const folder = temporaryFolder(t);
-    const output = new Output();
-    const writing = output.write(folder.path('.'), [text('a'), text('b'), text('c')]);
-    while (readdirSync(folder.path('.')).length === 0) await new Promise((resolve) => setImmediate(resolve));
+    const { folder, output } = made(t);
+    const writing = output.writeAll([text('a'), text('b'), text('c')]);
+    while (readdirSync(folder).length === 0) await new Promise((resolve) => setImmediate(resolve));
     output.discard();
     await writing.catch(() => {});
-    const left = entries(folder.path('.'));
+    const left = entries(folder);
     assert.ok(left.every((name) => 'abc'.includes(name)), left.join());
   });
 });

@@ -8,11 +8,8 @@ import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { decode } from 'fast-png';
-import { davisPalette, segmentClip, version } from 'veronese';
+import { davisPalette, segmentClip } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
-import { parseCommand } from '../build/cli/arguments.js';
-import { KeptClip } from '../build/cli/clip-kept.js';
-import { Ledger } from '../build/cli/ledger.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { frame, png } from './support/frames.mjs';
 import * as three from './support/three.mjs';
@@ -127,26 +124,6 @@ describe('veronese clip --corrections', () => {
       await run([frames, '--out', out]);
       assert.deepEqual(tree(out), base);
     }
-  });
-
-  test('what another version has kept counts as unknown', async (t) => {
-    const { frames, corrections, said, out } = clip(t);
-    const args = [frames, '--out', out];
-    await run(args);
-    const base = tree(out);
-    const hashes = tree(frames);
-    const files = Array.from({ length: COUNT }, (_, k) => ({ sha256: hashes[`f${k}.png`] }));
-    const { command: { options } } = parseCommand(['clip', '--quality', 'fast', ...args]);
-    const kept = new KeptClip(await Ledger.open(out), out, { ...options, markUnknown: undefined, software: `veronese ${version}` }, files);
-    const old = (bytes, mark) => new TextEncoder().encode(mark).reduce((all, byte, at) => all.with(at, byte), bytes);
-    await kept.keepState(old(kept.state(), 'VERCLIP2'));
-    assert.notDeepEqual(tree(out), base);
-    said('edits.json', '{"delete": [1]}');
-    const { lines } = await run([...args, '--corrections', corrections]);
-    assert.deepEqual(lines.at(-1), { done: true, objects: 0 });
-    rmSync(join(corrections, 'edits.json'));
-    await run(args);
-    assert.deepEqual(tree(out), base);
   });
 
   test('takes masks of other programs', async (t) => {

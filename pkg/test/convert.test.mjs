@@ -34,7 +34,7 @@ async function converted(...args) {
 async function refused(args, code, sentence) {
   const answer = await veronese(['convert', ...args]);
   assert.equal(answer.stdout, '');
-  assert.equal(answer.code, code === 'usage' || code === 'invalid-option' ? 2 : 1, answer.stderr);
+  assert.equal(answer.code, ['usage', 'wrong-usage', 'invalid-option'].includes(code) ? 2 : 1, answer.stderr);
   assert.ok(answer.stderr.startsWith(`veronese: error: ${code}: `), answer.stderr);
   assert.match(answer.stderr, sentence);
 }
@@ -111,7 +111,7 @@ describe('veronese convert', () => {
     const files = readdirSync(out);
     await refused([out], 'usage', /needs '--to FORMATS'/);
     await refused(['--to', 'coco'], 'usage', /takes one folder/);
-    await refused([out, '--to', 'coco', '--overlay'], 'usage', /has no option '--overlay'/);
+    await refused([out, '--to', 'coco', '--overlay'], 'wrong-usage', /has no option '--overlay'/);
     await refused([out, '--to', 'coco,xyz'], 'invalid-option', /not 'coco,xyz'/);
     await refused([out, '--to', 'toString'], 'invalid-option', /toString/);
     await refused([folder.path(), '--to', 'coco'], 'file-not-found', /labels\.png/);

@@ -63,11 +63,6 @@ async function refused(args, out, path, code = 'file-exists') {
   assert.deepEqual(tree(out), before);
 }
 
-/** Text that is a file's content as it was before version 0.1.0 had a list: what `pair`, `batch` and `clip` left. */
-function asBefore(out) {
-  for (const entry of readdirSync(out, { recursive: true })) if (entry.endsWith('.veronese')) rmSync(join(out, entry));
-}
-
 describe('files of others', () => {
   const places = {
     pair: ['labels.png', 'result.json', 'mask-0.png', 'mask-9.png'],
@@ -101,33 +96,19 @@ describe('files of others', () => {
       assert.ok(!entries(out).some((name) => name.startsWith('overlay')), 'its own overlays go');
     });
 
-    test(`${command} does not overwrite a file of its own that was edited since`, async (t) => {
-      const { commands, out } = made(t);
+    test(`${command} does not overwrite a file of its own that was edited since, unless it is told to`, async (t) => {
+      const { commands, out, place } = made(t);
       await done(commands[command]);
       const path = { pair: 'labels.png', batch: '000001-f1/labels.png', clip: 'labels/f1.png' }[command];
+      const before = readFileSync(join(out, path));
       appendFileSync(join(out, path), 'a stroke');
       await refused([...commands[command], '--mark-unknown'], out, path);
       await refused(commands[command], out, path);
-    });
-
-    test(`${command} takes the complete record of version 0.1.0 for one, in a copy too`, async (t) => {
-      const { commands, out, path, place } = made(t);
-      const args = [...commands[command], '--overlay'];
-      await done(args);
-      const before = entries(out);
-      asBefore(out);
-      cpSync(out, path('copy'), { recursive: true });
-      rmSync(out, { recursive: true });
-      renameSync(path('copy'), out);
-      await done([...commands[command], '--mark-unknown', '--motions', '2']);
-      assert.deepEqual(entries(out), before.filter((name) => !name.startsWith('overlay')));
-      // Of a record that is not complete nothing is known.
-      asBefore(out);
-      const record = { pair: 'result.json', batch: '000000-f0/result.json', clip: 'tracks.json' }[command];
-      const { settings, ...rest } = JSON.parse(readFileSync(join(out, record), 'utf8'));
-      place(record, JSON.stringify(rest));
-      const first = { pair: 'labels.png', batch: '000000-f0/labels.png', clip: '.clip/state' }[command];
-      await refused(args, out, first);
+      place('mine.txt', 'mine');
+      await done([...commands[command], '--force']);
+      assert.deepEqual(readFileSync(join(out, path)), before);
+      assert.equal(readFileSync(join(out, 'mine.txt'), 'utf8'), 'mine', 'what is not in the way stays');
+      await done(commands[command]);
     });
 
     test(`${command} trusts no list that is damaged, and loses nothing in a copied folder`, async (t) => {
@@ -139,25 +120,15 @@ describe('files of others', () => {
       await done([...commands[command], '--overlay']);
       const at = command === 'batch' ? '000000-f0/' : '';
       const [list, file] = [`${at}.veronese`, { clip: 'labels/f0.png' }[command] ?? `${at}labels.png`];
-      const text = readFileSync(join(out, list), 'utf8');
       const name = file.slice(at.length);
-      place(list, text.replace(new RegExp(`^.*  ${name}$`, 'm'), `${'0'.repeat(64)}  ${name}`));
+      place(list, readFileSync(join(out, list), 'utf8').replace(new RegExp(`^.*  ${name}$`, 'm'), `${'0'.repeat(64)}  ${name}`));
       await refused(commands[command], out, file);
-      place(list, text.slice(0, text.indexOf(`  ${name}`)));
-      await refused(commands[command], out, command === 'clip' ? 'tracks.json' : file);
       place(list, 'a list of mine');
       await refused(commands[command], out, list);
+      await done([...commands[command], '--force', '--mark-unknown']);
+      await done(commands[command]);
     });
   }
-
-  test('a dataset that is laid out as a clip is', async (t) => {
-    const { commands, out, place, one } = made(t);
-    for (let k = 0; k < COUNT; k++) place(`labels/f${k}.png`, readFileSync(one(k)));
-    place('tracks.json', JSON.stringify({ version: 1, tracks: [{ id: 1, frames: ['f0', 'f1'] }] }));
-    await refused(commands.clip, out, 'tracks.json');
-    rmSync(join(out, 'tracks.json'));
-    await refused(commands.clip, out, 'labels/f0.png');
-  });
 
   test('frames that are in the place of results', async (t) => {
     const { commands, out, place, one } = made(t);
@@ -169,7 +140,7 @@ describe('files of others', () => {
     await refused(['clip', join(out, 'overlay'), '--quality', 'fast', '--overlay', '--out', out], out, 'overlay/f0.png');
     rmSync(out, { recursive: true });
     await done([...commands.pair, '--overlay']);
-    await refused(['pair', join(out, 'overlay.png'), join(out, 'overlay.png'), '--overlay', '--out', out], out, 'overlay.png');
+    await refused(['pair', join(out, 'overlay.png'), join(out, 'overlay.png'), '--overlay', '--force', '--out', out], out, 'overlay.png');
   });
 
   test('corrections that are the labels themselves', async (t) => {
@@ -225,13 +196,9 @@ describe('files of others', () => {
 describe('convert', () => {
   const names = {
     coco: 'coco.json',
-    'cvat-mots': 'cvat-mots.zip',
-    'label-studio': 'label-studio.json',
     mot: 'mot/gt/gt.txt',
     davis: 'davis/Annotations/480p/clip/f003.png',
     yolo: 'yolo/labels/f003.txt',
-    labelme: 'labelme/f003.json',
-    supervisely: 'supervisely/ann/f003.jpg.json',
     masks: 'masks/1/f003.png',
   };
 
@@ -260,7 +227,6 @@ describe('convert', () => {
   test('of a pair, whose files stay known', async (t) => {
     const { commands, out, place } = made(t);
     await done(commands.pair);
-    asBefore(out);
     place('yolo-names.txt', 'mine');
     await refused(['convert', out, '--to', 'coco,yolo'], out, 'yolo-names.txt');
     await done(['convert', out, '--to', 'coco']);
@@ -269,6 +235,7 @@ describe('convert', () => {
     await done(['convert', out, '--to', 'coco']);
     place('coco.json', '{}');
     await refused(['convert', out, '--to', 'coco'], out, 'coco.json');
+    await done(['convert', out, '--to', 'coco', '--force']);
   });
 });
 

@@ -519,7 +519,7 @@ export type ErrorCode =
   | 'unreadable-video'
   // the command line only
   | 'usage'
-  | 'wrong-usage' // of an option that is gone; the message names what replaces it
+  | 'wrong-usage' // of an option that the command does not have
   | 'file-not-found'
   | 'unreadable-file'
   | 'invalid-json'

@@ -31,6 +31,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write labels.png, result.json and mask-K.png to DIR
       --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
       --overlay              also write overlay.png: the first frame with each motion in its colour
+      --force                overwrite files in DIR that are not of this program; without it they are an error
 
   veronese batch FRAMES... [options]     segment every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
       --list FILE            read frames from FILE, one path per line (- reads standard input)
@@ -38,7 +39,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
       --jobs N               number of pairs processed at once (default: the number of processors)
       --shard I/N            process only part I of N, to share the pairs between N machines
-      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay as for pair
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay, --force as for pair
 
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
@@ -61,6 +62,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
       --allow-damaged        as for video
+      --force                as for pair
 
   veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
                                          ${FORMAT_NAMES}
@@ -70,6 +72,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0.5); 0 follows its pixels
       --background           convert the background, label 0, as well
       --out DIR              output folder (default: the input folder)
+      --force                as for pair
     of pair and batch:
       --grouped              groups instead of motions
     of pair:
@@ -85,6 +88,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                                          read masks back, for --corrections of clip: NAME.png for each annotated frame, and edits.json; SOURCE
                                          is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks
       --clip DIR             the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)
+      --force                as for pair
 
   veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   number of motions (default: auto)
@@ -100,13 +104,18 @@ Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cance
 /** What `convert` reads masks back to. */
 const BACK = 'corrections';
 
+/** `force`: whether files of others are replaced. */
+interface PairOutput {
+  out?: string;
+  force: boolean;
+}
+
 /** Settings of the two commands for sequences of frames. */
-export interface SequenceSettings extends PairSettings {
+export interface SequenceSettings extends PairSettings, PairOutput {
   every: number;
   jobs: number;
   /** The part of all pairs to process; `index` counts from 0. */
   shard: { index: number; of: number };
-  out?: string;
 }
 
 export interface ClipSettings {
@@ -123,8 +132,7 @@ export type Command =
       name: 'pair';
       first: string;
       second: string;
-      out?: string;
-    } & PairSettings)
+    } & PairSettings & PairOutput)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
   | ({ name: 'video'; file: string; allowDamaged: boolean } & SequenceSettings)
   | {
@@ -141,6 +149,7 @@ export type Command =
       jobs: number;
       overlay: boolean;
       out: string;
+      force: boolean;
     }
   | {
       name: 'convert';
@@ -155,6 +164,7 @@ export type Command =
       video?: string;
       frameRate?: number;
       out?: string;
+      force: boolean;
     }
   | {
       name: 'corrections';
@@ -163,6 +173,7 @@ export type Command =
       /** Folder of a clip. */
       clip?: string;
       out: string;
+      force: boolean;
     }
   | {
       name: 'points';
@@ -180,7 +191,6 @@ export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 const OPTIONS = {
   help: { type: 'boolean', short: 'h' },
   version: { type: 'boolean' },
-  before: { type: 'string' },
   motions: { type: 'string', default: 'auto' },
   quality: { type: 'string', default: 'best' },
   method: { type: 'string', default: 'best' },
@@ -201,7 +211,6 @@ const OPTIONS = {
   tolerance: { type: 'string', default: '0.5' },
   list: { type: 'string' },
   every: { type: 'string', default: '1' },
-  'with-before': { type: 'boolean', default: false },
   jobs: { type: 'string', short: 'j' },
   shard: { type: 'string', default: '1/1' },
   'look-ahead': { type: 'string' },
@@ -209,35 +218,27 @@ const OPTIONS = {
   corrections: { type: 'string' },
   clip: { type: 'string' },
   'allow-damaged': { type: 'boolean', default: false },
+  force: { type: 'boolean', default: false },
 } as const;
 
-const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'force'];
 const OF_SEQUENCES = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: OF_PAIRS,
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'seed', 'out', 'overlay', 'allow-damaged'],
-  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'],
+  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'],
   points: ['motions', 'method', 'seed'],
 };
 
-/** Options that are gone. */
-const GONE: Readonly<Record<string, string>> = { pair: 'before', batch: 'with-before', video: 'with-before' };
-/** Commands whose seed does nothing. */
-const UNSEEDED: readonly string[] = ['pair', 'batch', 'video', 'clip'];
-
-/** What is asked, and sentences of what in it does nothing. Throws a {@link VeroneseError} with code `usage`, `wrong-usage` for an option that is gone, or `invalid-option` if an option's value is invalid. */
-export function parseCommand(args: string[]): { command: Command; warnings: string[] } {
-  const words = parsed(args);
-  const command = commandOf(words);
-  const isSeeded = words.tokens.some((token) => token.kind === 'option' && token.name === 'seed');
-  const warnings = isSeeded && UNSEEDED.includes(command.name) ? [`'--seed' of '${command.name}' does nothing, and the next version refuses it`] : [];
-  return { command, warnings };
-}
-
-function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): Command {
+/**
+ * Throws a {@link VeroneseError} with code `wrong-usage` for an option that the command does not have, `invalid-option` for an invalid value
+ * of one, or `usage`.
+ */
+export function parseCommand(args: string[]): Command {
+  const { values, positionals, tokens } = parsed(args);
   if (values.help) return { name: 'help' };
   if (values.version) return { name: 'version' };
   const [name, ...files] = positionals;
@@ -246,10 +247,7 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
   if (!allowed) throw usage(`there is no command '${name}'`);
   for (const token of tokens) {
     if (token.kind !== 'option') continue;
-    if (token.name === GONE[name]) {
-      throw new VeroneseError('wrong-usage', `there is no '--${token.name}' any more; segment the frames as a clip, by 'veronese clip'`);
-    }
-    if (!allowed.includes(token.name)) throw usage(`'${name}' has no option '--${token.name}'`);
+    if (!allowed.includes(token.name)) throw unknown(`'${name}' has no option '--${token.name}'`);
     if (token.value === '') throw usage(`option '--${token.name}' is empty`);
   }
   const shared = { motions: motions(values.motions) };
@@ -262,13 +260,13 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
     if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
     const back = values.to.split(',').includes(BACK);
     for (const token of tokens) {
-      if (token.kind !== 'option' || (back ? ['to', 'clip', 'out'].includes(token.name) : token.name !== 'clip')) continue;
+      if (token.kind !== 'option' || (back ? ['to', 'clip', 'out', 'force'].includes(token.name) : token.name !== 'clip')) continue;
       throw usage(back ? `'--to ${BACK}' has no option '--${token.name}'` : `'--clip' needs '--to ${BACK}'`);
     }
     if (back) {
       if (values.to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
       if (values.out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
-      return { name: BACK, source: folder as string, out: values.out, ...(values.clip !== undefined && { clip: values.clip }) };
+      return { name: BACK, source: folder as string, out: values.out, force: values.force, ...(values.clip !== undefined && { clip: values.clip }) };
     }
     return {
       name,
@@ -283,6 +281,7 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
       ...(values.video !== undefined && { video: values.video }),
       ...(values['frame-rate'] !== undefined && { frameRate: decimal('frame-rate', values['frame-rate'], FRAME_RATES.least, FRAME_RATES.most) }),
       ...(values.out !== undefined && { out: values.out }),
+      force: values.force,
     };
   }
   if (name === 'clip') {
@@ -300,12 +299,12 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
       ...(masks !== undefined && { masks }),
       ...(corrections !== undefined && { corrections }),
     };
-    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)), out };
+    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)), out, force: values.force };
   }
-  for (const name of ['overlay', 'confidence'] as const) {
+  for (const name of ['overlay', 'confidence', 'force'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  const settings: PairSettings & { out?: string } = {
+  const settings: PairSettings & PairOutput = {
     options: {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
@@ -314,6 +313,7 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
     },
     grouped: values.grouped,
     overlay: values.overlay,
+    force: values.force,
     ...(values.out !== undefined && { out: values.out }),
   };
   if (name === 'pair') {
@@ -341,7 +341,8 @@ function parsed(args: string[]) {
     const text = thrown instanceof Error ? thrown.message : String(thrown);
     // The first sentence names the mistake; the rest explains quoting.
     const sentence = text.split(/[.\n]\s/)[0]?.replace(/\.$/, '') ?? text;
-    throw usage(sentence.charAt(0).toLowerCase() + sentence.slice(1));
+    const lower = sentence.charAt(0).toLowerCase() + sentence.slice(1);
+    throw (thrown as NodeJS.ErrnoException).code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' ? unknown(lower) : usage(lower);
   }
 }
 
@@ -430,6 +431,10 @@ function choice<const T extends string>(name: string, text: string, ...choices: 
 
 function invalid(name: string, wanted: string, found: string): VeroneseError {
   return new VeroneseError('invalid-option', `option '--${name}' must be ${wanted}, not '${found}'`);
+}
+
+function unknown(sentence: string): VeroneseError {
+  return new VeroneseError('wrong-usage', `${sentence}; see 'veronese --help'`);
 }
 
 function usage(sentence: string): VeroneseError {

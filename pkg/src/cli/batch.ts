@@ -4,11 +4,11 @@ import { basename, extname, join } from 'node:path';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { inOrder } from '../calls/ordered.js';
 import type { SequenceCommand } from './arguments.js';
-import { checkFolder } from './files.js';
 import { findFrames, type Frame, readList } from './frames.js';
 import type { Io } from './io.js';
+import { Output } from './output.js';
 import { jsonLine } from './pair.js';
-import { checkPairs, removeLeftovers, writePair } from './store.js';
+import { checkPairs, writePair } from './store.js';
 import { complain, print, ProgressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
 import { videoFrames } from './video.js';
@@ -25,16 +25,16 @@ type Outcome = { pair: Pair; result: TaskResult } | { pair: Pair; error: Verones
 
 /** Throws `pairs-failed` at the end where some did, or at once what concerns all pairs. */
 export async function batch(command: SequenceCommand, io: Io): Promise<void> {
-  const { out, shard, jobs } = command;
-  if (out !== undefined) checkFolder(out);
+  const { out, shard, jobs, force } = command;
+  const output = out === undefined ? undefined : new Output(out, { force, signal: io.signal });
   const paths = command.name === 'batch' ? findFrames(command.frames, await readList(command.list, io.stdin)) : undefined;
   if (paths) checkCount(Math.ceil(paths.length / command.every));
-  if (out !== undefined) {
+  if (output) {
     const used = paths?.filter((_, position) => position % command.every === 0);
     const names = used && new Set(used.map((name, index) => nameOf(index, { name })));
     const isMine = (name: string) => ofShard(Number.parseInt(name, 10), shard);
-    await checkPairs(out, (name) => isMine(name) && (names ? names.has(name) : isOfVideo(name, command.every)), command, paths ?? []);
-    removeLeftovers(out, isMine);
+    await checkPairs(output.folder, (name) => isMine(name) && (names ? names.has(name) : isOfVideo(name, command.every)), command, paths ?? []);
+    output.removeLeftovers();
   }
 
   const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' }, io);
@@ -42,7 +42,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
   const failures: VeroneseError[] = [];
-  const work = (pair: Pair) => perform(pair, command);
+  const work = (pair: Pair) => perform(pair, command, output);
   try {
     for await (const { pair, ...outcome } of inOrder(pairs, work, { room: 2 * jobs, stop: () => undefined })) {
       const { first, second } = namesOf(pair);
@@ -64,6 +64,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
     threads(jobs).close();
     throw thrown;
   } finally {
+    output?.discard();
     bar.clear();
     for (const failure of failures) complain(io, failure);
   }
@@ -73,12 +74,12 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
 }
 
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
-async function perform(pair: Pair, command: SequenceCommand): Promise<Outcome> {
-  const { options, grouped, overlay, out, jobs } = command;
+async function perform(pair: Pair, command: SequenceCommand, out: Output | undefined): Promise<Outcome> {
+  const { options, grouped, overlay, jobs, force } = command;
   try {
     const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, withImages: out !== undefined };
-    const result = await threads(jobs).run({ ...task, ...(out !== undefined && { folder: join(out, pair.name) }) });
-    if (out !== undefined && result.done) await writePair(out, pair.name, result.files);
+    const result = await threads(jobs).run({ ...task, ...(out && { folder: join(out.folder, pair.name) }) });
+    if (out && result.done) await writePair(out, pair.name, result.files, force);
     return { pair, result: { ...result, files: [] } };
   } catch (thrown) {
     return { pair, error: veroneseError(thrown) };

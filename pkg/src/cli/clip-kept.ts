@@ -1,13 +1,13 @@
 // What an unfinished clip has found out about its frames, and what a finished one knows of them: so that pairs are solved once, and that
 // accepted frames stay what they were. A file begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
 
-import { readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { readdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { deflateRawSync, inflateRawSync } from 'node:zlib';
 import { HIDDEN } from './clip-folder.js';
 import type { FrameFile } from './clip-store.js';
 import { readWritten, sha256, writing } from './files.js';
-import { type Ledger, temporary } from './ledger.js';
+import type { Output } from './output.js';
 
 const STATE = 'state';
 const PAIRS = '.pairs';
@@ -17,18 +17,16 @@ const OURS = /^state$|\.(pairs|accepted)$/;
 const HASH = 32;
 
 export class KeptClip {
-  readonly #ledger: Ledger;
-  readonly #out: string;
+  readonly #output: Output;
   readonly #folder: string;
   readonly #frames: readonly FrameFile[];
   /** For each frame a hash of the settings, of its content and of that of the frames before it. */
   readonly #keys: string[] = [];
 
   /** `settings`: what decides how pairs are solved. */
-  constructor(ledger: Ledger, out: string, settings: object, frames: readonly FrameFile[]) {
-    this.#ledger = ledger;
-    this.#out = out;
-    this.#folder = join(out, HIDDEN);
+  constructor(output: Output, settings: object, frames: readonly FrameFile[]) {
+    this.#output = output;
+    this.#folder = join(output.folder, HIDDEN);
     this.#frames = frames;
     let key = sha256(JSON.stringify(settings));
     for (const frame of frames) this.#keys.push((key = sha256(key + frame.sha256)));
@@ -36,7 +34,7 @@ export class KeptClip {
 
   /** Throws `file-exists` where files of another are in the places of these. */
   check(): Promise<void> {
-    return writing(this.#out, () => this.#ledger.checkFolder(HIDDEN, OURS));
+    return writing(this.#output.folder, () => this.#output.checkFolder(HIDDEN, OURS));
   }
 
   pairs(index: number): Uint8Array | undefined {
@@ -85,15 +83,9 @@ export class KeptClip {
   }
 
   #write(name: string, key: string | undefined, content: Uint8Array): Promise<void> {
-    return writing(this.#out, () => {
-      this.#ledger.claimFolder(HIDDEN, OURS);
-      const part = join(this.#folder, temporary(name));
-      try {
-        writeFileSync(part, Buffer.concat([hashOf(key, content), content]));
-        renameSync(part, join(this.#folder, name));
-      } finally {
-        rmSync(part, { force: true });
-      }
+    return writing(this.#output.folder, () => {
+      this.#output.manifest.addFolder(HIDDEN);
+      this.#output.keep(`${HIDDEN}/${name}`, Buffer.concat([hashOf(key, content), content]));
     });
   }
 
@@ -104,7 +96,7 @@ export class KeptClip {
     } catch {
       // There is no folder.
     }
-    return writing(this.#out, () => names.filter((name) => isOld.test(name) && !kept.has(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
+    return writing(this.#output.folder, () => names.filter((name) => isOld.test(name) && !kept.has(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
   }
 }
 

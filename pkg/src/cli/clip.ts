@@ -5,7 +5,6 @@ import type { Clip, ClipChange, ClipFrame, ClipProgress, Segmenter as SegmenterT
 import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
 import { UNLABELLED } from '../common/checks.js';
-import { VeroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
 import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
 import { SegmenterPool } from '../entries/node.js';
@@ -15,10 +14,9 @@ import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
 import { ClipStore, type Record } from './clip-store.js';
-import { checkFolder } from './files.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
-import { Ledger } from './ledger.js';
+import { Output } from './output.js';
 import { jsonLine } from './pair.js';
 import { print, ProgressBar, warn } from './terminal.js';
 import { oneForEach } from './threads.js';
@@ -27,25 +25,24 @@ const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
 
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand, io: Io): Promise<void> {
-  const { out, options, every, overlay: wanted } = command;
-  checkFolder(out);
+  const { out, options, every, overlay: wanted, force } = command;
+  const output = new Output(out, { force, signal: io.signal });
   const frames = await clipFrames(command, io);
   const segmenter = segmenters(command.jobs);
   const progress = new Passes(frames.length, io);
   try {
     const said = await readCorrections(command, frames);
     const software = `veronese ${version}`;
-    const ledger = await Ledger.open(out);
-    const store = new ClipStore(ledger, out, { ...options, every, ...said?.hashes, overlay: wanted, software });
-    const record = await store.finished(frames.files);
+    const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, software });
+    const record = store.finished(frames.files);
     if (record) return await report(record, io);
 
-    const kept = new KeptClip(ledger, out, { ...options, markUnknown: undefined, software }, frames.files);
+    const kept = new KeptClip(output, { ...options, markUnknown: undefined, software }, frames.files);
     await kept.check();
     const accepted = await acceptedAsSeen(out, said, frames, { store, kept });
     // If this run is interrupted, the next one has them.
     await kept.keepAccepted(accepted);
-    await store.begin(frames.files, wanted, [...frames.paths, ...(said?.paths ?? [])]);
+    await store.begin(frames.files, [...frames.paths, ...(said?.paths ?? [])]);
     const streams = options.lookAhead !== 'all' && !said;
     const onProgress = progress.listener;
     const segmented = streams
@@ -68,6 +65,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     segmenter.close();
     throw thrown;
   } finally {
+    output.discard();
     progress.clear();
     await frames.close();
   }
@@ -82,7 +80,7 @@ async function corrected(
   kept: KeptClip,
   onProgress: (progress: ClipProgress) => void,
 ): Promise<Clip> {
-  const state = (await known(segmenter, frames, kept)) ?? (await solved(segmenter, frames, options, kept, onProgress));
+  const state = kept.state() ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
   const isThere = ({ frame }: { frame: number }) => frame < length;
   const [masks, corrections, prompts] = [said?.masks.filter(isThere), said?.corrections.filter(isThere), said?.prompts.filter(isThere)];
@@ -104,7 +102,7 @@ async function acceptedAsSeen(
 ): Promise<Map<number, Uint8Array>> {
   const seen = new Map<number, Uint8Array>();
   if (!said || said.accepted.length === 0) return seen;
-  const before = await store.before(frames.files);
+  const before = store.before(frames.files);
   for (const frame of said.accepted) {
     const stem = before?.frames[frame];
     const labels = stem === undefined ? kept.accepted(frame) : (await readLabels(join(out, LABELS, `${stem}.png`))).labels;
@@ -121,18 +119,6 @@ function labelsUnder(mask: Uint8Array, seen: Uint8Array): Uint8Array {
     const given = mask[p] as number;
     return given !== UNLABELLED && (given > 0 || named.has(label)) ? given : label;
   });
-}
-
-/** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */
-async function known(segmenter: SegmenterType, { length, read }: ClipFrames, kept: KeptClip): Promise<Uint8Array | undefined> {
-  const state = kept.state();
-  try {
-    if (state) await segmenter.segmentClip({ length, read }, { state, changesOnly: true }).next();
-    return state;
-  } catch (thrown) {
-    if (thrown instanceof VeroneseError && thrown.code === 'invalid-option') return undefined;
-    throw thrown;
-  }
 }
 
 async function solved(

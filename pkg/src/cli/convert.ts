@@ -6,21 +6,18 @@ import { VeroneseError } from '../common/errors.js';
 import type { ConvertCommand } from './arguments.js';
 import { openBatch, pairFolders } from './batch-folder.js';
 import { LABELS, openClip, TRACKS } from './clip-folder.js';
-import { checkFolder, type OutputFile } from './files.js';
+import type { OutputFile } from './files.js';
 import { FORMATS, isFormatName, type Masks } from './formats.js';
-import { Ledger } from './ledger.js';
 import type { Output } from './output.js';
 import { readPair } from './pair-folder.js';
 import { SEQUENCE_FORMATS } from './sequence-formats.js';
 
 /** Writes the files; returns one line of JSON that names them. */
 export async function convert(command: ConvertCommand, output: Output): Promise<string> {
-  const folder = command.out ?? command.folder;
-  checkFolder(folder);
   const kind = kindOf(command.folder);
   checkOptions(command, kind);
-  const written = kind === 'pair' ? await convertPair(command, folder, output) : await convertSequence(command, kind, folder, output);
-  return `${JSON.stringify({ version: 1, folder, ...written })}\n`;
+  const written = kind === 'pair' ? await convertPair(command, output) : await convertSequence(command, kind, output);
+  return `${JSON.stringify({ version: 1, folder: output.folder, ...written })}\n`;
 }
 
 type Kind = 'pair' | 'batch' | 'clip';
@@ -70,24 +67,24 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
   }
 }
 
-async function convertPair(command: ConvertCommand, out: string, output: Output): Promise<{ files: string[] }> {
+async function convertPair(command: ConvertCommand, output: Output): Promise<{ files: string[] }> {
   const { folder, to, grouped, image, background, tolerance } = command;
   const { labels, width, height, motions, ...pair } = await readPair(folder, grouped);
   const names = pair.grouped && { names: Object.fromEntries(motions.map(({ label }) => [label, `group-${label}`])) };
   const wanted = motions.map(({ label }) => label).filter((label) => label > 0 || background);
   const masks: Masks = { labels, width, height, meta: { ...(image !== undefined && { image }), motions, labels: wanted, ...names } };
   const files: OutputFile[] = to.filter(isFormatName).flatMap((name) => FORMATS[name](masks, tolerance));
-  await output.write(out, files);
+  await output.writeAll(files);
   return { files: files.map(({ name }) => name) };
 }
 
-async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', out: string, output: Output) {
+async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', output: Output) {
   const { folder, to, range, background, grouped, frameRate, shapes = 'polygon', tolerance, video } = command;
   const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
   // Names that depend on frames are checked when they are written.
-  await (await Ledger.open(out)).check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
+  await output.check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
   const settings = { shapes, tolerance, ...(video !== undefined && { video }) };
-  const files = await output.stage(out, async (write) => {
+  const files = await output.stage(async (write) => {
     for (const name of to) await SEQUENCE_FORMATS[name].convert(sequence, settings, write);
   });
   return { files, frames: sequence.count };

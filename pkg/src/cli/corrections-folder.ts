@@ -8,31 +8,28 @@ import { encodeDavis, readAnnotations } from '../formats/index.js';
 import type { CorrectionsCommand } from './arguments.js';
 import { EDITS } from './clip-corrections.js';
 import { TRACKS, tracksOf } from './clip-folder.js';
-import { checkFolder, readInput } from './files.js';
+import { readInput } from './files.js';
 import { readJson } from './label-files.js';
-import { Ledger } from './ledger.js';
 import type { Output } from './output.js';
 
 /** Of files in a folder those that can be annotations, or name their classes. */
 const POSSIBLE = /\.(json|xml|png|txt|zip)$/i;
 
 /** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
-export async function convertBack({ source, clip, out }: CorrectionsCommand, output: Output): Promise<string> {
-  checkFolder(out);
-  await (await Ledger.open(out)).check([EDITS]);
+export async function convertBack({ source, clip }: CorrectionsCommand, output: Output): Promise<string> {
+  await output.check([EDITS]);
   const frames = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
   for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path) });
   const { format, frames: annotated, names } = readAnnotations(files, frames && { frames });
   const written = await output.stage(
-    out,
     async (write) => {
       for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
       await write(EDITS, `${JSON.stringify({ names })}\n`);
     },
     (path) => /^[^/]+\.png$/.test(path),
   );
-  return `${JSON.stringify({ version: 1, folder: out, format, files: written, frames: annotated.size })}\n`;
+  return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size })}\n`;
 }
 
 /** The names of a clip's frames. */

@@ -1,7 +1,7 @@
 // Files of the command line: what it reads, and the folders it writes to.
 
 import { createHash } from 'node:crypto';
-import { lstatSync, mkdirSync, readFileSync, statSync } from 'node:fs';
+import { lstatSync, mkdirSync, readFileSync, type Stats, statSync } from 'node:fs';
 import { readFile, stat } from 'node:fs/promises';
 import { dirname, resolve } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
@@ -81,6 +81,20 @@ export function makeFolder(folder: string): void {
 
 function isFolder(place: string): boolean {
   return statSync(place, { throwIfNoEntry: false })?.isDirectory() === true;
+}
+
+/** What is in a place, itself where it is a link. Throws `write-failed` where nothing can be. */
+export function lookAt(path: string): Stats | undefined {
+  try {
+    return lstatSync(path, { throwIfNoEntry: false });
+  } catch (thrown) {
+    throw writeFailed(dirname(path), thrown);
+  }
+}
+
+/** The error of a place that is taken. */
+export function taken(place: string, reason: string): VeroneseError {
+  return new VeroneseError('file-exists', `'${place}' ${reason}: move it, delete it, or choose another folder with '--out'`);
 }
 
 /** The content of a file that the program may have written. Undefined where there is none, or something else, which may keep a reader waiting. */

@@ -4,13 +4,11 @@ import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
 import { type ClipCommand, type Command, HELP, type PairCommand, parseCommand, type SequenceCommand } from './arguments.js';
 import { batch } from './batch.js';
-import { checkFolder } from './files.js';
 import type { Io } from './io.js';
-import { idsOf, Ledger } from './ledger.js';
-import { Output } from './output.js';
-import { isImageOfPair, possibleFiles } from './pair-folder.js';
+import { idsOf, Output } from './output.js';
+import { isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
 import { jsonLine } from './pair.js';
-import { complain, print, warn } from './terminal.js';
+import { complain, print } from './terminal.js';
 import { threads } from './threads.js';
 
 const EXIT = { done: 0, failed: 1, usage: 2 } as const;
@@ -19,22 +17,16 @@ const EXIT = { done: 0, failed: 1, usage: 2 } as const;
 export async function main(args: string[], io: Io): Promise<number> {
   let command: Command;
   try {
-    const { command: asked, warnings } = parseCommand(args);
-    warnings.forEach((sentence) => warn(io, sentence));
-    command = asked;
+    command = parseCommand(args);
   } catch (thrown) {
     complain(io, thrown);
     return EXIT.usage;
   }
-  const output = new Output();
-  io.signal.addEventListener('abort', () => {
-    output.discard();
-    complain(io, new VeroneseError('cancelled', 'stopped by a signal'));
-  });
+  io.signal.addEventListener('abort', () => complain(io, new VeroneseError('cancelled', 'stopped by a signal')));
   try {
     if (command.name === 'batch' || command.name === 'video') await batch(command, io);
     else if (command.name === 'clip') await (await import('./clip.js')).clip(command, io);
-    else await print(io, await answer(command, output));
+    else await print(io, await answer(command, io));
     return EXIT.done;
   } catch (thrown) {
     complain(io, thrown);
@@ -42,24 +34,22 @@ export async function main(args: string[], io: Io): Promise<number> {
   }
 }
 
-async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, output: Output): Promise<string> {
+async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, io: Io): Promise<string> {
+  const outputIn = (folder: string, { force }: { force: boolean }) => new Output(folder, { force, signal: io.signal });
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
-  if (command.name === 'convert') return (await import('./convert.js')).convert(command, output);
-  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, output);
-  if (command.name === 'pair') return pair(command, output);
+  if (command.name === 'convert') return (await import('./convert.js')).convert(command, outputIn(command.out ?? command.folder, command));
+  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command));
+  if (command.name === 'pair') return pair(command, command.out === undefined ? undefined : outputIn(command.out, command));
   return jsonLine((await threads(1).run({ kind: 'points', file: command.file, options: command.options })).report);
 }
 
-async function pair({ first, second, out, ...settings }: PairCommand, output: Output): Promise<string> {
+async function pair({ first, second, ...settings }: PairCommand, output: Output | undefined): Promise<string> {
   const inputs = [first, second];
-  if (out !== undefined) {
-    checkFolder(out);
-    await (await Ledger.open(out)).check(possibleFiles(settings), idsOf(inputs));
-  }
+  await output?.check(possibleFiles(settings), idsOf(inputs));
   const frames = inputs.map((name) => ({ name }));
-  const { report, files } = await threads(1).run({ kind: 'pair', frames, settings, withImages: out !== undefined });
+  const { report, files } = await threads(1).run({ kind: 'pair', frames, settings, withImages: output !== undefined });
   const json = jsonLine(report);
-  if (out !== undefined) await output.write(out, [...files, { name: 'result.json', bytes: Buffer.from(json) }], isImageOfPair);
+  await output?.writeAll([...files, { name: RESULT, bytes: Buffer.from(json) }], isImageOfPair);
   return json;
 }

@@ -54,7 +54,7 @@ async function pair({ frames, settings, withImages, folder }: PairTask): Promise
     return { done: true, report, files: images };
   }
   const job = jobOf(inputs, settings);
-  const record = await finished(folder, job);
+  const record = finished(folder, job, settings);
   if (record) return { done: false, report: record, files: [] };
   const { report, images } = await segmentFiles(inputs, settings, withImages);
   return { done: true, report, files: recordFiles(report, job, inputs, images) };
