@@ -52,8 +52,6 @@ export interface SegmentOptions extends CallOptions {
   markUnknown?: boolean | undefined;
   /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
-  /** @deprecated Does nothing: segmenting draws no random numbers. The next version refuses it. */
-  seed?: number | undefined;
 }
 
 export type RelabelOptions = CallOptions;

@@ -58,7 +58,7 @@ export function start<T>(prepare: () => Call<T>, perform: Perform): Promise<T> {
 }
 
 export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOptions): Call<Segmentation> {
-  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence'], ['seed']);
+  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence']);
   const frames = checkedFrames(first, second);
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames), settings: asked.settings };
@@ -100,9 +100,9 @@ interface Asked {
   settings: Settings;
 }
 
-/** Parts what concerns the call from what goes to the core, which says which values it takes. What is `gone` may be given and does nothing. */
-export function parted(options: unknown, known: readonly string[], gone: readonly string[] = []): Asked {
-  const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer'], gone);
+/** Parts what concerns the call from what goes to the core, which says which values it takes. */
+export function parted(options: unknown, known: readonly string[]): Asked {
+  const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
   if (signal !== undefined && !isSignal(signal)) throw new VeroneseError('invalid-option', "option 'signal': must be an AbortSignal");
   if (onProgress !== undefined && typeof onProgress !== 'function') throw invalidOption('onProgress', 'a function', onProgress);
   if (typeof transfer !== 'boolean') throw invalidOption('transfer', 'true or false', transfer);
@@ -168,13 +168,12 @@ function checkedSegmentation(segmentation: unknown) {
   const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
   const { motions, labels, junctions, settings, evidence } = whole;
   const quality = isObject(settings) ? settings.quality : undefined;
-  if (!isListOf(motions, isMotion) || !isArrayOf(labels, 'Uint8Array') || typeof quality !== 'string') {
+  if (!isListOf(motions, isMotion) || !isListOf(junctions, isJunction) || !isArrayOf(labels, 'Uint8Array') || typeof quality !== 'string') {
     throw invalidInput('the segmentation must be one that segmentPair or relabel gave');
   }
   checkAttached('the labels', labels);
   const candidates = isListOf(evidence?.candidates, isObject) ? evidence.candidates.map((candidate) => ({ ...candidate })) : [];
-  // Those of an earlier version have none.
-  const known = isListOf(junctions, isJunction) ? { junctions: junctions.map((one) => ({ ...one, labels: [...one.labels] })) } : {};
+  const known = { junctions: junctions.map((one) => ({ ...one, labels: [...one.labels] })) };
   return {
     // What is answered anew keeps its place.
     kept: { ...whole, motions: [], labels: [], ...known, evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,

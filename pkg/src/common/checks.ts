@@ -80,20 +80,17 @@ export function optionsObject(options: unknown): Record<string, unknown> {
   throw new VeroneseError('invalid-option', 'options must be an object');
 }
 
-/**
- * The options that were given, all of them known: a misspelt one is not silently left out. What is `undefined` was not given; what is
- * `gone` is left out.
- */
-export function entriesOf(options: unknown, known: readonly string[], gone: readonly string[] = []): Record<string, unknown> {
+/** The options that were given, all of them known: a misspelt one is not silently left out. What is `undefined` was not given. */
+export function entriesOf(options: unknown, known: readonly string[]): Record<string, unknown> {
   const given = optionsObject(options);
-  const unknown = unknownOf(given, known, gone);
+  const unknown = unknownOf(given, known);
   if (unknown !== undefined) throw new VeroneseError('invalid-option', `there is no option ${unknown}`);
   return Object.fromEntries(known.map((name) => [name, given[name]]).filter(([, value]) => value !== undefined));
 }
 
 /** The first name that is not known, and those that are. */
-export function unknownOf(given: Record<string, unknown>, known: readonly string[], gone: readonly string[] = []): string | undefined {
-  const unknown = Object.keys(given).find((name) => !known.includes(name) && !gone.includes(name) && given[name] !== undefined);
+export function unknownOf(given: Record<string, unknown>, known: readonly string[]): string | undefined {
+  const unknown = Object.keys(given).find((name) => !known.includes(name) && given[name] !== undefined);
   return unknown === undefined ? undefined : `'${unknown}'; there are ${known.join(', ')}`;
 }
 

@@ -44,7 +44,7 @@ export interface Asked extends SaidOfFrames, Pick<ClipOptions, 'signal' | 'onCha
 }
 
 export function asked(frames: unknown, options: unknown): Asked {
-  const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer'], ['seed']);
+  const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
   const { masks, corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
   const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
