@@ -92,7 +92,7 @@ export const RARE = {
     needs: { browser: true, python: true, hosts: true },
     run: (setup) => ofPackage('test:hosts', inBrowser(setup)),
   },
-  runtimes: { title: 'the packed package in Node 20 to 26, Deno, Bun and workerd', needs: { runtimes: true }, run: () => ofPackage('test:runtimes') },
+  runtimes: { title: 'the packed package in Node 22 to 26, Deno, Bun and workerd', needs: { runtimes: true }, run: () => ofPackage('test:runtimes') },
   browsers: {
     title: 'the page in Chromium, Firefox and WebKit',
     needs: { browser: true },

@@ -6,7 +6,7 @@ import { prepareChromium } from './chromium.mjs';
 import { HOSTS, RUNTIMES, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { DECODERS, OWN, preparePython } from './python-packages.mjs';
-import { Stop } from './run.mjs';
+import { Stop, say } from './run.mjs';
 import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
@@ -40,5 +40,5 @@ async function prepareFolders(folders) {
 function checkNode() {
   const needed = /\d+/.exec(JSON.parse(projectText('package.json')).engines.node)[0];
   const found = process.versions.node;
-  if (!atLeast(found, needed)) throw new Stop(`Node ${found} is too old, ${needed} is needed: see https://nodejs.org.`);
+  if (!atLeast(found, needed)) say(`Node ${found} is older than ${needed}, the oldest that is supported: see https://nodejs.org.`);
 }

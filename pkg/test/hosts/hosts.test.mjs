@@ -52,7 +52,7 @@ describe('webpack 5', () => {
     const path = join(app, 'built-for-server');
     await build({
       entry: './server.js',
-      target: 'node20',
+      target: 'node22',
       experiments: { outputModule: true },
       output: { path, filename: 'server.mjs', module: true, library: { type: 'module' }, chunkFormat: 'module' },
     });
