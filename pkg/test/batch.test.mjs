@@ -3,14 +3,13 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import { segmentPair } from 'veronese';
 import { byNumbers, findFrames } from '../build/cli/frames.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { pixmaps } from '../build/cli/video.js';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
-import { cases, soaking } from './support/soak.mjs';
+import { cases } from './support/soak.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
@@ -276,19 +275,6 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
     const run = await batch(args(frames, out));
     assert.equal(run.lines.filter(({ status }) => status === 'skipped').length, there);
     assert.deepEqual(tree(out), expected);
-  });
-
-  test('by kill -9 from outside, at a moment nobody chose', { skip: !soaking && 'npm run soak' }, async (t) => {
-    const { frames, out, path } = clip(t, 8, SIZE);
-    await batch(args(frames, path('undisturbed')));
-    await veroneseProcess(['batch', ...args(frames, out)], {
-      onStart: async (child) => {
-        await setTimeout(1000);
-        child.kill('SIGKILL');
-      },
-    });
-    await batch(args(frames, out));
-    assert.deepEqual(tree(out), tree(path('undisturbed')));
   });
 
   test('in the middle of writing: what is left is taken away by the next run, but not that of others', async (t) => {

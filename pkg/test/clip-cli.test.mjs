@@ -8,7 +8,7 @@ import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette, segmentClip, version } from 'veronese';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { entries, temporaryFolder, veronese } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 64, height: 48 };
@@ -96,16 +96,6 @@ describe('veronese clip', () => {
     for (const jobs of ['0', '257', 'all']) await fails([frames, '--out', path('none'), '--jobs', jobs], 'invalid-option', 2);
   });
 
-  test('can be converted', async (t) => {
-    const { frames, out } = clip(t);
-    await run([frames, '--out', out]);
-    const { code, stderr } = await veronese(['convert', out, '--to', 'youtube-vis']);
-    assert.equal(code, 0, stderr);
-    const { videos, annotations } = JSON.parse(readFileSync(join(out, 'youtube-vis.json'), 'utf8'));
-    assert.deepEqual(videos[0].file_names, tracksOf(out).files);
-    assert.deepEqual(annotations.map(({ segmentations }) => segmentations.length), tracksOf(out).objects.map(() => COUNT));
-  });
-
   test('--look-ahead, --motions and --every reach the call', async (t) => {
     const { frames, out } = clip(t);
     await run([frames, '--out', out, '--look-ahead', '0', '--motions', '2', '--every', '2']);
@@ -155,21 +145,6 @@ describe('veronese clip', () => {
     assert.deepEqual(readdirSync(join(out, 'labels')), ['f0.png', 'f1.png', 'f2.png', 'f3.png', 'f4.png', 'g.png']);
     assert.equal(readFileSync(join(out, 'mine.txt'), 'utf8'), 'mine');
   });
-
-  for (const [signal, exit] of [['SIGINT', 130], ['SIGKILL', null]]) {
-    test(`interrupted by ${signal} and run again it gives the same files`, { skip: process.platform === 'win32' }, async (t) => {
-      const { frames, out, path } = clip(t, 12);
-      const args = [frames, '--look-ahead', '0'];
-      await run([...args, '--out', path('whole')]);
-      const onStart = (child) => child.stdout.once('data', () => child.kill(signal));
-      const { code } = await veroneseProcess(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
-      assert.equal(code, exit);
-      assert.ok(existsSync(join(out, 'labels', 'f0.png')));
-      assert.equal(existsSync(join(out, 'tracks.json')), false);
-      await run([...args, '--out', out]);
-      assert.deepEqual(tree(out), tree(path('whole')));
-    });
-  }
 
   test('frames with one stem, too few frames and missing ones are refused before anything is written', async (t) => {
     const { frames, one, out, path } = clip(t);
@@ -225,12 +200,5 @@ describe('veronese clip VIDEO', () => {
     assert.deepEqual(readFileSync(join(out, 'labels', '00002.png')), readFileSync(path('frames-out', 'labels', 'f2.png')));
     await fails([file, '--every', '6', '--out', path('one')], 'too-few-frames');
     assert.equal(existsSync(path('one', 'labels')), false);
-  });
-
-  test('says what is missing where there is no ffmpeg', async (t) => {
-    const { out, file } = clip(t);
-    const { code, stderr } = await veroneseProcess(['clip', file('clip.mp4', 'no film'), '--out', out], { env: { PATH: '' } });
-    assert.equal(code, 1);
-    assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
   });
 });

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { segmentClip, Segmenter } from 'veronese';
 import { failure } from './support/shapes.mjs';
-import { box, changedOf, COUNT, frame, labelled, middle, PIXELS, SIZE } from './support/three.mjs';
+import { box, COUNT, frame, labelled, middle, PIXELS, SIZE } from './support/three.mjs';
 
 const list = Array.from({ length: COUNT }, (_, index) => frame(index));
 const source = { length: COUNT, read: (index) => list[index] };
@@ -30,44 +30,7 @@ test('the three squares are found by themselves, and nothing has changed', () =>
   assert.deepEqual(found.changes, []);
 });
 
-/** What a person may have said of object 2. */
-const SAID = {
-  painted: { corrections: [{ frame: 1, labels: half(2, 1, 2) }] },
-  'painted alone': { corrections: [{ frame: 1, object: 2, labels: labelled(2, 1, 2, 0) }] },
-  given: { masks: [{ frame: 1, labels: labelled(2, 1, 2, 0) }] },
-  prompted: { prompts: [{ frame: 1, object: 2, box: box(2, 1) }] },
-  named: { edits: { names: { 2: 'square' } } },
-  locked: { locked: [2] },
-  accepted: { accepted: [1] },
-};
-
-describe('nothing else changes when a box or a click points to an object', () => {
-  for (const [name, options] of Object.entries(SAID)) {
-    test(`what was ${name} keeps every pixel, and others lose what becomes the new object`, async () => {
-      const before = await said(options);
-      for (const prompt of [{ frame: 4, object: 9, box: box(3, 4) }, { frame: 4, object: 9, clicks: [[...middle(3, 4), 1]] }, { frame: 4, object: 9, box: box(2, 4) }, { frame: 0, object: 9, clicks: [[...middle(2, 0), 1]] }]) {
-        const { labels } = await run({ state: before.state, prompts: [prompt] });
-        assert.equal(changedOf(before.labels, labels, 2), 0, JSON.stringify(prompt));
-        for (const id of [1, 3]) assert.equal(changedOf(before.labels, labels, id, (_, now) => now === 9), 0, `${id}: ${JSON.stringify(prompt)}`);
-      }
-    });
-  }
-});
-
 describe('a locked object', () => {
-  test('loses no pixel to what is painted over it, until it is unlocked', async () => {
-    const corrections = [{ frame: 3, labels: half(2, 3, 9) }];
-    const free = await said({ corrections });
-    assert.ok(changedOf(found.labels, free.labels, 2) > 200);
-    const locked = await said({ corrections, locked: [2] });
-    assert.equal(changedOf(found.labels, locked.labels, 2), 0);
-    // A state keeps the lock. Said again it is nothing new.
-    const later = await run({ state: locked.state, corrections: [{ frame: 1, labels: half(2, 1, 8) }] });
-    assert.equal(changedOf(found.labels, later.labels, 2), 0);
-    const unlocked = await run({ state: locked.state, corrections: [{ frame: 1, labels: half(2, 1, 8) }], locked: [] });
-    assert.ok(changedOf(found.labels, unlocked.labels, 2) > 200);
-  });
-
   test('of which something is said is an error, before any pair is solved', async () => {
     const cases = [
       { corrections: [{ frame: 3, labels: half(2, 3, 2) }] },
@@ -113,15 +76,6 @@ describe('an accepted frame', () => {
     assert.notDeepEqual(open.labels[2], found.labels[2]);
   });
 
-  test('changes by a hand in it alone', async () => {
-    const accepted = await said({ accepted: [2] });
-    const stroke = half(2, 2, 9);
-    const { labels } = await run({ state: accepted.state, corrections: [{ frame: 2, labels: stroke }] });
-    assert.ok(stroke.every((label, p) => label === 255 || labels[2][p] === label));
-    assert.notDeepEqual(labels[2], found.labels[2]);
-    assert.equal(changedOf([found.labels[2]], [labels[2]], 1), 0);
-  });
-
   test('may come with the labels that were seen', async () => {
     const seen = found.labels[2].map((label, p) => (p < 500 ? 7 : label === 3 ? 0 : label));
     const { labels, changes } = await said({ corrections, accepted: [{ frame: 2, labels: seen }, { frame: 1 }] });
@@ -153,53 +107,6 @@ describe('prompts', () => {
       assert.deepEqual(worker, one, 'in a worker');
     }
   });
-
-  test('of several clicks and a box describe one object', async () => {
-    const [x, y, width, height] = box(2, 3);
-    const without = [x + 3, y + 3];
-    const clicks = [[...at, 1], [x + width - 5, y + height - 5, 1], [...without, -1]];
-    const { labels } = await said({ prompts: [{ frame: 3, object: 9, clicks, box: [x, y, width, height] }] });
-    const is9 = ([column, row]) => labels[3][row * SIZE.width + column] === 9;
-    assert.deepEqual(clicks.map(([column, row]) => is9([column, row])), [true, true, false]);
-    assert.ok(labels[3].every((label, p) => label !== 9 || (p % SIZE.width >= x && p % SIZE.width < x + width && p / SIZE.width >= y && p / SIZE.width < y + height)));
-  });
-
-  test('stay until the next one of the same object and frame, or until they are taken back', async () => {
-    const first = await said({ prompts: [{ frame: 3, object: 9, box: box(2, 3) }] });
-    const second = await run({ state: first.state, prompts: [{ frame: 3, object: 9, box: box(1, 3) }] });
-    assert.deepEqual(second.labels[3], (await said({ prompts: [{ frame: 3, object: 9, box: box(1, 3) }] })).labels[3]);
-    const back = await run({ state: second.state, prompts: [{ frame: 3, object: 9 }] });
-    assert.deepEqual(back.labels, found.labels);
-  });
-
-  test('spread where they are to, or where what else is said of the frame is', async () => {
-    const frames = async (options) => (await said(options)).labels.flatMap((labels, index) => (labels.includes(9) ? [index] : []));
-    const prompt = { frame: 3, object: 9, box: box(2, 3) };
-    assert.deepEqual(await frames({ prompts: [{ ...prompt, propagate: 'none' }] }), [3]);
-    assert.deepEqual(await frames({ prompts: [{ ...prompt, propagate: 'forward' }] }), [3, 4, 5]);
-    const corrections = [{ frame: 3, labels: labelled(1, 3, 1), propagate: 'backward' }];
-    assert.deepEqual(await frames({ prompts: [prompt], corrections }), [0, 1, 2, 3]);
-  });
-});
-
-describe('an eraser', () => {
-  test('of all objects says of what is under it that it is not there', async () => {
-    const { labels } = await said({ corrections: [{ frame: 3, labels: half(2, 3, 0) }] });
-    const erased = half(2, 3, 1).map((label) => label === 1);
-    assert.ok(labels[3].every((label, p) => !erased[p] || label === 0));
-    for (const id of [1, 3]) assert.equal(changedOf(found.labels, labels, id), 0);
-  });
-
-  test('of one object leaves the others', async () => {
-    // It goes over two squares.
-    const both = Uint8Array.from(half(2, 3, 0), (label, p) => Math.min(label, half(3, 3, 0)[p]));
-    const { labels } = await said({ corrections: [{ frame: 3, object: 2, labels: both }] });
-    assert.ok(labels[3].every((label, p) => both[p] === 255 || label !== 2));
-    assert.ok(changedOf(found.labels, labels, 2) > 200);
-    for (const id of [1, 3]) assert.equal(changedOf(found.labels, labels, id), 0);
-    const back = await said({ corrections: [{ frame: 3, object: 2, labels: both }, { frame: 3, object: 3, labels: labelled(3, 3, 255) }] });
-    assert.deepEqual(back.labels, labels, 'a frame takes what is said of several objects');
-  });
 });
 
 test('changes() tells what objects have gained and lost, in the frames that have changed', async () => {
@@ -228,15 +135,11 @@ test('changes() tells what objects have gained and lost, in the frames that have
 test('refuses what it cannot use before any pair is solved', async () => {
   const prompt = (rest) => ({ prompts: [{ frame: 3, object: 9, ...rest }] });
   const cases = [
-    [{ prompts: null }, /'prompts': must be a list/],
-    [{ accepted: null }, /'accepted': must be a list/],
     [{ prompts: {} }, /'prompts': must be a list of \{ frame, object, clicks, box \}/],
     [{ prompts: [{ frame: COUNT, object: 9, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have a frame from 0 to 5/],
     [{ prompts: [{ frame: 3, box: [1, 2, 3, 4] }] }, /'prompts': number 0 must have an object, numbers from 1 to 254/],
-    [prompt({ object: 255 }), /number 0 must have an object/],
     [prompt({ clicks: [[1, 2]] }), /number 0 must have clicks, a list of \[x, y, 1\]/],
     [prompt({ clicks: [[1, 2, 0]] }), /number 0 must have clicks/],
-    [prompt({ clicks: [1, 2, 1] }), /number 0 must have clicks/],
     [prompt({ clicks: [[1, 2, -1]] }), /number 0 must have a box or a click that belongs to object 9/],
     [prompt({ clicks: [[1, 2, 1]], box: [10, 10, 5, 5] }), /number 0 has a click at 1, 2 that belongs to object 9 and is not in its box/],
     [prompt({ box: [1, 2, 3] }), /number 0 must have a box, the whole numbers/],
@@ -250,10 +153,8 @@ test('refuses what it cannot use before any pair is solved', async () => {
     [{ corrections: [{ frame: 3, object: 2, labels: found.labels[3] }] }, /'corrections': number 0 must have the labels 0, 2 and 255: it is about object 2 alone/],
     [{ corrections: [1, 2].map(() => ({ frame: 3, object: 2, labels: new Uint8Array(PIXELS) })) }, /'corrections': number 1 is of object 2 in frame 3, as one before is/],
     [{ accepted: 3 }, /'accepted': must be a list of frames or \{ frame, labels \}, not 3/],
-    [{ accepted: ['3'] }, /'accepted': must be a list/],
     [{ accepted: [0.5] }, /'accepted': number 0 must have a frame from 0 to 5/],
     [{ accepted: [1, { frame: 1 }] }, /'accepted': number 1 is frame 1, as one before is/],
-    [{ accepted: [{ frame: 1, labels: 'seen' }] }, /'accepted': number 0 must have labels, a Uint8Array/],
     [{ accepted: [{ frame: 1, labels: new Uint8Array(12) }] }, /'accepted': that of frame 1 has 12 labels, a frame has 96×72 pixels/],
   ];
   for (const [options, message] of cases) {

@@ -1,7 +1,7 @@
 // `veronese convert` of many frames: folders of `clip`, drawn here, and of `batch`, made by the program.
 
 import assert from 'node:assert/strict';
-import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, unlinkSync, writeFileSync } from 'node:fs';
+import { readdirSync, readFileSync, rmSync, statSync, unlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
@@ -159,23 +159,6 @@ describe('a clip', () => {
     const [exact, usual, half, rough] = [await size('--tolerance', '0'), await size(), await size('--tolerance', '0.5'), await size('--tolerance', '3')];
     assert.equal(usual, half);
     assert.ok(usual < exact / 3 && rough < usual, `${[exact, usual, rough]}`);
-  });
-
-  test('a folder of an earlier conversion is replaced, anything else is left alone', async (t) => {
-    const folder = temporaryFolder(t);
-    const clip = folder.path('clip');
-    clipFolder(clip);
-    await converted(clip, '--to', 'yolo');
-    await converted(clip, '--to', 'yolo', '--from', '5');
-    assert.deepEqual(readdirSync(join(clip, 'yolo', 'labels')), ['f005.txt', 'f006.txt']);
-    writeFileSync(join(clip, 'yolo', 'labels', 'photo.txt'), 'mine');
-    await converted(clip, '--to', 'yolo', '--from', '6');
-    assert.deepEqual(readdirSync(join(clip, 'yolo', 'labels')), ['f006.txt', 'photo.txt']);
-    mkdirSync(join(clip, 'mot'));
-    await converted(clip, '--to', 'mot');
-    mkdirSync(join(clip, 'coco.json'));
-    await refused(clip, [clip, '--to', 'mot,coco'], 'write-failed', /coco\.json' is a folder/);
-    assert.deepEqual(readdirSync(clip).filter((name) => name.startsWith('.')), ['.veronese']);
   });
 
   test('says what is wrong with the folder and writes nothing', async (t) => {

@@ -1,5 +1,4 @@
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { describe, test } from 'node:test';
@@ -11,7 +10,6 @@ import { Core } from '../build/module/core.js';
 import { read } from '../build/entries/reading.js';
 import { pair } from './support/frames.mjs';
 import { checkPair, failure } from './support/shapes.mjs';
-import { temporaryFolder } from './support/program.mjs';
 
 const path = fileURLToPath(new URL('../wasm/veronese_bg.wasm', import.meta.url));
 const bytes = new Uint8Array(readFileSync(path));
@@ -134,29 +132,4 @@ describe('after a trap', () => {
     await core.init();
     assert.equal(trapping.made, 1);
   });
-});
-
-test('importing the package touches no global, loads nothing and lets the process end', (t) => {
-  const folder = temporaryFolder(t);
-  const entry = (name) => JSON.stringify(String(new URL(`../dist/${name}.js`, import.meta.url)));
-  const script = folder.file(
-    'import.mjs',
-    `
-    const descriptors = () => Object.getOwnPropertyNames(globalThis).map((name) => [name, Object.getOwnPropertyDescriptor(globalThis, name)]);
-    globalThis.TextEncoder, globalThis.TextDecoder; // Node makes them when first asked
-    const before = descriptors();
-    for (const name of ['instantiate', 'compile', 'Module', 'Instance']) {
-      const original = WebAssembly[name];
-      WebAssembly[name] = function () { throw new Error('loaded on import'); };
-      WebAssembly[name].prototype = original.prototype;
-    }
-    for (const entry of [${['node', 'web', 'codecs'].map(entry)}]) await import(entry);
-    const after = descriptors();
-    const same = after.length === before.length && after.every(([name, descriptor], index) =>
-      name === before[index][0] && Object.is(descriptor.value, before[index][1].value) && descriptor.get === before[index][1].get);
-    console.log(same ? 'same' : 'changed');
-    `,
-  );
-  const { stdout, stderr } = spawnSync(process.execPath, [script], { encoding: 'utf8', timeout: 20000 });
-  assert.equal(stdout.trim(), 'same', stderr);
 });

@@ -156,30 +156,9 @@ describe('segmentPairs', () => {
     assert.equal((await failure(all(segmentPairs([input(0)], { signal: AbortSignal.abort() })))).code, 'cancelled');
   });
 
-  test('what the source throws comes after the answers to what it gave', async () => {
-    const mine = new Error('mine');
-    async function* source() {
-      yield input(0);
-      yield input(1);
-      throw mine;
-    }
-    const seen = [];
-    const error = await failure((async () => {
-      for await (const { index } of segmentPairs(source(), { jobs: 1 })) seen.push(index);
-    })());
-    assert.equal(error, mine);
-    assert.deepEqual(seen, [0, 1]);
-  });
-
   test('takes promises of pairs, and no pairs at all', async () => {
     assert.equal((await all(segmentPairs([Promise.resolve(input(0))], { jobs: 1 })))[0].segmentation.width, 64);
     assert.deepEqual(await all(segmentPairs([])), []);
-  });
-
-  test('refuses what is no iterable and options that do not exist', async () => {
-    assert.equal((await failure(all(segmentPairs(42)))).code, 'invalid-input');
-    const [outcome] = await all(segmentPairs([input(0)], { jobs: 1, nonsense: 1 }));
-    assert.equal(outcome.error.code, 'invalid-option');
   });
 });
 

@@ -5,7 +5,7 @@ import { after, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
-import { cases, soaking } from './support/soak.mjs';
+import { cases } from './support/soak.mjs';
 
 const COUNT = 7;
 const SIZE = { width: 96, height: 72 };
@@ -61,9 +61,6 @@ async function outcome(segment, source, options) {
 /** Bytes with another mark. */
 const marked = (bytes, mark) => new Uint8Array([...new TextEncoder().encode(mark), ...bytes.slice(mark.length)]);
 
-/** So many places in some bytes. */
-const places = ({ length }, count) => Array.from({ length: count }, (_, k) => Math.floor((k * length) / count));
-
 const idsOf = (frames) => frames.map(({ objects }) => objects.map(({ id }) => id));
 
 const whole = await outcome(segmentClip, readable());
@@ -99,32 +96,6 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(tracks.objects.map(({ id, first, last }) => [id, first, last]), [[9, 0, COUNT - 1]]);
       assert.deepEqual(stages, { pairs: ALL, corrections: [3, 4, 5, 6, 2, 1, 0], labels: ALL });
       assert.deepEqual(frames, corrected.frames);
-    });
-
-    test('a box and a click point to an object, which is followed', async () => {
-      const box = [23, 16, 44, 44];
-      const isWithin = (p) => p % SIZE.width >= 23 && p % SIZE.width < 67 && p / SIZE.width >= 16 && p / SIZE.width < 60;
-      // In workers the same code has the same corrections: the last ones are enough there.
-      for (const at of way === 'directly' ? [{ box }, { click: [45, 38] }] : []) {
-        const { frames, stages } = await outcome(segment, readable(), { state: whole.state, corrections: [{ frame: 3, label: 9, ...at }] });
-        assert.deepEqual([idsOf(frames), stages.pairs, stages.corrections[0]], [ALL.map(() => [9]), [], 3]);
-        const { labels } = frames[3];
-        const [both, either] = [labels.filter((label, p) => label === 9 && mask(1, 0)[p] === 1), labels.filter((label, p) => label === 9 || mask(1, 0)[p] === 1)];
-        assert.ok(both.length > 0.85 * either.length, `${both.length} of ${either.length}`);
-        assert.ok(!('box' in at) || labels.every((label, p) => label !== 9 || isWithin(p)));
-        assert.equal(labels[38 * SIZE.width + 45], 9);
-      }
-      // Beside what is said of the same frame, before it or after, and where they are to spread.
-      const said = mask(255, 255).fill(5, 0, 400).fill(0, 400, 700);
-      const corrections = [{ frame: 3, labels: said }, { frame: 3, label: 9, box }, { frame: 3, label: 2, click: [85, 60] }, { frame: 5, label: 9, click: [46, 39], propagate: 'none' }];
-      const one = await outcome(segment, readable(), { state: whole.state, corrections });
-      assert.ok(said.subarray(0, 400).every((label, p) => one.frames[3].labels[p] === label));
-      assert.deepEqual(idsOf(one.frames)[3], [2, 5, 9]);
-      if (way !== 'directly') return;
-      const other = await outcome(segment, readable(), { state: whole.state, corrections: [...corrections.slice(1), corrections[0]] });
-      assert.deepEqual(one.frames, other.frames);
-      const alone = await outcome(segment, readable(), { state: whole.state, corrections: [{ frame: 3, label: 9, box, propagate: 'none' }] });
-      assert.deepEqual(idsOf(alone.frames), ALL.map((index) => [index === 3 ? 9 : 1]));
     });
 
     test('edits merge, remove and name', async () => {
@@ -281,28 +252,14 @@ for (const [way, segment] of WAYS) {
       const said = (frame, labels = mask(1, 255)) => ({ corrections: [{ frame: 0, labels: mask(1, 255) }, { frame, labels }] });
       const damaged = whole.state.slice(0, -1);
       const cases = [
-        [{ corrections: {} }, /'corrections': must be a list/],
         [{ corrections: [5] }, /'corrections': must be a list/],
         [said(COUNT), /number 1 must have a frame from 0 to 6/],
-        [said(-1), /number 1 must have a frame/],
-        [said('2'), /number 1 must have a frame/],
         [said(0), /number 1 is of frame 0, as one before is/],
         [said(2, [1]), /number 1 must have labels, a Uint8Array/],
         [said(2, new Uint8Array(12)), /that of frame 2 has 12 labels, a frame has 96×72 pixels/],
         [{ ...said(2, new Uint8Array(12)), state: whole.state }, /that of frame 2 has 12 labels/],
         ...[
-          [{ box: [0, 0, 9, 9] }, /number 0 must have a label, numbers from 1 to 254/],
-          [{ label: 255, click: [0, 0] }, /number 0 must have a label/],
-          [{ label: 1, click: [0] }, /must have a click, the whole numbers \[x, y\]/],
-          [{ label: 1, click: [0.5, 0] }, /must have a click/],
-          [{ label: 1, box: [0, 0, 9] }, /must have a box, the whole numbers \[x, y, width, height\]/],
-          [{ label: 1, box: [0, 0, 9, 0] }, /must have a box/],
-          [{ label: 1, box: [-1, 0, 9, 9] }, /must have a box/],
           [{ label: 1, box: [0, 0, 9, 9], click: [0, 0] }, /must have a box or a click, not both/],
-          [{ label: 1, box: [90, 0, 7, 9] }, /what points to object 1 in frame 0 is not within 96×72 pixels/],
-          [{ label: 1, click: [0, 72] }, /what points to object 1 in frame 0 is not within 96×72 pixels/],
-          [{ label: 1, click: [0, 0], propagate: 'up' }, /must propagate/],
-          [{ label: 1, click: [0, 0], frame: COUNT }, /must have a frame from 0 to 6/],
           [{}, /must have labels, a Uint8Array/],
         ].map(([entry, message]) => [{ corrections: [{ frame: 0, ...entry }] }, message]),
         [{ corrections: [{ frame: 0, label: 1, click: [0, 0] }, { frame: 0, label: 1, box: [0, 0, 9, 9] }] }, /number 1 points to object 1 in frame 0, as one before does/],
@@ -313,7 +270,6 @@ for (const [way, segment] of WAYS) {
         [{ edits: { merge: [[2, 255]] } }, /'merge' must be lists/],
         [{ edits: { merge: [[2, 5], [3, 5]] } }, /object 5 cannot become object 2 and object 3/],
         [{ edits: { merge: [[2, 5]], delete: [5] } }, /object 5 cannot become object 2 and background/],
-        [{ edits: { delete: 3 } }, /'delete' must be a list of objects/],
         [{ edits: { background: [0] } }, /'background' must be a list of objects/],
         [{ edits: { names: { 0: 'ground' } } }, /'names' has a name for '0'/],
         [{ edits: { names: { 1: 5 } } }, /'names' must have a text for object 1/],
@@ -321,10 +277,6 @@ for (const [way, segment] of WAYS) {
         [{ state: damaged }, /'state': it is damaged/],
         [{ state: new Uint8Array(50) }, /'state': these bytes are not of this version: segment the clip again/],
         [{ state: marked(whole.state, 'VERCLIP2') }, /'state': these bytes are not of this version/],
-        [{ changesOnly: 1 }, /'changesOnly': must be true or false/],
-        [{ onPairs: 1 }, /'onPairs': must be a function/],
-        [{ knownPairs: {} }, /'knownPairs': must be a function/],
-        [{ onPreview: 'yes' }, /'onPreview': must be a function/],
         [{ state: whole.state, lookAhead: 9 }, /'lookAhead'/],
       ];
       for (const [{ frames = list, ...options }, message] of cases) {
@@ -404,72 +356,6 @@ describe('clips', () => {
       // The first frame of a stream that waits for none comes from nowhere.
       assert.deepEqual(tracks.background.map(({ frame }) => frame), ALL.slice(lookAhead === 0 ? 1 : 0, -1));
     }
-  });
-
-  test('a state that is damaged anywhere is refused', async () => {
-    const { state } = whole;
-    const flipped = places(state, 400).map((at) => state.with(at, state[at] ^ (1 << at % 8)));
-    const cut = places(state, 60).flatMap((at) => {
-      const [before, after] = [state.slice(0, at), state.slice(at + 1)];
-      return [before, after, new Uint8Array([...before, ...after])];
-    });
-    const extended = [1, 8, 1000].flatMap((more) => [new Uint8Array(more), state.slice(-more)].map((rest) => new Uint8Array([...state, ...rest])));
-    for (const damaged of [...flipped, ...cut, ...extended]) {
-      const { given, error } = await until(segmentClip(list, { state: damaged }));
-      assert.deepEqual([given, error.code], [[], 'invalid-option'], error.message);
-    }
-  });
-
-  test('pairs that are damaged anywhere, and those of other frames or options, are solved again', async () => {
-    const pairsOf = async (frames, options) => {
-      const pairs = [];
-      await all(segmentClip(frames, { ...FAST, ...options, onPairs: (_, bytes) => void pairs.push(bytes) }));
-      return pairs;
-    };
-    const own = await pairsOf(list);
-    const few = { length: 3, read: (index) => list[index] };
-    const found = await outcome(segmentClip, few);
-    const ROUNDS = soaking ? 24 : 8;
-    const damages = Array.from({ length: ROUNDS }, (_, round) =>
-      own.slice(0, 3).map((bytes, index) => {
-        const at = Math.floor((bytes.length * (round + index / 3)) / ROUNDS);
-        if (round % 4 === 0) return bytes.slice(0, at);
-        if (round % 4 === 1) return new Uint8Array([...bytes, ...bytes.slice(at)]);
-        return bytes.with(at, bytes[at] ^ (1 << round % 8));
-      }),
-    );
-    const foreign = [
-      await pairsOf(ALL.map((index) => frame(index / 3 + 1, SIZE))),
-      await pairsOf(list, { quality: 'best' }),
-      await pairsOf(list, { motions: 2 }),
-      await pairsOf(list, { lookAhead: 1 }),
-      own.slice(1),
-      own.map((bytes) => marked(bytes, 'VERPAIR2')),
-    ];
-    for (const [round, known] of [...damages, ...foreign].entries()) {
-      const solved = [];
-      const options = { knownPairs: (index) => known[index], onPairs: (index) => void solved.push(index) };
-      const { frames, state } = await outcome(segmentClip, few, options);
-      assert.deepEqual([solved, frames, state], [[0, 1, 2], found.frames, found.state], `round ${round}`);
-    }
-    const options = { markUnknown: true, knownPairs: (index) => own[index], onPairs: () => assert.fail('all are known') };
-    assert.deepEqual((await outcome(segmentClip, few, options)).frames, (await outcome(segmentClip, few, { markUnknown: true })).frames);
-  });
-
-  test('a worker that dies between two labels ends the clip; the segmenter goes on', async (t) => {
-    const workers = [];
-    const worker = () => {
-      workers.push(new Worker(new URL('../dist/worker-node.js', import.meta.url)));
-      return workers.at(-1);
-    };
-    const segmenter = new Segmenter(undefined, { worker });
-    t.after(() => segmenter.close());
-    const dying = segmenter.segmentClip(readable(), FAST);
-    await dying.next();
-    await workers[0].terminate();
-    assert.equal((await until(dying)).error.code, 'worker-failed');
-    assert.deepEqual(await all(segmenter.segmentClip(readable(), FAST)), whole.frames);
-    assert.equal(workers.length, 2);
   });
 
   test('are the same to the bit with any number of workers, whichever of their pairs are known', async (t) => {
@@ -562,12 +448,5 @@ describe('clips', () => {
     assert.equal(pair.labels.length, PIXELS);
     assert.deepEqual(await clip, whole.frames);
     assert.ok(order.indexOf('pair') < order.length - 1, String(order));
-  });
-
-  test('of a pool run side by side', async (t) => {
-    const pool = new SegmenterPool({ jobs: 2 });
-    t.after(() => pool.close());
-    const clips = [pool.segmentClip(readable(), FAST), pool.segmentClip(list, { corrections: [{ frame: 3, labels: mask(9, 0) }], ...FAST })];
-    assert.deepEqual(await Promise.all(clips.map(all)), [whole.frames, corrected.frames]);
   });
 });
