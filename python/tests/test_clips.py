@@ -11,7 +11,7 @@ from typing import Any, Iterator, List, Tuple
 import numpy as np
 import pytest
 from scenes import Pixels, clip, frame, square_mask, write_image
-from veronese import Accepted, Clip, ClipChange, ClipFrame, Correction, Mask, Prompt, VeroneseError, segment_clip
+from veronese import Accepted, Clip, ClipFrame, Correction, Mask, Prompt, VeroneseError, segment_clip
 
 COUNT = 6
 FRAMES = clip(COUNT)
@@ -106,71 +106,36 @@ def test_a_number_to_look_ahead_makes_a_stream_of_a_sequence() -> None:
     assert labels_of(iter(FRAMES)) == labels_of(FRAMES, look_ahead=8)
 
 
-def test_a_mask_holds_to_the_pixel_and_is_followed() -> None:
-    labels = square_mask(1, 7, 0)
-    found = list(segment_clip(FRAMES, **FAST, masks=[Mask(2, labels)]))
-    assert (found[2].labels == labels).all()
-    for index in (0, COUNT - 1):
-        now, truth = found[index].labels == 7, square_mask(index / 2, 1, 0) == 1
-        assert (now & truth).sum() / (now | truth).sum() > 0.8
-    forward = list(segment_clip(FRAMES, **FAST, masks=[Mask(2, labels, propagate="none")]))
-    assert not (forward[4].labels == 7).any()
+LATER: Any = {
+    "corrections": ([Correction(3, square_mask(1.5, 9, 255)), Prompt(1, 9, click=(48, 36))], lambda clip, said: clip.correct(*said)),
+    "prompts": ([Prompt(2, 9, (20, 14, 46, 46), clicks=[(40, 40, 1)])], lambda clip, said: clip.correct(*said)),
+    "locked": ([1], Clip.lock),
+    "named": ([1], Clip.name),
+    "accepted": ([1, Accepted(4, square_mask(2, 1, 0))], Clip.accept),
+}
 
 
-def test_corrections_at_the_beginning_and_later_give_the_same() -> None:
-    said = Correction(3, square_mask(1.5, 9, 255))
-    stages: List[Tuple[str, int]] = []
-    expected = labels_of(FRAMES, corrections=[said])
-    segmented = segment_clip(FRAMES, **FAST, progress=lambda stage, index, of: stages.append((stage, index)))
-    assert [one.labels.tobytes() for one in segmented] == WHOLE
-    before = segmented.tracks()
-    stages.clear()
-    changed = segmented.correct(said)
-    assert 3 in changed and stages[0] == ("corrections", 3)
-    assert [segmented.frame(index).labels.tobytes() for index in range(COUNT)] == expected
-    assert set(changed) == {index for index in range(COUNT) if expected[index] != WHOLE[index]}
-    assert [track.id for track in before.objects] == [1]
-    assert [track.id for track in segmented.tracks().objects] == [9]
+@pytest.mark.parametrize("name", LATER)
+def test_what_is_said_later_holds_as_what_is_said_at_the_beginning(name: str) -> None:
+    """What it does is compared with Node (test_same_as_node.py)."""
+    said, say = LATER[name]
+    wide = np.full((72, 96), 255, np.uint8)
+    wide[10:60, 15:40] = 8
+    at_once, later = segment_clip(FRAMES, **FAST, **{name: said}), segment_clip(FRAMES, **FAST)
+    say(later, said)
+    assert later.state() == at_once.state()
+    changed = later.correct(Correction(2, wide))
+    assert 2 in changed and at_once.correct(Correction(2, wide)) == changed
+    assert later.changes() == at_once.changes() != []
+    assert {one.frame for one in later.changes()} == {*changed}
+    now = [one.labels.tobytes() for one in later]
+    assert now == [one.labels.tobytes() for one in at_once]
+    assert 8 in [track.id for track in later.tracks().objects]
 
-    restored = segment_clip(FRAMES, state=segmented.state(), progress=lambda stage, index, of: stages.append((stage, index)))
-    stages.clear()
-    assert [one.labels.tobytes() for one in restored] == expected
-    assert {stage for stage, _ in stages} == {"labels"}, "no pair is solved again"
-    restored.correct(Correction(3, np.full((72, 96), 255, np.uint8)))
-    assert [restored.frame(index).labels.tobytes() for index in range(COUNT)] == WHOLE
-
-
-def test_tracks_follow_what_changes() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
-    list(segmented)
-    changed = segmented.correct(Correction(0, square_mask(0, 5, 255)))
-    assert changed
-    assert [track.id for track in segmented.tracks().objects] == [5]
-
-
-def test_clicks_and_a_box_point_to_an_object() -> None:
-    for prompt in (
-        Prompt(2, 9, click=(45, 36)),
-        Prompt(2, 9, box=(20, 14, 46, 46)),
-        Prompt(2, 9, clicks=[(45, 36, 1), (30, 24, 1), (10, 60, -1)]),
-        Prompt(2, 9, (20, 14, 46, 46), clicks=[(40, 40, 1)]),
-    ):
-        found = list(segment_clip(FRAMES, **FAST, prompts=[prompt]))
-        assert [one.labels.tobytes() for one in found] == labels_of(FRAMES, corrections=[prompt]), "they may be among corrections"
-        for index in (0, 2, COUNT - 1):
-            now, truth = found[index].labels == 9, square_mask(index / 2, 1, 0) == 1
-            assert (now & truth).sum() / (now | truth).sum() > 0.7, (prompt, index)
-
-
-def test_a_prompt_is_replaced_and_taken_back() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
-    before = [segmented.frame(index).labels.tobytes() for index in range(COUNT)]
-    segmented.correct(Prompt(2, 9, click=(5, 5)))
-    segmented.correct(Prompt(2, 9, click=(45, 36)))
-    expected = labels_of(FRAMES, prompts=[Prompt(2, 9, click=(45, 36))])
-    assert [segmented.frame(index).labels.tobytes() for index in range(COUNT)] == expected
-    segmented.correct(Prompt(2, 9))
-    assert [segmented.frame(index).labels.tobytes() for index in range(COUNT)] == before
+    stages: List[str] = []
+    restored = segment_clip(FRAMES, state=later.state(), progress=lambda stage, *_: stages.append(stage))
+    assert [one.labels.tobytes() for one in restored] == now
+    assert {*stages} == {"labels"}, "no pair is solved again"
 
 
 def corner(label: int) -> Pixels:
@@ -178,56 +143,6 @@ def corner(label: int) -> Pixels:
     said = np.full((72, 96), 255, np.uint8)
     said[2:14, 2:18] = label
     return said
-
-
-def test_what_is_said_of_one_object_changes_no_other() -> None:
-    masks = [Mask(0, square_mask(0, 7, 0))]
-    segmented = segment_clip(FRAMES, **FAST, masks=masks)
-    before = [one.labels for one in segmented]
-    own = corner(9)
-    own[18:40, 24:50] = 0
-    wide = np.where(own == 255, np.uint8(0), own)
-    changed = segmented.correct(Correction(1, own, object=9), Prompt(4, 9, box=(0, 0, 40, 40)))
-    assert 1 in changed
-    for said in (wide, corner(9)):
-        for index in range(COUNT):
-            labels = segmented.frame(index).labels
-            assert ((labels == 7) == (before[index] == 7)).all(), index
-        segmented.correct(Correction(1, said, object=9))
-    both = segment_clip(FRAMES, **FAST, masks=masks, corrections=[Correction(1, corner(9), object=9), Correction(1, square_mask(0.5, 7, 255), object=7)])
-    labels = [one.labels for one in both][1]
-    assert (labels[2:14, 2:18] == 9).all() and (labels[square_mask(0.5, 1, 0) == 1] == 7).all()
-
-
-def test_what_changed_is_told() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
-    before = [one.labels for one in segmented]
-    assert segmented.changes() == []
-    changed = segmented.correct(Correction(3, square_mask(1.5, 9, 255)))
-    expected = []
-    for index in range(COUNT):
-        now = segmented.frame(index).labels
-        for number in (0, 1, 9):
-            gained, lost = int(((now == number) & (before[index] != number)).sum()), int(((now != number) & (before[index] == number)).sum())
-            if gained or lost:
-                expected.append(ClipChange(index, number, gained, lost))
-    assert segmented.changes() == expected
-    assert sorted({one.frame for one in expected}) == changed
-    segmented.delete(9)
-    assert segmented.changes() == [], "what is merged or deleted is not counted"
-    at_once = segment_clip(FRAMES, **FAST, corrections=[Correction(3, square_mask(1.5, 9, 255))])
-    assert at_once.changes() == expected
-
-
-def test_locked_objects_keep_every_pixel() -> None:
-    said = np.full((72, 96), 255, np.uint8)
-    said[18:54, 20:40] = 8
-    free = list(segment_clip(FRAMES, **FAST, corrections=[Correction(2, said)]))
-    segmented = segment_clip(FRAMES, **FAST, locked=[1], corrections=[Correction(2, said)])
-    kept = [one.labels == 1 for one in segmented]
-    whole = [np.frombuffer(labels, np.uint8).reshape(72, 96) == 1 for labels in WHOLE]
-    assert all((kept[index] == whole[index]).all() for index in range(COUNT))
-    assert any((free[index].labels == 1).sum() < whole[index].sum() for index in range(COUNT)), "without the lock it loses pixels"
 
 
 def test_of_a_locked_object_nothing_new_is_said() -> None:
@@ -259,49 +174,6 @@ def test_of_a_locked_object_nothing_new_is_said() -> None:
             segment_clip(FRAMES, **FAST, locked=[1], progress=lambda *step: steps.append(step), **options)
         assert caught.value.code == "object-locked"
     assert not steps, "no pair is solved before"
-
-
-def test_objects_that_are_named_change_by_what_is_said_of_them_alone() -> None:
-    said = np.full((72, 96), 255, np.uint8)
-    said[18:54, 20:40] = 8
-    by_option = segment_clip(FRAMES, **FAST, named=[1], corrections=[Correction(2, said)])
-    later = segment_clip(FRAMES, **FAST)
-    later.name([1])
-    later.correct(Correction(2, said))
-    for index in range(COUNT):
-        before, labels = np.frombuffer(WHOLE[index], np.uint8).reshape(72, 96), later.frame(index).labels
-        changed = (labels == 1) != (before == 1)
-        assert not changed[said == 255].any() and (index == 2 or not changed.any()), index
-        assert (labels == by_option.frame(index).labels).all()
-    assert later.correct(Correction(2, square_mask(1, 1, 0))), "a name is no lock"
-
-
-def test_accepted_frames_change_by_what_is_said_in_them_alone() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
-    before = [one.labels for one in segmented]
-    assert segmented.accept([1, 4]) == []
-    wide = np.full((72, 96), 255, np.uint8)
-    wide[10:60, 15:40] = 9
-    changed = segmented.correct(Correction(2, wide))
-    assert 2 in changed and not {1, 4} & set(changed)
-    assert all((segmented.frame(index).labels == before[index]).all() for index in (1, 4))
-    assert 4 in segmented.correct(Correction(4, corner(9)))
-    now = segmented.frame(4).labels
-    assert (now[2:14, 2:18] == 9).all() and (now[now != 9] == before[4][now != 9]).all()
-
-    right = square_mask(1.5, 1, 0)
-    given = segment_clip(FRAMES, **FAST, accepted=[Accepted(3, right), 5], corrections=[Correction(2, wide)])
-    assert (given.frame(3).labels == right).all()
-    assert (given.frame(5).labels == before[5]).all()
-    restored = segment_clip(FRAMES, state=given.state(), corrections=[Correction(1, wide)])
-    assert (restored.frame(3).labels == right).all()
-
-
-def test_what_is_painted_comes_before_prompts_wherever_it_is_said() -> None:
-    strokes, own = Correction(3, corner(9)), Correction(3, square_mask(1.5, 1, 255), object=1)
-    prompts = [Prompt(4, 5, box=(60, 5, 30, 20)), Prompt(1, 5, clicks=[(70, 60, 1)])]
-    one = labels_of(FRAMES, corrections=[strokes, own], prompts=prompts)
-    assert labels_of(FRAMES, corrections=[*prompts, strokes, own]) == one
 
 
 def test_objects_are_merged_and_deleted() -> None:
