@@ -38,11 +38,10 @@ describe('README.md', () => {
       const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 60_000 });
       assert.equal(status, 0, stderr);
       if (code.includes('console.log')) assert.notEqual(stdout, '');
-      if (code.includes("'labels.png'")) assert.ok(existsSync(folder.path('labels.png')));
     });
   }
 
-  test('there are such examples', () => assert.ok(ofNode.length >= 4));
+  test('there are such examples', () => assert.ok(ofNode.length >= 2));
 
   test('the commands', { skip: process.platform === 'win32' }, (t) => {
     const folder = project(t);

@@ -9,9 +9,6 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { hashOf, launch, outcomeOf, serve } from '../packed/browser.mjs';
 import { checkOutcome, expected, isWhole } from '../packed/outcome.mjs';
 import { install, run } from '../packed/packed.mjs';
-import { png } from '../support/frames.mjs';
-import { pair } from '../support/moving.mjs';
-import { examples } from '../support/readme.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const bin = (name) => join(here, 'node_modules', '.bin', name);
@@ -120,39 +117,6 @@ describe('without a bundler, under a strict content security policy', () => {
     const { address } = await page(t, 'main.js', (map) => `default-src 'none'; script-src 'self' ${map}; worker-src 'self'; connect-src 'self'; img-src data:`);
     const { outcome } = await outcomeOf(t, browser, `${address}strict.html`);
     assert.match(outcome.error, /^wasm-load-failed: .*(Content Security Policy|unsafe-eval)/);
-  });
-});
-
-describe('the examples of README.md', () => {
-  test('the page', async (t) => {
-    const [page] = examples('html page');
-    for (const [name, picture] of [['first', pair()[0]], ['second', pair()[1]]]) writeFileSync(join(app, `${name}.png`), png(picture));
-    writeFileSync(join(app, 'example.html'), page.replace('<canvas', '<link rel="icon" href="data:," /><canvas'));
-    const { address, missing } = await serve(t, app);
-    const tab = await browser.newPage();
-    t.after(() => tab.close());
-    await tab.goto(`${address}example.html`);
-    await tab.waitForFunction(() => /^\d+ motions$/.test(document.title), undefined, { timeout: 60_000 });
-    assert.equal(await tab.title(), `${JSON.parse(expected).count} motions`);
-    const painted = await tab.evaluate(() => {
-      const canvas = document.querySelector('#masks');
-      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-      return data.reduce((sum, value, index) => sum + Number(index % 4 === 3 && value > 0), 0);
-    });
-    assert.equal(painted, [...JSON.parse(expected).labels].filter((label) => label !== '0').length);
-    assert.deepEqual(missing, []);
-  });
-
-  test('the bundled one', async (t) => {
-    const [code] = examples('js bundler');
-    writeFileSync(join(app, 'example.js'), `import { first, second } from './frames.js';\n${code}\nglobalThis.outcome = { count };\n`);
-    const { build } = await import('esbuild');
-    const outdir = join(app, 'example-by-esbuild');
-    await build({ absWorkingDir: app, bundle: true, format: 'esm', outdir, entryPoints: { main: 'example.js', worker: 'veronese/worker' }, logLevel: 'silent' });
-    copyFileSync(join(app, 'index.html'), join(outdir, 'index.html'));
-    const { address } = await serve(t, outdir);
-    const { outcome, complaints } = await outcomeOf(t, browser, address);
-    assert.deepEqual([outcome, complaints], [{ count: JSON.parse(expected).count }, []]);
   });
 });
 

@@ -9,7 +9,7 @@ import { segmentPair } from 'veronese';
 import { encodeDavis, encodeSupervisely } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
-import { policyFor as documented, examples } from '../support/readme.mjs';
+import { policyFor as documented } from '../support/readme.mjs';
 import { outcomeOf, launch, serve } from '../packed/browser.mjs';
 import { install } from '../packed/packed.mjs';
 import { report } from '../packed/app/report.js';
@@ -148,19 +148,5 @@ describe('a package on another origin, under a strict content security policy', 
     rmSync(join(folder, 'dist/worker.js'));
     const { outcome } = await outcomeOf(t, browser, await page(t, IN_WORKERS, { folder }));
     assert.match(outcome.error, /^worker-failed: .*CORS/);
-  });
-
-  test('the page of README.md', async (t) => {
-    const [text] = examples('html cdn');
-    const { address: far } = await serve(t, join(app, 'node_modules/veronese'), SHARED);
-    const places = text.match(/https:\/\/cdn\.jsdelivr\.net\/npm\/veronese@[\d.]+\//g);
-    assert.ok(places.length > 0);
-    writeFileSync(join(app, 'cdn.html'), text.replaceAll(places[0], far).replace('<script', '<link rel="icon" href="data:," />\n<script'));
-    const { address } = await serve(t, app, {});
-    const tab = await browser.newPage();
-    t.after(() => tab.close());
-    await tab.goto(`${address}cdn.html`);
-    await tab.waitForFunction(() => /^\d+ motions$/.test(document.title), undefined, { timeout: 60_000 });
-    assert.equal(await tab.title(), `${expected.count} motions`);
   });
 });

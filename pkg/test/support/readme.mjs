@@ -9,7 +9,7 @@ export function policyFor(origin) {
   return /^Content-Security-Policy: (.*https:.*)$/m.exec(text)[1].replaceAll(/https:\/\/[^ ;]+/g, origin);
 }
 
-/** The code of all fences of a kind: `js node`, `sh run`, `html page`, `js bundler`. */
+/** The code of all fences of a kind: `js node`, `sh run`. */
 export function examples(kind) {
   return [...text.matchAll(/^```([^\n]*)\n([\s\S]*?)^```$/gm)].filter(([, info]) => info === kind).map(([, , code]) => code);
 }
