@@ -1,12 +1,13 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { byNumbers, findFrames } from '../build/cli/frames.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { pixmaps } from '../build/cli/video.js';
+import { clip as framesOf, lines, tree } from './support/folders.mjs';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
@@ -14,32 +15,13 @@ import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
 const clipFrame = (k, size) => frame(k / 2, size);
-
-/** A folder of test frames f0.png, f1.png …, and a place for results. */
-function clip(t, count, size) {
-  const folder = temporaryFolder(t);
-  mkdirSync(folder.path('frames'));
-  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k, size)));
-  return { ...folder, frames: folder.path('frames'), one: (k) => folder.path('frames', `f${k}.png`), out: folder.path('out') };
-}
-
-const lines = (text) => text.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line));
+const clip = (t, count, size) => framesOf(t, count, (k) => clipFrame(k, size));
 
 async function batch(args, { code = 0, ...options } = {}) {
   const run = await veronese(['batch', ...args], options);
   assert.equal(run.code, code, run.stderr);
   if (code === 0) assert.equal(run.stderr, '', 'nothing on stderr where nobody looks');
   return { ...run, lines: lines(run.stdout) };
-}
-
-/** Every file below a folder, hidden ones too, with its content. */
-function tree(folder) {
-  const files = {};
-  for (const entry of readdirSync(folder, { recursive: true })) {
-    const path = join(folder, entry);
-    files[entry] = statSync(path).isDirectory() ? 'folder' : readFileSync(path, 'latin1');
-  }
-  return files;
 }
 
 describe('veronese batch', () => {

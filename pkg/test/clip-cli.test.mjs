@@ -7,23 +7,15 @@ import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette, segmentClip, version } from 'veronese';
+import { clip as framesOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, veronese } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 64, height: 48 };
 const clipFrame = (k) => frame(k / 2, SIZE);
 const NAMES = Array.from({ length: COUNT }, (_, k) => `f${k}`);
-
-/** A folder of frames f0.png, f1.png …, and a place for results. */
-function clip(t, count = COUNT) {
-  const folder = temporaryFolder(t);
-  mkdirSync(folder.path('frames'));
-  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k)));
-  return { ...folder, frames: folder.path('frames'), one: (k) => folder.path('frames', `f${k}.png`), out: folder.path('out') };
-}
-
-const lines = (text) => text.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line));
+const clip = (t, count = COUNT) => framesOf(t, count, clipFrame);
 
 async function run(args, { code = 0, ...options } = {}) {
   const done = await veronese(['clip', '--quality', 'fast', ...args], options);
@@ -38,18 +30,6 @@ async function fails(args, error, code = 1) {
   assert.match(done.stderr, new RegExp(`^veronese: error: ${error}: [^\\n]+\\n$`));
   return done;
 }
-
-/** Every file below a folder, hidden ones too, with its content. */
-function tree(folder) {
-  const files = {};
-  for (const entry of readdirSync(folder, { recursive: true })) {
-    const path = join(folder, entry);
-    if (!statSync(path).isDirectory()) files[entry] = readFileSync(path, 'latin1');
-  }
-  return files;
-}
-
-const tracksOf = (out) => JSON.parse(readFileSync(join(out, 'tracks.json'), 'utf8'));
 
 describe('veronese clip', () => {
   test('writes labels of every frame and the tracks, and prints a line for each frame', async (t) => {

@@ -2,33 +2,31 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { createHash } from 'node:crypto';
 import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, watch, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
-import { decode } from 'fast-png';
 import { davisPalette, segmentClip } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
 import { ProgressBar } from '../build/cli/terminal.js';
+import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
 import * as three from './support/three.mjs';
-import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { veronese, veroneseProcess } from './support/program.mjs';
 
 const COUNT = 6;
 const SIZE = { width: 96, height: 72 };
 const PIXELS = SIZE.width * SIZE.height;
 const clipFrame = (k) => frame(k / 2, SIZE);
-const halfSteps = clipFrame;
 
 /** A folder of frames, one for corrections, one for masks, and places for results. */
-function clip(t, count = COUNT, clipFrame = halfSteps) {
-  const folder = temporaryFolder(t);
-  for (const name of ['frames', 'said', 'masks']) mkdirSync(folder.path(name));
-  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k)));
-  const said = (name, content) => writeFileSync(folder.path('said', name), content);
-  const given = (name, content) => writeFileSync(folder.path('masks', name), content);
-  return { ...folder, frames: folder.path('frames'), corrections: folder.path('said'), said, masks: folder.path('masks'), given, out: folder.path('out') };
+function clip(t, count = COUNT, picture = clipFrame) {
+  const folder = framesOf(t, count, picture);
+  const { path } = folder;
+  for (const name of ['said', 'masks']) mkdirSync(path(name));
+  const said = (name, content) => writeFileSync(path('said', name), content);
+  const given = (name, content) => writeFileSync(path('masks', name), content);
+  return { ...folder, corrections: path('said'), said, masks: path('masks'), given };
 }
 
 /** The square in frame 3 as an object 9; nothing is said of the rest. */
@@ -42,21 +40,9 @@ async function run(args, { code = 0, ...options } = {}) {
   const done = await veronese(['clip', '--quality', 'fast', ...args], options);
   assert.equal(done.code, code, done.stderr);
   if (code === 0) assert.equal(done.stderr, '');
-  return { ...done, lines: done.stdout.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line)) };
+  return { ...done, lines: lines(done.stdout) };
 }
 
-/** Every file below a folder, hidden ones too, with a hash of its content. */
-function tree(folder) {
-  const files = {};
-  for (const entry of readdirSync(folder, { recursive: true })) {
-    const path = join(folder, entry);
-    if (!statSync(path).isDirectory()) files[entry] = createHash('sha256').update(readFileSync(path)).digest('hex');
-  }
-  return files;
-}
-
-const tracksOf = (out) => JSON.parse(readFileSync(join(out, 'tracks.json'), 'utf8'));
-const labelsOf = (out, k) => new Uint8Array(decode(readFileSync(join(out, 'labels', `f${k}.png`))).data);
 const written = (path) => statSync(path, { bigint: true }).mtimeNs;
 
 describe('veronese clip --corrections', () => {
@@ -100,7 +86,7 @@ describe('veronese clip --corrections', () => {
     await run([frames, '--out', out]);
     const state = join(out, '.clip', 'state');
     const [at, base] = [written(state), tree(out)];
-    assert.deepEqual(Object.keys(base).filter((name) => name.startsWith('.')), ['.veronese', join('.clip', 'state')]);
+    assert.deepEqual(Object.keys(base).filter((name) => name.startsWith('.')), ['.clip', '.veronese', join('.clip', 'state')]);
     said('f3.png', await mask());
     await run([frames, '--corrections', corrections, '--out', out]);
     const first = tracksOf(out).settings.corrections;

@@ -6,16 +6,12 @@ import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { open } from 'node:fs/promises';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
-import { frame, png } from './support/frames.mjs';
+import { clip } from './support/folders.mjs';
+import { frame } from './support/frames.mjs';
 import { program, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { largeFrames, markedReading, there } from './support/stopping.mjs';
 
-function frames(t) {
-  const folder = temporaryFolder(t);
-  mkdirSync(folder.path('frames'));
-  for (let k = 0; k < 3; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(frame(k)));
-  return { ...folder, frames: folder.path('frames'), one: (k) => folder.path('frames', `f${k}.png`) };
-}
+const frames = (t) => clip(t, 3, frame);
 
 describe('SIGTERM', { skip: process.platform === 'win32' }, () => {
   /** `underWay(child)` waits until it is at work, or waits itself. */

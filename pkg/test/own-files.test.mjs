@@ -3,46 +3,31 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { appendFileSync, cpSync, existsSync, linkSync, lstatSync, mkdirSync, readdirSync, readFileSync, readlinkSync, renameSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { appendFileSync, cpSync, existsSync, linkSync, mkdirSync, readFileSync, renameSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
-import { frame, png } from './support/frames.mjs';
+import { clip, tree } from './support/folders.mjs';
 import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases, soaking } from './support/soak.mjs';
 
 const COUNT = 4;
 const skipWindows = process.platform === 'win32';
 
-/** A folder of frames f0.png, f1.png …, and a place for results. */
 function made(t, count = COUNT) {
-  const folder = temporaryFolder(t);
-  mkdirSync(folder.path('frames'));
-  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(frame(k / 2)));
-  const one = (k) => folder.path('frames', `f${k}.png`);
-  const out = folder.path('out');
+  const folder = clip(t, count);
+  const { one, out } = folder;
   const commands = {
     pair: ['pair', one(0), one(1), '--quality', 'fast', '--out', out],
-    batch: ['batch', folder.path('frames'), '--quality', 'fast', '--jobs', '1', '--out', out],
-    clip: ['clip', folder.path('frames'), '--quality', 'fast', '--out', out],
+    batch: ['batch', folder.frames, '--quality', 'fast', '--jobs', '1', '--out', out],
+    clip: ['clip', folder.frames, '--quality', 'fast', '--out', out],
   };
   const place = (path, content) => {
     mkdirSync(dirname(join(out, path)), { recursive: true });
     writeFileSync(join(out, path), content);
     return join(out, path);
   };
-  return { ...folder, one, out, commands, place };
-}
-
-/** Every file and link below a folder, hidden ones too, with its content. */
-function tree(folder) {
-  const files = {};
-  for (const entry of readdirSync(folder, { recursive: true })) {
-    const path = join(folder, entry);
-    const status = lstatSync(path);
-    files[entry] = status.isSymbolicLink() ? `-> ${readlinkSync(path)}` : status.isDirectory() ? 'folder' : readFileSync(path, 'latin1');
-  }
-  return files;
+  return { ...folder, commands, place };
 }
 
 async function done(args) {
