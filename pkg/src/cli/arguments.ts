@@ -6,7 +6,6 @@ import { FRAME_RATES, LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
 import { isFormatName } from './formats.js';
-import type { PairSettings } from './pair.js';
 import type { Range } from './sequence.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
@@ -104,90 +103,6 @@ Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cance
 /** What `convert` reads masks back to. */
 const BACK = 'corrections';
 
-/** `force`: whether files of others are replaced. */
-interface PairOutput {
-  out?: string;
-  force: boolean;
-}
-
-/** Settings of the two commands for sequences of frames. */
-export interface SequenceSettings extends PairSettings, PairOutput {
-  every: number;
-  jobs: number;
-  /** The part of all pairs to process; `index` counts from 0. */
-  shard: { index: number; of: number };
-}
-
-export interface ClipSettings {
-  motions: 'auto' | number;
-  quality: 'fast' | 'best';
-  lookAhead: number | 'all';
-  markUnknown: boolean;
-}
-
-export type Command =
-  | { name: 'help' }
-  | { name: 'version' }
-  | ({
-      name: 'pair';
-      first: string;
-      second: string;
-    } & PairSettings & PairOutput)
-  | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
-  | ({ name: 'video'; file: string; allowDamaged: boolean } & SequenceSettings)
-  | {
-      name: 'clip';
-      frames: string[];
-      list?: string;
-      every: number;
-      options: ClipSettings;
-      /** Folders of given masks and of corrections. */
-      masks?: string;
-      corrections?: string;
-      /** Of a video. */
-      allowDamaged: boolean;
-      jobs: number;
-      overlay: boolean;
-      out: string;
-      force: boolean;
-    }
-  | {
-      name: 'convert';
-      folder: string;
-      to: SequenceFormatName[];
-      tolerance: number;
-      grouped: boolean;
-      background: boolean;
-      range: Range;
-      image?: string;
-      shapes?: 'polygon' | 'box';
-      video?: string;
-      frameRate?: number;
-      out?: string;
-      force: boolean;
-    }
-  | {
-      name: 'corrections';
-      /** A file or a folder of annotations. */
-      source: string;
-      /** Folder of a clip. */
-      clip?: string;
-      out: string;
-      force: boolean;
-    }
-  | {
-      name: 'points';
-      file: string;
-      options: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number };
-    };
-
-export type PairCommand = Extract<Command, { name: 'pair' }>;
-export type PointsCommand = Extract<Command, { name: 'points' }>;
-export type ConvertCommand = Extract<Command, { name: 'convert' }>;
-export type CorrectionsCommand = Extract<Command, { name: 'corrections' }>;
-export type ClipCommand = Extract<Command, { name: 'clip' }>;
-export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
-
 const OPTIONS = {
   help: { type: 'boolean', short: 'h' },
   version: { type: 'boolean' },
@@ -223,15 +138,28 @@ const OPTIONS = {
 
 const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'force'];
 const OF_SEQUENCES = [...OF_PAIRS, 'every', 'jobs', 'shard'];
+const OF_CLIPS = ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'];
+const OF_CONVERT = ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'];
 
-const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  pair: OF_PAIRS,
-  batch: ['list', ...OF_SEQUENCES],
-  video: ['allow-damaged', ...OF_SEQUENCES],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'],
-  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'],
-  points: ['motions', 'method', 'seed'],
+/** By command the options that it has, and who reads what is asked. */
+const COMMANDS = {
+  pair: { options: OF_PAIRS, read: pair },
+  batch: { options: ['list', ...OF_SEQUENCES], read: batch },
+  video: { options: ['allow-damaged', ...OF_SEQUENCES], read: video },
+  clip: { options: OF_CLIPS, read: clip },
+  convert: { options: OF_CONVERT, read: convert },
+  points: { options: ['motions', 'method', 'seed'], read: points },
 };
+
+type Values = ReturnType<typeof parsed>['values'];
+
+export type PairCommand = ReturnType<typeof pair>;
+export type PointsCommand = ReturnType<typeof points>;
+export type ConvertCommand = Extract<ReturnType<typeof convert>, { name: 'convert' }>;
+export type CorrectionsCommand = Extract<ReturnType<typeof convert>, { name: 'corrections' }>;
+export type ClipCommand = ReturnType<typeof clip>;
+export type SequenceCommand = ReturnType<typeof batch> | ReturnType<typeof video>;
+export type Command = { name: 'help' } | { name: 'version' } | ReturnType<(typeof COMMANDS)[keyof typeof COMMANDS]['read']>;
 
 /**
  * Throws a {@link VeroneseError} with code `wrong-usage` for an option that the command does not have, `invalid-option` for an invalid value
@@ -243,95 +171,93 @@ export function parseCommand(args: string[]): Command {
   if (values.version) return { name: 'version' };
   const [name, ...files] = positionals;
   if (name === undefined) throw usage('a command is missing');
-  const allowed = ALLOWED[name];
-  if (!allowed) throw usage(`there is no command '${name}'`);
-  for (const token of tokens) {
-    if (token.kind !== 'option') continue;
-    if (!allowed.includes(token.name)) throw unknown(`'${name}' has no option '--${token.name}'`);
-    if (token.value === '') throw usage(`option '--${token.name}' is empty`);
+  if (!Object.hasOwn(COMMANDS, name)) throw usage(`there is no command '${name}'`);
+  const { options, read } = COMMANDS[name as keyof typeof COMMANDS];
+  const given = tokens.filter((token) => token.kind === 'option');
+  for (const { name: option, value } of given) {
+    if (!options.includes(option)) throw unknown(`'${name}' has no option '--${option}'`);
+    if (value === '') throw usage(`option '--${option}' is empty`);
   }
-  const shared = { motions: motions(values.motions) };
-  if (name === 'points') {
-    const [file] = exactly(1, files, "'points' takes one file");
-    return { name, file: file as string, options: { ...shared, seed: seed(values.seed), method: choice('method', values.method, 'paper', 'best') } };
+  return read(values, files, given.map((option) => option.name));
+}
+
+function points(values: Values, files: string[]) {
+  const [file] = exactly(1, files, "'points' takes one file") as [string];
+  const options = { motions: motions(values.motions), seed: seed(values.seed), method: choice('method', values.method, 'paper', 'best') };
+  return { name: 'points' as const, file, options };
+}
+
+function convert(values: Values, files: string[], given: readonly string[]) {
+  const { to, out, clip, grouped, background, image, video, force } = values;
+  const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
+  if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
+  const back = to.split(',').includes(BACK);
+  for (const option of given) {
+    if (back ? ['to', 'clip', 'out', 'force'].includes(option) : option !== 'clip') continue;
+    throw usage(back ? `'--to ${BACK}' has no option '--${option}'` : `'--clip' needs '--to ${BACK}'`);
   }
-  if (name === 'convert') {
-    const [folder] = exactly(1, files, "'convert' takes one folder");
-    if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
-    const back = values.to.split(',').includes(BACK);
-    for (const token of tokens) {
-      if (token.kind !== 'option' || (back ? ['to', 'clip', 'out', 'force'].includes(token.name) : token.name !== 'clip')) continue;
-      throw usage(back ? `'--to ${BACK}' has no option '--${token.name}'` : `'--clip' needs '--to ${BACK}'`);
-    }
-    if (back) {
-      if (values.to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
-      if (values.out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
-      return { name: BACK, source: folder as string, out: values.out, force: values.force, ...(values.clip !== undefined && { clip: values.clip }) };
-    }
-    return {
-      name,
-      folder: folder as string,
-      to: formats(values.to),
-      tolerance: decimal('tolerance', values.tolerance),
-      grouped: values.grouped,
-      background: values.background,
-      range: range(values.from, values.until),
-      ...(values.image !== undefined && { image: values.image }),
-      ...(values.shapes !== undefined && { shapes: choice('shapes', values.shapes, 'polygon', 'box') }),
-      ...(values.video !== undefined && { video: values.video }),
-      ...(values['frame-rate'] !== undefined && { frameRate: decimal('frame-rate', values['frame-rate'], FRAME_RATES.least, FRAME_RATES.most) }),
-      ...(values.out !== undefined && { out: values.out }),
-      force: values.force,
-    };
+  if (back) {
+    if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
+    if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
+    return { name: BACK, source: folder, out, clip, force } as const;
   }
-  if (name === 'clip') {
-    const { list, out, overlay, masks, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
-    checkFrames(name, files, list);
-    if (out === undefined) throw usage("'clip' needs '--out DIR'");
-    const options: ClipSettings = {
-      ...shared,
-      quality: choice('quality', values.quality, 'fast', 'best'),
-      lookAhead: lookAhead === undefined ? 'all' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
-      markUnknown: values['mark-unknown'],
-    };
-    const given = {
-      ...(list !== undefined && { list }),
-      ...(masks !== undefined && { masks }),
-      ...(corrections !== undefined && { corrections }),
-    };
-    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)), out, force: values.force };
-  }
+  const { shapes, 'frame-rate': rate } = values;
+  return {
+    name: 'convert' as const,
+    folder,
+    to: formats(to),
+    tolerance: decimal('tolerance', values.tolerance),
+    range: range(values.from, values.until),
+    shapes: shapes === undefined ? undefined : choice('shapes', shapes, 'polygon', 'box'),
+    frameRate: rate === undefined ? undefined : decimal('frame-rate', rate, FRAME_RATES.least, FRAME_RATES.most),
+    ...{ grouped, background, image, video, out, force },
+  };
+}
+
+function clip(values: Values, files: string[]) {
+  const { list, out, overlay, masks, corrections, force, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
+  checkFrames('clip', files, list);
+  if (out === undefined) throw usage("'clip' needs '--out DIR'");
+  const options = {
+    motions: motions(values.motions),
+    quality: quality(values),
+    lookAhead: lookAhead === undefined ? ('all' as const) : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
+    markUnknown: values['mark-unknown'],
+  };
+  const shared = { every: every(values.every), jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)) };
+  return { name: 'clip' as const, frames: files, list, masks, corrections, ...shared, options, overlay, allowDamaged, out, force };
+}
+
+function pair(values: Values, files: string[]) {
+  const settings = ofPairs(values);
+  const [first, second] = exactly(2, files, "'pair' takes two files") as [string, string];
+  return { name: 'pair' as const, first, second, ...settings };
+}
+
+function batch(values: Values, frames: string[]) {
+  const settings = ofSequences(values);
+  checkFrames('batch', frames, values.list);
+  return { name: 'batch' as const, frames, list: values.list, ...settings };
+}
+
+function video(values: Values, files: string[]) {
+  const settings = ofSequences(values);
+  const [file] = exactly(1, files, "'video' takes one file") as [string];
+  return { name: 'video' as const, file, allowDamaged: values['allow-damaged'], ...settings };
+}
+
+function ofPairs(values: Values) {
+  const { out, grouped, overlay, confidence, force } = values;
   for (const name of ['overlay', 'confidence', 'force'] as const) {
-    if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
+    if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  const settings: PairSettings & PairOutput = {
-    options: {
-      ...shared,
-      quality: choice('quality', values.quality, 'fast', 'best'),
-      markUnknown: values['mark-unknown'],
-      confidence: values.confidence,
-    },
-    grouped: values.grouped,
-    overlay: values.overlay,
-    force: values.force,
-    ...(values.out !== undefined && { out: values.out }),
-  };
-  if (name === 'pair') {
-    const [first, second] = exactly(2, files, "'pair' takes two files");
-    return { name, first: first as string, second: second as string, ...settings };
-  }
-  const sequence: SequenceSettings = {
-    ...settings,
-    every: every(values.every),
-    jobs: jobs(values.jobs, availableParallelism()),
-    shard: shard(values.shard),
-  };
-  if (name === 'video') {
-    const [file] = exactly(1, files, "'video' takes one file");
-    return { name, file: file as string, allowDamaged: values['allow-damaged'], ...sequence };
-  }
-  checkFrames('batch', files, values.list);
-  return { name: 'batch', frames: files, ...(values.list !== undefined && { list: values.list }), ...sequence };
+  const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], confidence };
+  return { options, grouped, overlay, out, force };
+}
+
+/** The part of all pairs to process is counted from 0. */
+function ofSequences(values: Values) {
+  return { ...ofPairs(values), every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), shard: shard(values.shard) };
 }
 
 function parsed(args: string[]) {
@@ -355,6 +281,10 @@ function exactly(count: number, files: string[], sentence: string): string[] {
   if (files.length !== count) throw usage(`${sentence}, found ${files.length}`);
   if (files.includes('')) throw usage("a file's name is empty");
   return files;
+}
+
+function quality(values: Values): 'fast' | 'best' {
+  return choice('quality', values.quality, 'fast', 'best');
 }
 
 function motions(text: string): 'auto' | number {

@@ -46,7 +46,7 @@ export interface Corrections {
 }
 
 /** Undefined if nothing is said. Throws an error that names the file. */
-export async function readCorrections(folders: { masks?: string; corrections?: string }, frames: ClipFrames): Promise<Corrections | undefined> {
+export async function readCorrections(folders: { [folder in 'masks' | 'corrections']: string | undefined }, frames: ClipFrames): Promise<Corrections | undefined> {
   const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames);
   const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames);
   const both = [masks, corrections].filter((folder) => folder !== undefined);
