@@ -202,16 +202,13 @@ function convert(values: Values, files: string[], given: readonly string[]) {
     return { name: BACK, source: folder, out, clip, force } as const;
   }
   const { shapes, 'frame-rate': rate } = values;
-  return {
-    name: 'convert' as const,
-    folder,
-    to: formats(to),
+  const settings = {
     tolerance: decimal('tolerance', values.tolerance),
     range: range(values.from, values.until),
     shapes: shapes === undefined ? undefined : choice('shapes', shapes, 'polygon', 'box'),
     frameRate: rate === undefined ? undefined : decimal('frame-rate', rate, FRAME_RATES.least, FRAME_RATES.most),
-    ...{ grouped, background, image, video, out, force },
   };
+  return { name: 'convert' as const, folder, to: formats(to), ...settings, grouped, background, image, video, out, force };
 }
 
 function clip(values: Values, files: string[]) {

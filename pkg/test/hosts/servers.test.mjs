@@ -102,18 +102,11 @@ describe('the Label Studio backend', () => {
     const address = await backend(t, { allow: [origin, 'http://127.0.0.1:9'] });
     for (const [body, status, code] of [
       ['{"tasks', 400, 'invalid-json'],
-      ['', 400, 'invalid-json'],
       ['null', 400, 'invalid-input'],
-      ['[]', 400, 'invalid-input'],
-      ['"tasks"', 400, 'invalid-input'],
       [{}, 400, 'invalid-input'],
       [{ tasks: [null], label_config: CONFIG }, 400, 'invalid-input'],
-      [{ tasks: [3], label_config: CONFIG }, 400, 'invalid-input'],
-      [{ tasks: [[]], label_config: CONFIG }, 400, 'invalid-input'],
       [{ tasks: [{}] }, 422, 'invalid-input'],
-      [{ tasks: [{}], label_config: null }, 422, 'invalid-input'],
       [{ tasks: [{}], label_config: CONFIG }, 422, 'invalid-input'],
-      [{ tasks: [{ data: null }], label_config: CONFIG }, 422, 'invalid-input'],
       [{ tasks: [{}], label_config: '<View/>' }, 422, 'invalid-input'],
       [{ tasks: [{}], label_config: '<View><Image name="a" value="$a"/><BrushLabels name="b" toName="a"/></View>' }, 422, 'invalid-input'],
       [task(`${origin}/0.png`), 422, 'invalid-input'],
