@@ -7,6 +7,7 @@ import { deflateSync, gzipSync } from 'node:zlib';
 import { zipSync } from 'fflate';
 import * as formats from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
+import { chunk } from './support/chunks.mjs';
 import { drawnClip } from './support/clip.mjs';
 import { drawn, labelImages } from './support/masks.mjs';
 import { soaking } from './support/soak.mjs';
@@ -450,12 +451,6 @@ describe('what is none of that', () => {
         const seconds = (user + system) / 1e6;
         assert.ok(seconds < 20, `${seconds} s`);
       });
-    }
-
-    function chunk(name, content) {
-      const length = Buffer.alloc(4);
-      length.writeUInt32BE(content.length);
-      return Buffer.concat([length, Buffer.from(name), content, Buffer.alloc(4)]);
     }
   });
 });

@@ -9,6 +9,7 @@ import { deflateSync } from 'node:zlib';
 import { davisPalette, segmentClip } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
 import { ProgressBar } from '../build/cli/terminal.js';
+import { pngOf } from './support/chunks.mjs';
 import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
 import * as three from './support/three.mjs';
@@ -127,7 +128,7 @@ describe('veronese clip --corrections', () => {
       return Buffer.from([0, ...Array.from({ length: SIZE.width / 8 }, (_, k) => row.subarray(8 * k, 8 * k + 8).reduce((byte, bit) => 2 * byte + bit, 0))]);
     });
     rmSync(join(corrections, 'f3.PNG'));
-    said('f3.png', onePng([1, 3], Buffer.concat(rows)));
+    said('f3.png', pngOf([SIZE.width, SIZE.height, 1, 3], ['PLTE', Buffer.alloc(6)], ['IDAT', deflateSync(Buffer.concat(rows))]));
     assert.deepEqual(await straight(), bits);
   });
 
@@ -439,20 +440,3 @@ describe('veronese clip VIDEO', () => {
     assert.match(said3, /f3\.png' has the name of no frame/);
   });
 });
-
-/** A PNG of these bit depth and colour type, from rows with their filters. */
-function onePng([depth, type], rows) {
-  const header = Buffer.alloc(13);
-  header.writeUInt32BE(SIZE.width, 0);
-  header.writeUInt32BE(SIZE.height, 4);
-  header.set([depth, type], 8);
-  const chunks = [['IHDR', header], ['PLTE', Buffer.alloc(6)], ['IDAT', deflateSync(rows)], ['IEND', Buffer.alloc(0)]];
-  const packed = chunks.map(([name, content]) => {
-    const chunk = Buffer.alloc(content.length + 12);
-    chunk.writeUInt32BE(content.length, 0);
-    chunk.write(name, 4, 'latin1');
-    content.copy(chunk, 8);
-    return chunk;
-  });
-  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), ...packed]);
-}

@@ -7,7 +7,7 @@ import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
 import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
 import { asked } from '../build/calls/clip/asked.js';
 import { frame } from './support/frames.mjs';
-import { failure } from './support/shapes.mjs';
+import { all, failure } from './support/shapes.mjs';
 import { cases } from './support/soak.mjs';
 
 const COUNT = 7;
@@ -36,12 +36,6 @@ function iou({ labels, index }, id) {
   const truth = square(index);
   const both = truth.filter((isInside, p) => isInside && labels[p] === id).length;
   return both / truth.filter((isInside, p) => isInside || labels[p] === id).length;
-}
-
-async function all(clip) {
-  const frames = [];
-  for await (const one of clip) frames.push(one);
-  return frames;
 }
 
 const run = (segment, options, from = source) => all(segment(from, { quality: 'fast', ...options }));

@@ -9,7 +9,7 @@ import { Worker } from 'node:worker_threads';
 import { segmentClip, segmentPair, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { clipOf } from '../build/calls/clip.js';
 import { frame, pair } from './support/frames.mjs';
-import { checkMatrix, failure, timeless } from './support/shapes.mjs';
+import { all, checkMatrix, failure, timeless, until } from './support/shapes.mjs';
 
 const COUNT = 7;
 const SIZE = { width: 64, height: 48 };
@@ -17,21 +17,6 @@ const FAST = { quality: 'fast', lookAhead: 1 };
 
 /** A short clip of a square that moves over a static background. */
 const frames = (count = COUNT) => Array.from({ length: count }, (_, k) => frame(k / 2, SIZE));
-
-async function all(clip) {
-  const list = [];
-  for await (const one of clip) list.push(one);
-  return list;
-}
-
-/** The indices that a clip returns before it fails, and its error. */
-async function until(clip) {
-  const given = [];
-  const error = await failure((async () => {
-    for await (const { index } of clip) given.push(index);
-  })());
-  return { given, error };
-}
 
 /** A segmenter that ends with the test and counts its workers. */
 function segmenter(t) {

@@ -6,6 +6,7 @@ import { decode, encode } from 'fast-png';
 import { davisPalette } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
 import { glue } from '../build/entries/glue-codecs.js';
+import { chunk, pngOf } from './support/chunks.mjs';
 import { bmp, frame, png, ppm, ramp, turnedJpeg } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
 
@@ -104,7 +105,7 @@ describe('a file costs the memory of its pixels, whatever else it claims or carr
   const keyword = Buffer.from('name\0');
   const header = plain.subarray(0, 33);
   /** The picture with one more chunk after its header. */
-  const carrying = (kind, ...content) => Buffer.concat([header, pngChunk(kind, Buffer.concat(content)), plain.subarray(33)]);
+  const carrying = (kind, ...content) => Buffer.concat([header, chunk(kind, Buffer.concat(content)), plain.subarray(33)]);
   const fails = (code) => (file) => assert.throws(() => glue.decodeImage(file), { code });
   const decodes = (file) => assert.deepEqual(glue.decodeImage(file), glue.decodeImage(plain));
   const cases = {
@@ -112,8 +113,8 @@ describe('a file costs the memory of its pixels, whatever else it claims or carr
     'a compressed text': [carrying('zTXt', keyword, Buffer.of(0), zeros), decodes],
     'an international text': [carrying('iTXt', keyword, Buffer.of(1, 0, 0, 0), zeros), decodes],
     'an XMP packet': [carrying('iTXt', Buffer.from('XML:com.adobe.xmp\0'), Buffer.of(1, 0, 0, 0), zeros), decodes],
-    'pixels after the last row': [Buffer.concat([header, pngChunk('IDAT', zeros), pngChunk('IEND', Buffer.alloc(0))]), () => {}],
-    'a PNG of enormous sides': [pngOf(30_000, 30_000, zeros), fails('frame-size-unsupported')],
+    'pixels after the last row': [Buffer.concat([header, chunk('IDAT', zeros), chunk('IEND', Buffer.alloc(0))]), () => {}],
+    'a PNG of enormous sides': [pngOf([30_000, 30_000, 8, 6], ['IDAT', zeros]), fails('frame-size-unsupported')],
     'a WebP whose Exif claims 1.8 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0x7000_0000]), fails('unreadable-image')],
     'a WebP whose Exif claims 4 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0xffff_fff0]), fails('unreadable-image')],
     'a WebP with a frame larger than itself': [webp(['VP8X', extended(0, 64, 64)], ['VP8 ', lossy(16_383, 16_383)]), fails('frame-size-unsupported')],
@@ -130,8 +131,8 @@ describe('a file costs the memory of its pixels, whatever else it claims or carr
 
 describe('sides that no frame can have', () => {
   const cases = {
-    'PNG 30000 × 30000': pngOf(30_000, 30_000, deflateSync(Buffer.alloc(100))),
-    'PNG 0 × 0': pngOf(0, 0, deflateSync(Buffer.alloc(0))),
+    'PNG 30000 × 30000': pngOf([30_000, 30_000, 8, 6], ['IDAT', deflateSync(Buffer.alloc(100))]),
+    'PNG 0 × 0': pngOf([0, 0, 8, 6], ['IDAT', deflateSync(Buffer.alloc(0))]),
     'PGM 0 × 0': Buffer.from('P5\n0 0\n255\n'),
     'PPM 1000000 × 1000000': Buffer.from('P6\n1000000 1000000\n255\n'),
     'WebP 16384 × 16384': webp(['VP8L', Buffer.from('2fffffff0f', 'hex')]),
@@ -146,39 +147,14 @@ describe('sides that no frame can have', () => {
   }
 });
 
-/** A chunk of a PNG. */
-function pngChunk(kind, content) {
-  const chunk = Buffer.alloc(content.length + 12);
-  chunk.writeUInt32BE(content.length, 0);
-  chunk.write(kind, 4, 'latin1');
-  content.copy(chunk, 8);
-  let sum = ~0;
-  for (const byte of chunk.subarray(4, -4)) {
-    sum ^= byte;
-    for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (sum & 1 ? 0xedb88320 : 0);
-  }
-  chunk.writeUInt32BE(~sum >>> 0, content.length + 8);
-  return chunk;
-}
-
-/** An RGBA PNG whose header says these sides. */
-function pngOf(width, height, compressed) {
-  const header = Buffer.alloc(13);
-  header.writeUInt32BE(width, 0);
-  header.writeUInt32BE(height, 4);
-  header.set([8, 6], 8);
-  const chunks = [['IHDR', header], ['IDAT', compressed], ['IEND', Buffer.alloc(0)]];
-  return Buffer.concat([Buffer.from('89504e470d0a1a0a', 'hex'), ...chunks.map(([kind, content]) => pngChunk(kind, content))]);
-}
-
 /** A WebP of chunks: their kind, their content, and the length they claim. */
 function webp(...chunks) {
   const body = chunks.map(([kind, content, length = content.length]) => {
-    const chunk = Buffer.alloc(8 + content.length + (content.length % 2));
-    chunk.write(kind, 'latin1');
-    chunk.writeUInt32LE(length, 4);
-    content.copy(chunk, 8);
-    return chunk;
+    const part = Buffer.alloc(8 + content.length + (content.length % 2));
+    part.write(kind, 'latin1');
+    part.writeUInt32LE(length, 4);
+    content.copy(part, 8);
+    return part;
   });
   const file = Buffer.concat([Buffer.from('RIFF\0\0\0\0WEBP', 'latin1'), ...body]);
   file.writeUInt32LE(file.length - 8, 4);

@@ -7,6 +7,7 @@ import { encodeIndexedPng } from 'veronese/codecs';
 import { encodeDavis } from 'veronese/formats';
 import { decodeIndices } from '../build/formats/indexed-png.js';
 import { random } from '../../scripts/lib/random.mjs';
+import { pngOf } from './support/chunks.mjs';
 import { png } from './support/frames.mjs';
 import { labelImages } from './support/masks.mjs';
 
@@ -22,12 +23,6 @@ const PREDICTED = [
   },
 ];
 
-function chunk(name, content) {
-  const length = Buffer.alloc(4);
-  length.writeUInt32BE(content.length);
-  return Buffer.concat([length, Buffer.from(name), content, Buffer.alloc(4)]);
-}
-
 /** Row y has filter `filters[y % filters.length]`; the data are in two chunks. */
 function filtered({ labels, width, height }, filters) {
   const at = (x, y) => (x < 0 || y < 0 ? 0 : labels[y * width + x]);
@@ -38,11 +33,8 @@ function filtered({ labels, width, height }, filters) {
     for (let x = 0; x < width; x++) rows.push((at(x, y) - PREDICTED[filter](at(x - 1, y), at(x, y - 1), at(x - 1, y - 1))) & 255);
   }
   const data = deflateSync(Buffer.from(rows));
-  const header = Buffer.from([0, 0, 0, 0, 0, 0, 0, 0, 8, 3, 0, 0, 0]);
-  header.writeUInt32BE(width, 0);
-  header.writeUInt32BE(height, 4);
-  const parts = [data.subarray(0, 7), data.subarray(7)].map((part) => chunk('IDAT', part));
-  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), chunk('IHDR', header), chunk('PLTE', Buffer.alloc(768)), ...parts, chunk('IEND', Buffer.alloc(0))]);
+  const parts = [data.subarray(0, 7), data.subarray(7)].map((part) => ['IDAT', part]);
+  return pngOf([width, height, 8, 3], ['PLTE', Buffer.alloc(768)], ...parts);
 }
 
 const next = random(5);

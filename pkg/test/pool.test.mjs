@@ -5,7 +5,7 @@ import { Worker } from 'node:worker_threads';
 import { segmentPair, segmentPairs, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { inOrder } from '../build/calls/ordered.js';
 import { frame, pair } from './support/frames.mjs';
-import { failure, timeless } from './support/shapes.mjs';
+import { all, failure, timeless } from './support/shapes.mjs';
 
 const SIZE = { width: 64, height: 48 };
 
@@ -20,12 +20,6 @@ function pool(t, options) {
   const made = new SegmenterPool(options);
   t.after(() => made.close());
   return made;
-}
-
-async function all(outcomes) {
-  const list = [];
-  for await (const outcome of outcomes) list.push(outcome);
-  return list;
 }
 
 describe('SegmenterPool', () => {

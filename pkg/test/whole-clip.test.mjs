@@ -5,6 +5,7 @@ import { after, describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
+import { all, until } from './support/shapes.mjs';
 import { cases } from './support/soak.mjs';
 
 const COUNT = 7;
@@ -32,23 +33,6 @@ const mask = (inside, outside) =>
     const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
     return x >= 27 && x < 63 && y >= 20 && y < 56 ? inside : outside;
   });
-
-async function all(clip) {
-  const frames = [];
-  for await (const one of clip) frames.push(one);
-  return frames;
-}
-
-/** The indices that a clip returns before it fails, if it does, and its error. */
-async function until(clip) {
-  const given = [];
-  try {
-    for await (const { index } of clip) given.push(index);
-  } catch (error) {
-    return { given, error };
-  }
-  return { given, error: undefined };
-}
 
 /** The frames of a clip, its tracks, its state, and the stages it went through. */
 async function outcome(segment, source, options) {

@@ -135,3 +135,21 @@ export async function failure(promise) {
   }
   assert.fail('there was no error');
 }
+
+/** Everything that an iterator gives. */
+export async function all(outcomes) {
+  const list = [];
+  for await (const outcome of outcomes) list.push(outcome);
+  return list;
+}
+
+/** The indices that a clip returns before it fails, if it does, and its error. */
+export async function until(clip) {
+  const given = [];
+  try {
+    for await (const { index } of clip) given.push(index);
+  } catch (error) {
+    return { given, error };
+  }
+  return { given, error: undefined };
+}
