@@ -255,6 +255,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
         assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
         const again = await veronese(args);
         assert.deepEqual([again.code, again.stderr], [0, ''], `${command} ${n} ${when} ${Boolean(first)}`);
+        assert.deepEqual(entries(out).filter((name) => name.startsWith('.veronese-')), [], 'nothing half-written stays');
         rmSync(out, { recursive: true });
       }
     }

@@ -86,6 +86,7 @@ export class Output {
     const hashes = new Map<string, string>();
     const known = new Map<string, string>();
     const tops = new Set<string>();
+    this.removeLeftovers();
     try {
       await work((path, content) =>
         writing(this.folder, async () => {
