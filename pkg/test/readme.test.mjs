@@ -51,7 +51,6 @@ describe('README.md', () => {
     assert.ok(existsSync(folder.path('masks', 'overlay.png')));
     assert.deepEqual(readdirSync(folder.path('results')), ['000000-f0', '000001-f1', '000002-f2']);
     assert.equal(readFileSync(folder.path('lines.jsonl'), 'utf8').trim().split('\n').length, 3);
-    assert.deepEqual(readdirSync(folder.path('results-of-machine-1')), ['000000-f0']);
     assert.deepEqual(readdirSync(folder.path('tracked')), ['.clip', '.veronese', 'labels', 'overlay', 'tracks.json']);
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);
   });
