@@ -1,19 +1,7 @@
 // The calls themselves, on the module that has them: stages reported, the signal heard, time measured.
 
-import type {
-  CallOptions,
-  FitOptions,
-  Milliseconds,
-  MotionFit,
-  PaintContext,
-  PaintOptions,
-  Pixels,
-  PointMeasurements,
-  RelabelOptions,
-  Segmentation,
-  SegmentOptions,
-  WasmSource,
-} from '../../types/index.js';
+import type * as calls from '../../types/index.js';
+import type { CallOptions, Milliseconds, MotionFit, PaintContext, Segmentation } from '../../types/index.js';
 import { checkedBytes, entriesOf, invalidInput, invalidOption, isNumber, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
 import { cancelled } from '../common/errors.js';
 import { colourBytes, davisPalette } from '../common/palette.js';
@@ -34,23 +22,15 @@ export class Api {
     this.#points = points;
   }
 
-  readonly init = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#frames.init(source);
+  readonly init: typeof calls.init = (source) => this.#frames.init(source);
 
-  readonly initPoints = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#points.init(source);
+  readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
-  readonly segmentPair = (first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> =>
-    start(() => segmentCall(first, second, options), this.perform);
+  readonly segmentPair: typeof calls.segmentPair = (...given) => start(() => segmentCall(...given), this.perform);
 
-  readonly relabel = (
-    first: Pixels,
-    second: Pixels,
-    segmentation: Segmentation,
-    evidence: Uint16Array,
-    options?: RelabelOptions,
-  ): Promise<Segmentation> => start(() => relabelCall(first, second, segmentation, evidence, options), this.perform);
+  readonly relabel: typeof calls.relabel = (...given) => start(() => relabelCall(...given), this.perform);
 
-  readonly fitMotions = (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> =>
-    start(() => fitCall(measurements, options), this.perform);
+  readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
   /** What was checked and taken, here or on the other side of a worker. */
   readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
@@ -73,11 +53,7 @@ export class Api {
     );
   };
 
-  readonly paintLabels = async (
-    context: PaintContext,
-    segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
-    options?: PaintOptions,
-  ): Promise<void> => {
+  readonly paintLabels: typeof calls.paintLabels = async (context, segmentation, options) => {
     const rest = reading(() => paintArguments(context, segmentation, options));
     await this.#frames.call((glue) => {
       if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);

@@ -1,23 +1,19 @@
 // The same calls in workers: one, or a pool of them.
 
+import type * as calls from '../../types/index.js';
 import type {
   CallOptions,
   Clip,
   ClipOptions,
   ClipSource,
-  FitOptions,
   MotionFit,
   PairInput,
   PairOutcome,
   PairsOptions,
-  Pixels,
-  PointMeasurements,
   PoolOptions,
   Progress,
-  RelabelOptions,
   Segmentation,
   SegmenterOptions,
-  SegmentOptions,
   WasmSource,
   WorkerLike,
 } from '../../types/index.js';
@@ -60,22 +56,16 @@ export function segmenters(host: Host) {
       this.#pool = new WorkerPool(spawnWith(worker, buffersOfTask), supply, jobs);
     }
 
-    segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
-      return start(() => segmentCall(first, second, options), this.#perform);
+    segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
+      return start(() => segmentCall(...given), this.#perform);
     }
 
-    relabel(
-      first: Pixels,
-      second: Pixels,
-      segmentation: Segmentation,
-      evidence: Uint16Array,
-      options?: RelabelOptions,
-    ): Promise<Segmentation> {
-      return start(() => relabelCall(first, second, segmentation, evidence, options), this.#perform);
+    relabel(...given: Parameters<typeof calls.relabel>): Promise<Segmentation> {
+      return start(() => relabelCall(...given), this.#perform);
     }
 
-    fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
-      return start(() => fitCall(measurements, options), this.#perform);
+    fitMotions(...given: Parameters<typeof calls.fitMotions>): Promise<MotionFit> {
+      return start(() => fitCall(...given), this.#perform);
     }
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
