@@ -3,33 +3,11 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
+import { encodeLabelStudio } from 'veronese/formats';
 import { detect, end, handler, startFunction } from '../../../examples/hosts/cvat.mjs';
 import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
 import { CONFIG, files, frames, post, task } from './asking.mjs';
-
-/** Label Studio's own way of reading a brush, by its description: bits, from the highest of each byte. */
-function decodeBrush(bytes) {
-  let at = 0;
-  const read = (count) => {
-    let value = 0;
-    for (let k = 0; k < count; k++, at++) value = value * 2 + ((bytes[at >> 3] >> (7 - (at & 7))) & 1);
-    return value;
-  };
-  const count = read(32);
-  const wordSize = read(5) + 1;
-  const sizes = [0, 0, 0, 0].map(() => read(4) + 1);
-  const values = [];
-  while (values.length < count) {
-    const repeated = read(1);
-    const length = read(sizes[read(2)]) + 1;
-    if (repeated) {
-      const value = read(wordSize);
-      for (let k = 0; k < length; k++) values.push(value);
-    } else for (let k = 0; k < length; k++) values.push(read(wordSize));
-  }
-  return values;
-}
 
 describe('the Label Studio backend', () => {
   async function backend(t, options = {}) {
@@ -61,7 +39,8 @@ describe('the Label Studio backend', () => {
     assert.match(version, /^veronese-/);
     const [{ from_name: from, to_name: to, type, original_width: width, original_height: height, value }] = result;
     assert.deepEqual([from, to, type, width, height, value.format, value.brushlabels], ['moving', 'before', 'brushlabels', 64, 48, 'rle', ['car & shadow']]);
-    assert.deepEqual(decodeBrush(value.rle), [...labels].flatMap((label) => Array(4).fill(label === 1 ? 255 : 0)));
+    const [expected] = encodeLabelStudio(labels, 64, 48, { labels: [1] }).predictions[0].result;
+    assert.deepEqual(value.rle, expected.value.rle);
   });
 
   test('frames may be in the task itself, as data addresses', async (t) => {

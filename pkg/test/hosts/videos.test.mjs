@@ -100,12 +100,6 @@ describe('a video', { skip: withoutVideos, timeout: 120_000 }, () => {
     assert.equal(status, 200, JSON.stringify(body));
     assert.ok(body.results[0].result.length > 0);
   });
-
-  test('in which nothing moves has no boxes', async (t) => {
-    const { film: address, predict } = await served(t, video(Array(5).fill(film[0])));
-    const { status, body } = await post(predict, videoTask(address));
-    assert.deepEqual([status, body.results?.[0].result, body.results?.[0].score], [200, [], 0], JSON.stringify(body));
-  });
 });
 
 describe('a video is refused', { skip: withoutVideos, timeout: 120_000 }, () => {
@@ -154,34 +148,6 @@ describe('a video is refused', { skip: withoutVideos, timeout: 120_000 }, () => 
       `<?xml version="1.0"?><MPD xmlns="urn:mpeg:dash:schema:mpd:2011" type="static"><BaseURL>${other}/</BaseURL></MPD>`,
     ]) await refused(t, text, {}, [422, 'unreadable-video']);
     assert.deepEqual(asked, []);
-  });
-
-  test('from hosts, of types and sizes that images may not have either', async (t) => {
-    await refused(t, bytes, { type: 'text/html' }, [422, 'file-not-found']);
-    await refused(t, bytes, { type: 'image/png' }, [422, 'file-not-found']);
-    await refused(t, Buffer.alloc(64 * 1024 * 1024 + 1), {}, [422, 'unreadable-file']);
-    const { film: address } = await served(t, bytes);
-    const answer = await post(`${await backend(t)}/predict`, videoTask(address));
-    assert.deepEqual([answer.status, answer.body.error.code], [422, 'address-refused']);
-    for (const other of ['file:///etc/hostname', 'rtsp://127.0.0.1/', 'concat:a|b', undefined, 7]) {
-      const { status, body } = await post(`${await backend(t)}/predict`, videoTask(other));
-      assert.deepEqual([status, body.error.code], [422, 'invalid-input'], String(other));
-    }
-  });
-
-  test('when nobody waits for it any more: the work ends, and nothing stays', async (t) => {
-    const long = video(clip(60, { width: 320, height: 240 }));
-    const { film: address, predict } = await served(t, long);
-    const stop = new AbortController();
-    const headers = { 'Content-Type': 'application/json' };
-    const asked = fetch(predict, { method: 'POST', headers, body: JSON.stringify(videoTask(address)), signal: stop.signal });
-    while (folders().length === 0) await sleep(5);
-    await sleep(300);
-    stop.abort();
-    await assert.rejects(asked, { name: 'AbortError' });
-    const since = performance.now();
-    while (folders().length > 0) await sleep(20);
-    assert.ok(performance.now() - since < 5000, `${performance.now() - since} ms`);
   });
 
   test('programs that read it do not see the token', { skip: !existsSync('/proc/self/environ') && 'this system does not show what programs are given' }, async (t) => {
