@@ -162,7 +162,6 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "label": 3, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: there is no 'label'; there are frame, object, clicks, box/],
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: is not within the frame/],
       ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'boxes' of 'f1', object 3: has a click already/],
-      ['edits.json', '{"locked": [3], "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'object-locked', /object 3 is locked/],
       ['edits.json', '{"locked": [3], "delete": [3]}', 'object-locked', /object 3 is locked/],
       ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],
     ];

@@ -39,16 +39,20 @@ describe('a locked object', () => {
       { prompts: [{ frame: 3, object: 2, clicks: [[...middle(2, 3), 1]] }] },
       { edits: { delete: [2] } },
     ];
+    const { state } = await said({ locked: [2] });
     for (const { edits, ...rest } of cases) {
-      for (const locks of [{ locked: [2], edits }, { edits: { ...edits, locked: [2] } }]) {
+      for (const locks of [{ edits }, { locked: [2], edits }, { edits: { ...edits, locked: [2] } }]) {
         const stages = [];
         const onProgress = ({ stage }) => stages.push(stage);
-        for (const state of [undefined, found.state]) {
-          const error = await failure(run({ state, ...rest, ...locks, onProgress }));
-          assert.deepEqual([error.code, error.message, stages], ['object-locked', 'object 2 is locked: unlock it to change it', []]);
-        }
+        const error = await failure(run({ state, ...rest, ...locks, onProgress }));
+        assert.deepEqual([error.code, error.message, stages], ['object-locked', 'object 2 is locked: unlock it to change it', []]);
       }
     }
+    const deleted = await failure(run({ locked: [2], edits: { delete: [2] } }));
+    assert.equal(deleted.code, 'object-locked');
+    // A lock holds from the annotations that it is given with.
+    const given = { corrections: [{ frame: 3, object: 2, labels: half(2, 3, 0) }] };
+    assert.deepEqual((await said({ ...given, locked: [2] })).labels, (await said(given)).labels);
     // What was said before it was locked may be said again.
     const corrections = [{ frame: 3, labels: half(2, 3, 2) }];
     const before = await said({ corrections });

@@ -352,8 +352,9 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   /** Changes of whole objects, after the corrections. */
   edits?: ClipEdits | undefined;
   /**
-   * Numbers of objects of which nothing changes a pixel. Who says anything new of one, or deletes it, gets the error `object-locked`. Where this
-   * or that of the edits is given, it replaces what a `state` has locked.
+   * Numbers of objects of which nothing changes a pixel, but annotations of themselves in the same call. New annotations of an object that the
+   * `state` has locked are the error `object-locked`, and so it is to delete it or to merge others into it. Where this or that of the edits is
+   * given, it replaces what a `state` has locked.
    */
   locked?: readonly number[] | undefined;
   /**

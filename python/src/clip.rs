@@ -78,9 +78,6 @@ pub(crate) fn segment_clip(
         _ => Some(MAX_LOOK_AHEAD),
     };
     let said = Said::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
-    if state.is_none() {
-        said.check_unlocked()?;
-    }
     let worker = Worker::<Kept>::start()?;
     worker
         .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;

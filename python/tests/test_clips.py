@@ -168,12 +168,9 @@ def test_of_a_locked_object_nothing_new_is_said() -> None:
     segmented.lock([])
     assert segmented.delete(1)
 
-    steps: List[Any] = []
-    for options in ({"corrections": [said]}, {"prompts": [Prompt(0, 1, click=(45, 36))]}):
-        with pytest.raises(VeroneseError) as caught:
-            segment_clip(FRAMES, **FAST, locked=[1], progress=lambda *step: steps.append(step), **options)
-        assert caught.value.code == "object-locked"
-    assert not steps, "no pair is solved before"
+    # A lock holds from the annotations that it is given with.
+    stroke = Correction(2, corner(0), object=1)
+    assert labels_of(FRAMES, corrections=[stroke], locked=[1]) == labels_of(FRAMES, corrections=[stroke])
 
 
 def test_objects_are_merged_and_deleted() -> None:

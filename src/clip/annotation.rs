@@ -105,7 +105,7 @@ pub struct Annotations {
     pub corrections: Vec<Painted>,
     /// One after another. Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
     pub prompts: Vec<Prompt>,
-    /// Objects that nothing changes until they are unlocked; none: as before.
+    /// Objects that nothing changes until they are unlocked, but annotations given together with a new lock; none: as before.
     pub locked: Option<Vec<u8>>,
     /// Objects that only annotations of themselves change, because a person named them; none: as before.
     pub named: Option<Vec<u8>>,

@@ -64,7 +64,7 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
   };
   const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
   const pointed = prompts.map((prompt) => promptOf({ ...prompt }, (reason) => new VeroneseError('internal', reason)));
-  checkUnlocked(locked, { corrections: corrections?.said ?? [], prompts: pointed, numbers });
+  checkUnlocked(locked, numbers);
   return {
     masks: spread(masks?.said),
     corrections: spread(corrections?.said),

@@ -168,8 +168,8 @@ def segment_clip(
     :param corrections: what is certain in some frames, with the numbers of an earlier run. A correction of a frame that has a mask goes
         before it where it says anything. All count together, in any order; prompts may be among them.
     :param prompts: clicks and boxes that point to objects in some frames, after what is painted.
-    :param locked: numbers of objects of which nothing changes a pixel. Saying anything new of one is a mistake, ``object-locked``. Where it is
-        given, it replaces what a ``state`` has; so do the next two.
+    :param locked: numbers of objects of which nothing changes a pixel, but annotations of themselves in the same call. Saying anything new of
+        one that a ``state`` has locked is a mistake, ``object-locked``. Where it is given, it replaces what a ``state`` has; so do the next two.
     :param named: numbers of objects that only what is said of themselves changes.
     :param accepted: indices of frames that are right, or :class:`Accepted` with their labels. Only what is painted or pointed to in such a
         frame changes labels there, and the objects in it are followed from it as from a correction. Without labels it has those of now: as masks

@@ -85,22 +85,6 @@ impl Said {
         }
     }
 
-    /// Whether nothing is said of a locked object, in a clip of which nothing was said before.
-    pub(crate) fn check_unlocked(&self) -> Result<(), Failure> {
-        let Annotations { corrections, prompts, locked, .. } = &self.annotations;
-        let is_said = |object: &u8| {
-            let is_about = |painted: &Painted| match painted.object {
-                Some(about) => about == *object && painted.labels.iter().any(|label| *label != NOTHING),
-                None => painted.labels.contains(object),
-            };
-            prompts.iter().any(|prompt| prompt.object == *object) || corrections.iter().any(is_about)
-        };
-        match locked.iter().flatten().copied().find(is_said) {
-            Some(object) => Err(Error::ObjectLocked { object }.into()),
-            None => Ok(()),
-        }
-    }
-
     /// The same of the first frames alone.
     pub(crate) fn of_first(self, frames: usize) -> Annotations {
         let Annotations { mut masks, mut corrections, mut prompts, mut accepted, .. } = self.annotations;

@@ -56,8 +56,8 @@ export function asked(frames: unknown, options: unknown): Asked {
   const known = editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`));
   const said = checkedSaid({ corrections, prompts, accepted }, source.length ?? 0);
   const all = lockedOf(locked, known);
-  // What is known of a clip may have been said of what is locked.
-  if (state === undefined) checkUnlocked(all, { ...said, ...known });
+  // In a state, the object may be gone already.
+  if (state === undefined) checkUnlocked(all, known.numbers);
   return {
     source,
     signal: call.signal,

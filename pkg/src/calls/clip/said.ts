@@ -112,16 +112,9 @@ function checkedAccepted(list: unknown, length: number): NonNullable<SaidOfFrame
   });
 }
 
-/** Throws where something is said of a locked object, or it is deleted, in a clip of which nothing was said before. */
-export function checkUnlocked(
-  locked: Uint8Array | undefined,
-  { corrections, prompts, numbers }: { corrections: readonly Painted[]; prompts: readonly Pointed[]; numbers: ReadonlyMap<number, number> },
-): void {
-  const isNamed = (said: Painted, object: number) =>
-    said.object === undefined ? said.labels.includes(object) : said.object === object && said.labels.some((label) => label !== UNLABELLED);
-  const isAbout = (object: number) =>
-    numbers.get(object) === 0 || prompts.some((prompt) => prompt.object === object) || corrections.some((said) => isNamed(said, object));
-  const object = locked?.find(isAbout);
+/** Throws where a locked object is deleted. */
+export function checkUnlocked(locked: Uint8Array | undefined, numbers: ReadonlyMap<number, number>): void {
+  const object = locked?.find((object) => numbers.get(object) === 0);
   // In the core's words.
   if (object !== undefined) throw new VeroneseError('object-locked', `object ${object} is locked: unlock it to change it`);
 }
