@@ -63,7 +63,6 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
     names: { ...masks?.edits.names, ...corrections?.edits.names },
   };
   const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
-  const pointed = prompts.map((prompt) => promptOf({ ...prompt }, (reason) => new VeroneseError('internal', reason)));
   checkUnlocked(locked, numbers);
   return {
     masks: spread(masks?.said),
