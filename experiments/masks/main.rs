@@ -19,7 +19,6 @@ mod pictures;
 mod program;
 mod scores;
 mod sensitivity;
-mod stability;
 mod summary;
 
 use std::error::Error;
@@ -42,7 +41,6 @@ Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json:
 
   ablation     measures the scores without parts of the pipeline
   sensitivity  measures how much the scores change with each tuned constant
-  stability    measures how much of the labels stays if the frames are altered
   calibration  measures how often labels of each confidence are right
   junctions    measures how often neighbouring motions are one thing
 
@@ -80,9 +78,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "ablation" | "sensitivity" | "stability" | "calibration" | "junctions" => {
-                options.step = name
-            }
+            "frames" | "measure" | "ablation" | "sensitivity" | "calibration" | "junctions" => options.step = name,
             "--quick" => options.quick = true,
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
@@ -91,9 +87,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => {
-            Err("Say which step: frames, measure, ablation, sensitivity, stability, calibration or junctions.".into())
-        }
+        true => Err("Say which step: frames, measure, ablation, sensitivity, calibration or junctions.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -122,7 +116,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     let apart = match options.step.as_str() {
         "ablation" => Some(json!({ "rows": ablation::measure(&sensitivity::chosen(cases.clone()))? })),
         "sensitivity" => Some(sensitivity::json(&sensitivity::measure(&sensitivity::chosen(cases.clone()))?)),
-        "stability" => Some(stability::json(&stability::measure(&cases)?)),
         "calibration" => Some(honesty::json(&honesty::measure(&cases)?)),
         "junctions" => Some(junctions::json(&junctions::measure(&cases)?)),
         _ => None,

@@ -15,7 +15,6 @@ export const PARTS = {
   ablation: ['masks-ablation', ablation],
   pictures: ['masks', pictures],
   sensitivity: ['masks-sensitivity', sensitivity],
-  stability: ['masks-stability', stability],
   calibration: ['masks-calibration', calibration],
   junctions: ['masks-junctions', junctions],
 };
@@ -78,11 +77,6 @@ function sensitivity({ date, quality, columns, rows }) {
   });
   const counts = columns.map(({ figure, cases }) => `${figure} (${cases})`);
   return `Quality *${quality}*, ${date}; ${lines.length} of ${constants.length} constants.\n\n${table(['constant', ...counts], lines)}`;
-}
-
-function stability({ date, pairs, rows }) {
-  const lines = rows.map(({ alteration, labels, foreground }) => [alteration, ...[...labels, ...foreground].map((share) => percent(share))]);
-  return `${pairs} pairs, ${date}.\n\n${table(['alteration', 'labels, median', '10th percentile', 'foreground, median', '10th percentile'], lines)}`;
 }
 
 const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);
