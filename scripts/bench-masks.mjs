@@ -13,7 +13,7 @@ import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'masks', '--'];
 /** Steps that are measured by themselves, without the baseline. */
-const APART = ['ablation', 'sensitivity', 'calibration', 'junctions'];
+const APART = ['ablation', 'calibration', 'junctions'];
 const PARTIAL = ['--quick', '--only'];
 const DATA = {
   chosenOn: 'generated scenes of other seeds; all real pairs of sequences',

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::Failure;
-use crate::cases::{Case, Set};
+use crate::cases::{Case, Set, a_third};
 use crate::outcome::{Method, Outcome, Variant, of_variant};
 use crate::parallel::in_parallel;
 use crate::summary::Summary;
@@ -41,8 +41,17 @@ pub(crate) struct Scored {
     pairs: Option<Summary>,
 }
 
-/// Measures the rows of the table on some cases.
-pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Worth>, Failure> {
+/// The cases that are measured: generated scenes, those with a bare ground, and a third of the pairs of every sequence.
+fn chosen(cases: Vec<Case>) -> Vec<Case> {
+    let (pairs, mut chosen): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(|case| case.set == Set::Sequences);
+    chosen.retain(|case| matches!(case.set, Set::Generated | Set::Colour | Set::Bare));
+    chosen.extend(a_third(pairs.into_iter()));
+    chosen
+}
+
+/// Measures the rows of the table on those of the cases that are chosen for it.
+pub(crate) fn measure(cases: Vec<Case>) -> Result<Vec<Worth>, Failure> {
+    let cases = &chosen(cases);
     let variants: Vec<Variant> = LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).collect();
     let measured: Vec<Vec<[Outcome; 2]>> = in_parallel(cases, |case| {
         let data = case.load().map_err(|error| error.to_string())?;

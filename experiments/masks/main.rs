@@ -18,7 +18,6 @@ mod pictures;
 #[path = "../program.rs"]
 mod program;
 mod scores;
-mod sensitivity;
 mod summary;
 
 use std::error::Error;
@@ -40,7 +39,6 @@ Scores masks of generated scenes and real pairs against an OpenCV baseline, in t
 Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json:
 
   ablation     measures the scores without parts of the pipeline
-  sensitivity  measures how much the scores change with each tuned constant
   calibration  measures how often labels of each confidence are right
   junctions    measures how often neighbouring motions are one thing
 
@@ -78,7 +76,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "ablation" | "sensitivity" | "calibration" | "junctions" => options.step = name,
+            "frames" | "measure" | "ablation" | "calibration" | "junctions" => options.step = name,
             "--quick" => options.quick = true,
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
@@ -87,7 +85,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, ablation, sensitivity, calibration or junctions.".into()),
+        true => Err("Say which step: frames, measure, ablation, calibration or junctions.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -114,8 +112,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         return Ok(());
     }
     let apart = match options.step.as_str() {
-        "ablation" => Some(json!({ "rows": ablation::measure(&sensitivity::chosen(cases.clone()))? })),
-        "sensitivity" => Some(sensitivity::json(&sensitivity::measure(&sensitivity::chosen(cases.clone()))?)),
+        "ablation" => Some(json!({ "rows": ablation::measure(cases.clone())? })),
         "calibration" => Some(honesty::json(&honesty::measure(&cases)?)),
         "junctions" => Some(junctions::json(&junctions::measure(&cases)?)),
         _ => None,

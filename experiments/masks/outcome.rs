@@ -70,7 +70,7 @@ pub(crate) fn outcome(
     }
 }
 
-/// The pipeline in one form of the ablation or of the sensitivity.
+/// The pipeline in one form of the ablation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Variant {
     /// As it is.

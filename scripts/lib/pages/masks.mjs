@@ -2,11 +2,6 @@
 
 import { change, fixed, origin, percent, score, table } from './table.mjs';
 
-/** A change of more standard errors than this is set in bold type. */
-const SIGNIFICANT = 2;
-/** From this confidence on a label counts as sure. */
-const SURE = 0.95;
-
 export const PARTS = {
   scenes: ['masks', (figures) => `${origin(figures)}\n\n${scenes(figures)}`],
   sequences: ['masks', ({ sequences }) => real(sequences)],
@@ -14,7 +9,6 @@ export const PARTS = {
   flow: ['masks', flow],
   ablation: ['masks-ablation', ablation],
   pictures: ['masks', pictures],
-  sensitivity: ['masks-sensitivity', sensitivity],
   calibration: ['masks-calibration', calibration],
   junctions: ['masks-junctions', junctions],
 };
@@ -63,20 +57,6 @@ function pictures({ best, worst }) {
   const shown = ({ case: name, description, miou }) =>
     `**${name}** (${description}): mean IoU ${score(miou)}\n\n![First frame, labels found and true labels of ${name}](images/masks-${name}.png)`;
   return [['The best scenes', best], ['The worst scenes', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
-}
-
-/** Constants that change a score by more than chance. */
-function sensitivity({ date, quality, columns, rows }) {
-  const constants = [...new Set(rows.map(({ constant }) => constant))];
-  const isSignificant = ({ mean, error }) => Math.abs(mean) > SIGNIFICANT * error;
-  const cell = (found) => (isSignificant(found) && change(found.mean) !== '0' ? `**${change(found.mean)}**` : change(found.mean));
-  const lines = constants.flatMap((name) => {
-    const own = rows.filter(({ constant }) => constant === name);
-    if (!own.some(({ changes }) => changes.some((found) => isSignificant(found) && change(found.mean) !== '0'))) return [];
-    return [[`\`${name}\``, ...columns.map((_, k) => own.map(({ changes }) => cell(changes[k])).join(' / '))]];
-  });
-  const counts = columns.map(({ figure, cases }) => `${figure} (${cases})`);
-  return `Quality *${quality}*, ${date}; ${lines.length} of ${constants.length} constants.\n\n${table(['constant', ...counts], lines)}`;
 }
 
 const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);
