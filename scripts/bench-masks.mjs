@@ -13,7 +13,7 @@ import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation', '--example', 'masks', '--'];
 /** Steps that are measured by themselves, without the baseline. */
-const APART = ['ablation', 'calibration', 'junctions'];
+const APART = ['ablation', 'calibration'];
 const PARTIAL = ['--quick', '--only'];
 const DATA = {
   chosenOn: 'generated scenes of other seeds; all real pairs of sequences',

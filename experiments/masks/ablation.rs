@@ -1,10 +1,11 @@
 //! The ablation: the same cases with one part of the pipeline left out.
 
 use serde::Serialize;
+use veronese::Model;
 
 use crate::Failure;
 use crate::cases::{Case, Set, a_third};
-use crate::outcome::{Method, Outcome, Variant, of_variant};
+use crate::outcome::{Method, Outcome, of_model};
 use crate::parallel::in_parallel;
 use crate::summary::Summary;
 
@@ -49,16 +50,26 @@ fn chosen(cases: Vec<Case>) -> Vec<Case> {
     chosen
 }
 
+/// The model with some constants set to other values.
+fn with(values: &[(&str, f64)]) -> &'static Model {
+    let mut model = Model::DEFAULT;
+    for (name, value) in values {
+        assert!(model.set(name, *value), "there is no constant {name}");
+    }
+    // Kept to the end of the program: there are a dozen.
+    Box::leak(Box::new(model))
+}
+
 /// Measures the rows of the table on those of the cases that are chosen for it.
 pub(crate) fn measure(cases: Vec<Case>) -> Result<Vec<Worth>, Failure> {
     let cases = &chosen(cases);
-    let variants: Vec<Variant> = LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).collect();
+    let models: Vec<&'static Model> = LEFT_OUT.iter().map(|(_, values)| with(values)).collect();
     let measured: Vec<Vec<[Outcome; 2]>> = in_parallel(cases, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
-        let with_both = |&variant: &Variant| -> veronese::Result<[Outcome; 2]> {
-            Ok([of_variant(variant, Method::Best, &data)?, of_variant(variant, Method::Fast, &data)?])
+        let with_both = |&model: &&'static Model| -> veronese::Result<[Outcome; 2]> {
+            Ok([of_model(model, Method::Best, &data)?, of_model(model, Method::Fast, &data)?])
         };
-        let outcomes = variants.iter().map(with_both).collect::<Result<_, _>>()?;
+        let outcomes = models.iter().map(with_both).collect::<Result<_, _>>()?;
         eprintln!("{}", case.name);
         Ok(outcomes)
     })?;

@@ -7,7 +7,6 @@ mod boundary;
 mod cases;
 mod figures;
 mod honesty;
-mod junctions;
 mod measure;
 mod outcome;
 #[path = "../panels.rs"]
@@ -40,7 +39,6 @@ Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json:
 
   ablation     measures the scores without parts of the pipeline
   calibration  measures how often labels of each confidence are right
-  junctions    measures how often neighbouring motions are one thing
 
   --quick            a subset of the generated cases, no large frames
   --only A,B         only cases whose name or set contains one of these
@@ -76,7 +74,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "ablation" | "calibration" | "junctions" => options.step = name,
+            "frames" | "measure" | "ablation" | "calibration" => options.step = name,
             "--quick" => options.quick = true,
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
@@ -85,7 +83,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, ablation, calibration or junctions.".into()),
+        true => Err("Say which step: frames, measure, ablation or calibration.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -114,7 +112,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     let apart = match options.step.as_str() {
         "ablation" => Some(json!({ "rows": ablation::measure(cases.clone())? })),
         "calibration" => Some(honesty::json(&honesty::measure(&cases)?)),
-        "junctions" => Some(junctions::json(&junctions::measure(&cases)?)),
         _ => None,
     };
     if let Some(figures) = apart {

@@ -3,9 +3,7 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use veronese::{
-    AffineMotion, Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair, segment_pair_with,
-};
+use veronese::{AffineMotion, Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair_with};
 
 use super::cases::Data;
 use super::scores::{Scores, flow_error, scores};
@@ -70,37 +68,13 @@ pub(crate) fn outcome(
     }
 }
 
-/// The pipeline in one form of the ablation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Variant {
-    /// As it is.
-    Whole,
-    /// With other constants.
-    With(&'static Model),
-}
-
-impl Variant {
-    /// With some constants set to other values.
-    pub(crate) fn with(values: &[(&str, f64)]) -> Variant {
-        let mut model = Model::DEFAULT;
-        for (name, value) in values {
-            assert!(model.set(name, *value), "there is no constant {name}");
-        }
-        // Kept to the end of the program: there are some dozens.
-        Variant::With(Box::leak(Box::new(model)))
-    }
-}
-
-/// What a form of the pipeline gives with the quality of a method.
-pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Result<Outcome> {
+/// What the pipeline gives with other constants, and with the quality of a method.
+pub(crate) fn of_model(model: &'static Model, method: Method, data: &Data) -> Result<Outcome> {
     let (first, second) = (&data.first, &data.second);
     let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
     let options = SegmentOptions::default().with_quality(quality);
     let start = Instant::now();
-    let found = match variant {
-        Variant::Whole => segment_pair(first, second, &options, &mut |_| {})?,
-        Variant::With(model) => segment_pair_with(model, first, second, &options)?,
-    };
+    let found = segment_pair_with(model, first, second, &options)?;
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))
 }

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use veronese::clip::{ClipOptions, ClipSegmenter};
-use veronese::{Quality, SegmentOptions};
+use veronese::{Model, Quality, SegmentOptions};
 
 use crate::Failure;
 use crate::clips;
 use crate::masks::cases::{Case, Set, a_third, all};
-use crate::masks::outcome::{Method, Variant, of_variant};
+use crate::masks::outcome::{Method, of_model};
 use crate::report::Entry;
 
 /// Clips on which constants were set: every second one of the ten.
@@ -103,7 +103,7 @@ impl Job {
             Source::Pair(case) => {
                 let method = if self.quality == Quality::Best { Method::Best } else { Method::Fast };
                 let data = case.load().map_err(|error| error.to_string())?;
-                let outcome = of_variant(Variant::Whole, method, &data)?;
+                let outcome = of_model(&Model::DEFAULT, method, &data)?;
                 let (Some(single), Some(grouped)) = (outcome.single, outcome.grouped) else {
                     return Err(format!("{} has no true labels", case.name).into());
                 };

@@ -2,6 +2,9 @@
 
 import { change, fixed, origin, percent, score, table } from './table.mjs';
 
+/** From this confidence on a label counts as sure. */
+const SURE = 0.95;
+
 export const PARTS = {
   scenes: ['masks', (figures) => `${origin(figures)}\n\n${scenes(figures)}`],
   sequences: ['masks', ({ sequences }) => real(sequences)],
@@ -10,7 +13,6 @@ export const PARTS = {
   ablation: ['masks-ablation', ablation],
   pictures: ['masks', pictures],
   calibration: ['masks-calibration', calibration],
-  junctions: ['masks-junctions', junctions],
 };
 
 function scenes({ scenes }) {
@@ -88,7 +90,3 @@ function calibrationError(ranges) {
   return ranges.reduce((total, { confidence, right }) => total + Math.abs(confidence - right), 0) / sum(ranges, 'pixels');
 }
 
-function junctions({ date, junctions, heldOut, by }) {
-  const rows = by.map(({ by: name, logLoss, auc, error }) => [name, ...[logLoss, auc, error].map(score)]);
-  return `${junctions} junctions, ${heldOut} of the second fold, ${date}.\n\n${table(['told by', 'log loss', 'area under the curve', 'calibration error'], rows)}`;
-}

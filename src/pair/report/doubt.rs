@@ -9,7 +9,7 @@
 //! more often than parts of the background do. The mean cost of all pixels under their own motions is m: where affine motions do not
 //! explain the frames, more regions are found that are none.
 //!
-//! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md says which, and has the
+//! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md has the
 //! measurement on others.
 
 use crate::frame::Plane;
