@@ -20,13 +20,6 @@ await command(async (args) => {
   const { writeDocs, rest } = withoutDocs(args, PARTIAL);
   const place = args.indexOf('--out');
   const out = resolve(root, place < 0 ? 'out/clips' : args[place + 1]);
-  if (rest.includes('--ablation')) {
-    const { code } = await run('cargo', [...CARGO, 'ablation', ...rest.filter((name) => name !== '--ablation')]);
-    if (code !== 0) return code;
-    const measured = JSON.parse(readFileSync(join(out, 'ablation.json'), 'utf8'));
-    present('clips-ablation', { command: 'npm run bench:clips -- --ablation', data: DATA }, measured, writeDocs);
-    return 0;
-  }
   for (const folder of ['labels', 'generated']) rmSync(join(out, folder), { recursive: true, force: true });
   console.error('Building the program if it has changed (some minutes when everything is new) …');
   const frames = await run('cargo', [...CARGO, 'frames', ...rest], { output: 'collect' });

@@ -1,6 +1,5 @@
 //! The annotator benchmark: what somebody gets for what he says of a clip. `npm run bench:annotator` runs it.
 
-mod automatic;
 #[path = "../boundary.rs"]
 mod boundary;
 #[path = "../clips/cases.rs"]
@@ -16,9 +15,6 @@ mod pairs;
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
-#[path = "../clips/parts.rs"]
-#[allow(dead_code, reason = "the clip benchmark uses the rest")]
-mod parts;
 #[path = "../program.rs"]
 mod program;
 mod robot;
@@ -44,7 +40,6 @@ Measures what an annotator gets for what he says of a clip, in steps:
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
-  automatic      real clips when nothing is said, also without parts of the clip segmenter, then means; writes automatic.jsonl
   pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
@@ -56,8 +51,6 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
   --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
-  --without A,B      parts that automatic leaves out by turns: both-directions, carrying, colours, second-round, grouping
-  --generated        automatic measures the generated clips of npm run bench:clips
   --write-docs       also write the figures to docs/figures, and docs/annotating.md from them
 
 npm run bench:annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
@@ -75,8 +68,6 @@ pub(crate) struct Options {
     jobs: Option<usize>,
     pub(crate) out: PathBuf,
     pub(crate) dump: Option<PathBuf>,
-    pub(crate) without: Vec<String>,
-    generated: bool,
     pub(crate) model: ClipModel,
 }
 
@@ -95,8 +86,6 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         jobs: None,
         out: "out/annotator".into(),
         dump: None,
-        without: Vec::new(),
-        generated: false,
         model: ClipModel::DEFAULT,
     };
     while let Some(name) = arguments.next() {
@@ -104,7 +93,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "automatic" | "objects" | "pairs" | "fit" => options.step = name,
+            "frames" | "measure" | "objects" | "pairs" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -117,20 +106,22 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--rounds" => options.rounds = number(value()?)?,
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
-            "--set" => parts::set(&mut options.model, &value()?)?,
-            "--without" => {
-                options.without = value()?.split(',').map(str::to_owned).collect();
-                options.without.iter().try_for_each(|name| automatic::part(name).map(|_| ()))?;
-            }
-            "--generated" => options.generated = true,
+            "--set" => set(&mut options.model, &value()?)?,
             "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, automatic, objects, pairs or fit.".into()),
+        true => Err("Say which step: frames, measure, objects, pairs or fit.".into()),
         false => Ok(Some(options)),
     }
+}
+
+/// Sets a constant as `NAME=VALUE` says.
+fn set(model: &mut ClipModel, text: &str) -> Result<(), String> {
+    let (name, value) = text.split_once('=').ok_or(format!("--set needs NAME=VALUE, not '{text}'."))?;
+    let number = value.parse().map_err(|_| format!("'{value}' is no number."))?;
+    if model.set(name, number) { Ok(()) } else { Err(format!("There is no constant '{name}'.")) }
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
@@ -143,12 +134,6 @@ fn run(options: &Options) -> Result<(), Failure> {
             Ok(())
         }
         "fit" => fit::run(&options.real()?, options),
-        "automatic" => {
-            let cases = if options.generated { options.chosen(cases::generated()) } else { options.real()? };
-            let rows = options.on_all(&cases, |case| automatic::measure(case, options))?;
-            print!("\n{}", automatic::table(&rows));
-            Ok(())
-        }
         "objects" => {
             let cases = options.chosen(objects::cases());
             options.on_all(&cases, |case| objects::measure(case, options)).map(drop)

@@ -279,14 +279,3 @@ fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -
 pub(crate) fn is_old(clip: &str) -> bool {
     OLD.contains(&clip)
 }
-
-/// Clips that belong together in the tables, by the name of each.
-pub(crate) fn groups_of<R>(rows: &[R], name: impl Fn(&R) -> &str) -> Vec<(&'static str, Vec<&R>)> {
-    let old = |row: &&R| is_old(name(row));
-    let groups = [
-        ("all", rows.iter().collect::<Vec<_>>()),
-        ("old", rows.iter().filter(old).collect()),
-        ("new", rows.iter().filter(|row| !old(row)).collect()),
-    ];
-    groups.into_iter().filter(|(_, rows)| !rows.is_empty()).collect()
-}

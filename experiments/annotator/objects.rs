@@ -56,7 +56,7 @@ pub(crate) fn cases() -> Vec<Case> {
         let pan = (seed % 2 == 1).then_some(Event::Pan);
         let events = events.iter().copied().chain(pan).collect();
         let options = ClipSceneOptions { objects, events, alike, seed, ..ClipSceneOptions::default() };
-        Case::generated(format!("{kind} {seed}"), options, false)
+        Case::generated(format!("{kind} {seed}"), options)
     };
     seeds.map(case).collect()
 }

@@ -56,8 +56,6 @@ enum Source {
 pub(crate) struct Case {
     pub(crate) name: String,
     source: Source,
-    /// Whether the clip segmenter is measured on it without each of its parts: every third real clip, every fourth of the generated ones.
-    pub(crate) in_ablation: bool,
 }
 
 /// A clip's frames and their true labels.
@@ -72,7 +70,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     let mut cases = generated();
     if quick {
-        cases.retain(|case| case.in_ablation);
+        cases = cases.into_iter().skip(2).step_by(4).collect();
     }
     let real = shared.join("data").join("clips");
     if !quick && real.is_dir() {
@@ -91,7 +89,7 @@ pub(crate) fn generated() -> Vec<Case> {
             ClipSceneOptions { frames, objects, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
-        cases.push(Case::generated(name, options, k % 4 == 2));
+        cases.push(Case::generated(name, options));
     }
     cases
 }
@@ -100,11 +98,11 @@ pub(crate) fn generated() -> Vec<Case> {
 pub(crate) fn of_folders(real: &Path) -> Result<Vec<Case>> {
     let mut folders = files(real)?;
     folders.retain(|folder| folder.join("frames").is_dir() && folder.join("masks").is_dir());
-    let case = |(k, folder): (usize, PathBuf)| {
+    let case = |folder: PathBuf| {
         let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        Case { name, source: Source::Folder(folder), in_ablation: k % 3 == 0 }
+        Case { name, source: Source::Folder(folder) }
     };
-    Ok(folders.into_iter().enumerate().map(case).collect())
+    Ok(folders.into_iter().map(case).collect())
 }
 
 /// An event in the name of a clip.
@@ -130,8 +128,8 @@ pub(crate) fn word(event: Event) -> &'static str {
 
 impl Case {
     /// A generated clip.
-    pub(crate) fn generated(name: String, options: ClipSceneOptions, in_ablation: bool) -> Case {
-        Case { name, source: Source::Generated(options), in_ablation }
+    pub(crate) fn generated(name: String, options: ClipSceneOptions) -> Case {
+        Case { name, source: Source::Generated(options) }
     }
 
     /// Whether the clip is generated, so that its truth has all that moves, and pictures of it may be shown.

@@ -58,14 +58,6 @@ struct OfEvent {
     rows: Vec<Row>,
 }
 
-/// The clip segmenter as it is or without one of its parts.
-#[derive(Serialize)]
-pub(crate) struct Ablation {
-    variant: &'static str,
-    generated: Option<Row>,
-    real: Option<Row>,
-}
-
 /// A clip whose strip is shown, with the mean IoU of its objects.
 #[derive(Serialize)]
 struct Shown<'a> {
@@ -128,17 +120,6 @@ fn events(clips: &[&Measured]) -> Vec<OfEvent> {
         OfEvent { event: word(event), rows: methods.into_iter().filter_map(|method| row(&own, method)).collect() }
     };
     Event::ALL.into_iter().map(of).filter(|event| !event.rows.is_empty()).collect()
-}
-
-/// The clip segmenter as it is, then without each of its parts.
-pub(crate) fn ablation(measured: &[Measured]) -> Vec<Ablation> {
-    let (generated, real): (Vec<&Measured>, Vec<&Measured>) = measured.iter().partition(|one| one.case.is_generated());
-    let of = |method: Method| Ablation {
-        variant: method.title(),
-        generated: row(&generated, method),
-        real: row(&real, method),
-    };
-    [Method::Clip].into_iter().chain(Method::ablations()).map(of).collect()
 }
 
 /// The best clips, and the worst in reverse; no clip is in both.

@@ -12,8 +12,6 @@ mod methods;
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
-#[allow(dead_code, reason = "the annotator benchmark uses the rest")]
-mod parts;
 #[path = "../program.rs"]
 mod program;
 mod scores;
@@ -26,17 +24,12 @@ use std::path::PathBuf;
 use figures::Figures;
 use methods::Method;
 use parallel::in_parallel;
-use serde_json::json;
 
 const HELP: &str = "\
 Scores labels that persist through time, of generated and real clips, in two steps. OpenCV's methods run between them.
 
   frames       writes the generated clips and prints a line per clip: its name, a tab, its folder
   measure      measures and writes clips.json (means), clips.jsonl, a strip of every clip, and the labels of every method
-
-A step of its own, as npm run bench:clips -- --ablation:
-
-  ablation     measures the clip segmenter without each of its parts on some of the clips; writes ablation.json
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
@@ -75,7 +68,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "ablation" => options.step = name,
+            "frames" | "measure" => options.step = name,
             "--quick" => options.quick = true,
             "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
@@ -85,7 +78,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure or ablation.".into()),
+        true => Err("Say which step: frames or measure.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -110,13 +103,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     }
     if cases.iter().all(cases::Case::is_generated) && !options.quick && options.only.is_empty() {
         eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
-    }
-    if options.step == "ablation" {
-        cases.retain(|case| case.in_ablation);
-        let methods: Vec<Method> = [Method::Clip].into_iter().chain(Method::ablations()).collect();
-        let rows = figures::ablation(&measure::all(&cases, &methods, out)?);
-        fs::write(out.join("ablation.json"), serde_json::to_string(&json!({ "rows": rows }))?).map_err(cannot)?;
-        return Ok(());
     }
     let mut methods = Method::ALL.to_vec();
     if !options.methods.is_empty() {

@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use veronese::clip::{ClipOptions, ClipSegmenter, StreamSegmenter, vary};
-use veronese::{ClipModel, Frame, Quality, Result, SegmentOptions};
+use veronese::clip::{ClipOptions, ClipSegmenter, StreamSegmenter};
+use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use super::cases::{Data, labels};
 use super::linking::pair_by_pair;
-use super::parts::PARTS;
 
 /// In the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,8 +25,6 @@ pub(crate) enum Method {
     /// OpenCV: background subtraction.
     Mog2,
     Knn,
-    /// The clip segmenter without one of its parts, by index.
-    Without(usize),
 }
 
 impl Method {
@@ -43,10 +40,6 @@ impl Method {
         Method::Knn,
     ];
 
-    pub(crate) fn ablations() -> impl Iterator<Item = Method> {
-        (0..PARTS.len()).map(Method::Without)
-    }
-
     pub(crate) fn name(self) -> &'static str {
         match self {
             Method::Clip => "clip",
@@ -58,7 +51,6 @@ impl Method {
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
-            Method::Without(part) => PARTS[part].name,
         }
     }
 
@@ -73,7 +65,6 @@ impl Method {
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
-            Method::Without(part) => PARTS[part].title,
         }
     }
 }
@@ -117,12 +108,6 @@ pub(crate) fn found(
     let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions::default().with_quality(quality));
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
-        Method::Without(part) => {
-            vary(PARTS[part].left_out_of(ClipModel::DEFAULT));
-            let labels = clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames);
-            vary(ClipModel::DEFAULT);
-            Some(labels?)
-        }
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
         Method::Pairs => Some(pairs(Quality::Best)?),
         Method::PairsFast => Some(pairs(Quality::Fast)?),

@@ -9,7 +9,5 @@ pub(crate) mod cases;
 mod linking;
 #[path = "../clips/methods.rs"]
 pub(crate) mod methods;
-#[path = "../clips/parts.rs"]
-mod parts;
 #[path = "../clips/scores.rs"]
 pub(crate) mod scores;

@@ -1,13 +1,12 @@
 // The tables of docs/clips.md.
 
-import { amount, change, fixed, origin, percent, score, table } from './table.mjs';
+import { amount, fixed, origin, percent, score, table } from './table.mjs';
 
 export const PARTS = {
   generated: ['clips', (figures) => [origin(figures), `${figures.generated[0]?.clips} clips:`, means(figures.generated, true)].join('\n\n')],
   events: ['clips', events],
   pictures: ['clips', pictures],
   real: ['clips', ({ real }) => (real.length > 0 ? `${real[0].clips} clips:\n\n${means(real, false)}` : '')],
-  ablation: ['clips-ablation', ablation],
 };
 
 function means(rows, generated) {
@@ -30,12 +29,3 @@ function pictures({ best, worst }) {
   return [['The best clips', best], ['The worst clips', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
 }
 
-/** The figures of the whole, then by how much they change without each part. */
-function ablation({ date, rows: found }) {
-  const [whole, ...parts] = found;
-  const columns = [['generated', 'auto'], ['generated', 'assigned'], ['generated', 'switches'], ['real', 'auto'], ['real', 'oneClick'], ['real', 'tracks'], ['real', 'fTracks'], ['real', 'switches']];
-  const first = ['*the clip segmenter*', ...columns.map(([clips, figure]) => score(whole[clips]?.[figure]))];
-  const rows = parts.map((part) => [part.variant, ...columns.map(([clips, figure]) => change(part[clips]?.[figure], whole[clips]?.[figure]))]);
-  const head = ['', 'generated: auto', 'assigned', 'switches', 'real: auto', 'one click', 'tracks', 'F tracks', 'switches'];
-  return `${whole.generated?.clips ?? 0} generated and ${whole.real?.clips ?? 0} real clips, ${date}:\n\n${table(head, [first, ...rows])}`;
-}
