@@ -4,7 +4,7 @@
 import { readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
-import { present, showPictures, withoutDocs } from './lib/documented.mjs';
+import { present, withoutDocs } from './lib/documented.mjs';
 import { findOpenCv, runOnAll } from './lib/opencv.mjs';
 import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
@@ -36,7 +36,6 @@ await command(async (args) => {
   const { code } = await run('cargo', [...CARGO, 'measure', ...rest]);
   if (code !== 0) return code;
   const measured = JSON.parse(readFileSync(join(out, 'clips.json'), 'utf8'));
-  if (writeDocs) showPictures(out, 'clips-', [...measured.best, ...measured.worst].map(({ clip }) => `${clip}.png`));
   present('clips', { command: 'npm run bench:clips', data: DATA }, measured, writeDocs);
   return 0;
 });

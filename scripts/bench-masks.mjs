@@ -5,7 +5,7 @@
 import { existsSync, mkdirSync, readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
-import { present, showPictures, withoutDocs } from './lib/documented.mjs';
+import { present, withoutDocs } from './lib/documented.mjs';
 import { findOpenCv, runOnAll } from './lib/opencv.mjs';
 import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
@@ -47,7 +47,6 @@ await command(async (args) => {
   const { code } = await run('cargo', [...CARGO, 'measure', ...rest]);
   if (code !== 0) return code;
   const measured = read('masks');
-  if (writeDocs) showPictures(out, 'masks-', [...measured.best, ...measured.worst].map(({ case: name }) => `${name}.png`));
   present('masks', { command: 'npm run bench:masks', data: DATA }, measured, writeDocs);
   return 0;
 });

@@ -20,7 +20,7 @@ await command(async (args) => {
   const place = rest.indexOf('--out');
   const out = resolve(root, place < 0 ? 'out/paper' : rest[place + 1]);
   const measured = JSON.parse(readFileSync(join(out, 'experiments.json'), 'utf8'));
-  if (writeDocs) showPictures(out, '', PICTURES);
+  if (writeDocs) showPictures(out, PICTURES);
   present('experiments', { command: `npm run paper -- --trials ${measured.trials} --seed ${measured.seed}` }, measured, writeDocs);
   return 0;
 });

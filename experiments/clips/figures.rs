@@ -9,9 +9,6 @@ use crate::cases::word;
 use crate::measure::{Measured, Outcome};
 use crate::methods::Method;
 
-/// How many of the best and of the worst clips are shown as strips.
-const SHOWN: usize = 2;
-
 /// A figure of an outcome; none where the clip has no such figure.
 type Figure = fn(&Outcome) -> Option<f64>;
 
@@ -35,12 +32,10 @@ const FIGURES: [(&str, Figure); 13] = [
 type Named = BTreeMap<&'static str, f64>;
 
 #[derive(Serialize)]
-pub(crate) struct Figures<'a> {
+pub(crate) struct Figures {
     generated: Vec<Row>,
     events: Vec<OfEvent>,
     real: Vec<Row>,
-    best: Vec<Shown<'a>>,
-    worst: Vec<Shown<'a>>,
 }
 
 /// The mean figures of a method on some clips.
@@ -56,13 +51,6 @@ struct Row {
 struct OfEvent {
     event: &'static str,
     rows: Vec<Row>,
-}
-
-/// A clip whose strip is shown, with the mean IoU of its objects.
-#[derive(Serialize)]
-struct Shown<'a> {
-    clip: &'a str,
-    assigned: f64,
 }
 
 /// The figures of a method on a clip.
@@ -89,12 +77,11 @@ pub(crate) fn lines(measured: &[Measured]) -> serde_json::Result<String> {
     Ok(lines.collect::<Result<Vec<_>, _>>()?.join("\n"))
 }
 
-impl<'a> Figures<'a> {
-    pub(crate) fn of(measured: &'a [Measured]) -> Figures<'a> {
+impl Figures {
+    pub(crate) fn of(measured: &[Measured]) -> Figures {
         let (generated, real): (Vec<&Measured>, Vec<&Measured>) =
             measured.iter().partition(|one| one.case.is_generated());
-        let [best, worst] = shown(&generated);
-        Figures { generated: rows(&generated), events: events(&generated), real: rows(&real), best, worst }
+        Figures { generated: rows(&generated), events: events(&generated), real: rows(&real) }
     }
 }
 
@@ -120,17 +107,4 @@ fn events(clips: &[&Measured]) -> Vec<OfEvent> {
         OfEvent { event: word(event), rows: methods.into_iter().filter_map(|method| row(&own, method)).collect() }
     };
     Event::ALL.into_iter().map(of).filter(|event| !event.rows.is_empty()).collect()
-}
-
-/// The best clips, and the worst in reverse; no clip is in both.
-fn shown<'a>(clips: &[&'a Measured]) -> [Vec<Shown<'a>>; 2] {
-    let assigned = |one: &Measured| one.own()?.scores.identities.map(|identities| identities.assigned);
-    let of = |one: &&'a Measured| Shown { clip: &one.case.name, assigned: assigned(one).unwrap_or(0.0) };
-    let mut best: Vec<Shown<'_>> = clips.iter().map(of).collect();
-    best.sort_by(|a, b| b.assigned.total_cmp(&a.assigned));
-    let many = SHOWN.min(best.len() / 2);
-    let mut worst = best.split_off(best.len() - many);
-    worst.reverse();
-    best.truncate(many);
-    [best, worst]
 }

@@ -36,7 +36,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
   --methods A,B      only these methods: clip, stream, stream-fast, live, pairs, pairs-fast, flow, mog2, knn
   --out DIR          output folder; default out/clips
   --shared DIR       folder with real clips, if it exists; default ../shared
-  --write-docs       also write the figures to docs/figures, strips to docs/images, and docs/clips.md from them
+  --write-docs       also write the figures to docs/figures, and docs/clips.md from them
 ";
 
 struct Options {

@@ -256,30 +256,6 @@ impl Case {
         self.name.rsplit_once('_').map_or(&self.name, |(sequence, _)| sequence)
     }
 
-    /// What the scene is, in words.
-    pub(crate) fn description(&self) -> String {
-        match &self.source {
-            Source::Scene(options) => {
-                let speed = match options.speed {
-                    Speed::Creeping => "0.3 px",
-                    Speed::SubPixel => "sub-pixel",
-                    Speed::Medium => "medium",
-                    Speed::Large => "large",
-                };
-                let background = if options.background == Background::Static { "static" } else { "moving" };
-                let objects = match options.objects {
-                    0 => return format!("{} × {}, {background} background", options.width, options.height),
-                    1 => "1 object".into(),
-                    n => format!("{n} objects"),
-                };
-                format!("{} × {}, {objects}, {speed}, {background} background", options.width, options.height)
-            }
-            Source::Robots(_) => "200 × 150, leader and follower".into(),
-            Source::Bare(_) => "384 × 216, cars on bare ground".into(),
-            Source::Folder(_) => String::new(),
-        }
-    }
-
     /// Reads or generates the frames.
     pub(crate) fn load(&self) -> Result<Data> {
         match &self.source {

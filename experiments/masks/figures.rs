@@ -7,19 +7,12 @@ use crate::measure::Measured;
 use crate::outcome::{Method, Outcome};
 use crate::summary::Summary;
 
-/// How many of the best and of the worst scenes are shown as pictures.
-const SHOWN: usize = 3;
-/// Sets whose pictures belong to the project and whose truth has one label per object.
-const OWN: [Set; 4] = [Set::Generated, Set::Colour, Set::Large, Set::Robots];
-
 #[derive(Serialize)]
 pub(crate) struct Figures<'a> {
     scenes: Vec<Row>,
     sequences: Vec<Row>,
     pairs: Vec<Row>,
     flow: Vec<Flow<'a>>,
-    best: Vec<Shown<'a>>,
-    worst: Vec<Shown<'a>>,
 }
 
 /// The mean scores of a method on some cases.
@@ -38,14 +31,6 @@ struct Flow<'a> {
     best: Option<f64>,
     fast: Option<f64>,
     baseline: Option<f64>,
-}
-
-/// A scene whose picture is shown, with its mean IoU.
-#[derive(Serialize)]
-struct Shown<'a> {
-    case: &'a str,
-    description: String,
-    miou: f64,
 }
 
 /// All outcomes of a case.
@@ -68,9 +53,8 @@ pub(crate) fn lines(measured: &[Measured]) -> serde_json::Result<String> {
 
 impl<'a> Figures<'a> {
     pub(crate) fn of(measured: &'a [Measured]) -> Figures<'a> {
-        let [best, worst] = shown(measured);
         let (scenes, flow) = (scenes(measured), flow(measured));
-        Figures { scenes, sequences: sequences(measured), pairs: pairs(measured), flow, best, worst }
+        Figures { scenes, sequences: sequences(measured), pairs: pairs(measured), flow }
     }
 }
 
@@ -126,20 +110,4 @@ fn flow(measured: &[Measured]) -> Vec<Flow<'_>> {
         Flow { pair: &one.case.name, best, fast, baseline }
     };
     measured.iter().filter(|one| one.case.set == Set::Flow).map(named).collect()
-}
-
-/// The best and the worst scenes of the project, the latter in reverse; no scene is in both.
-fn shown(measured: &[Measured]) -> [Vec<Shown<'_>>; 2] {
-    let with_figure = |one| {
-        let miou = Measured::of(one, Method::Best)?.single.as_ref()?.miou;
-        Some(Shown { case: &one.case.name, description: one.case.description(), miou })
-    };
-    let mut best: Vec<Shown<'_>> =
-        measured.iter().filter(|one| OWN.contains(&one.case.set)).filter_map(with_figure).collect();
-    best.sort_by(|a, b| b.miou.total_cmp(&a.miou));
-    let many = SHOWN.min(best.len() / 2);
-    let mut worst = best.split_off(best.len() - many);
-    worst.reverse();
-    best.truncate(many);
-    [best, worst]
 }

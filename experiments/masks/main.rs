@@ -44,7 +44,7 @@ Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json:
   --only A,B         only cases whose name or set contains one of these
   --out DIR          output folder; default out/masks
   --shared DIR       folder with further pairs, if it exists; default ../shared
-  --write-docs       also write the figures to docs/figures, pictures to docs/images, and docs/masks.md from them
+  --write-docs       also write the figures to docs/figures, and docs/masks.md from them
 ";
 
 struct Options {

@@ -1,6 +1,6 @@
 // The end of a benchmark: its tables in the terminal and, with --write-docs, its figures, its pictures and the pages made of them.
 
-import { copyFileSync, readdirSync, rmSync } from 'node:fs';
+import { copyFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { withOrigin, writeFigures } from './figures.mjs';
@@ -27,8 +27,7 @@ export function present(name, origin, measured, writeDocs) {
   writePages();
 }
 
-/** Copies pictures from a folder to those of the documentation, where they replace all whose names begin with `prefix`. */
-export function showPictures(folder, prefix, names) {
-  for (const file of readdirSync(IMAGES).filter((file) => prefix !== '' && file.startsWith(prefix))) rmSync(join(IMAGES, file));
-  for (const name of names) copyFileSync(join(folder, name), join(IMAGES, `${prefix}${name}`));
+/** Copies pictures from a folder to those of the documentation. */
+export function showPictures(folder, names) {
+  for (const name of names) copyFileSync(join(folder, name), join(IMAGES, name));
 }

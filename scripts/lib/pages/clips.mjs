@@ -5,7 +5,6 @@ import { amount, fixed, origin, percent, score, table } from './table.mjs';
 export const PARTS = {
   generated: ['clips', (figures) => [origin(figures), `${figures.generated[0]?.clips} clips:`, means(figures.generated, true)].join('\n\n')],
   events: ['clips', events],
-  pictures: ['clips', pictures],
   real: ['clips', ({ real }) => (real.length > 0 ? `${real[0].clips} clips:\n\n${means(real, false)}` : '')],
 };
 
@@ -22,10 +21,5 @@ function events({ events }) {
   const methods = events[0]?.rows.map(({ method }) => method) ?? [];
   const lines = events.map(({ event, rows }) => [event, rows[0].clips, ...rows.flatMap(({ auto, assigned, switches }) => [score(auto), score(assigned), fixed(switches, 1)])]);
   return table(['event', 'clips', ...methods.flatMap((method) => [`${method}: auto`, 'assigned', 'switches'])], lines);
-}
-
-function pictures({ best, worst }) {
-  const shown = ({ clip, assigned }) => `**${clip}**: assigned ${score(assigned)}\n\n![Frames, labels found and true labels of ${clip}](images/clips-${clip}.png)`;
-  return [['The best clips', best], ['The worst clips', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
 }
 

@@ -11,7 +11,6 @@ export const PARTS = {
   pairs: ['masks', ({ pairs }) => real(pairs)],
   flow: ['masks', flow],
   ablation: ['masks-ablation', ablation],
-  pictures: ['masks', pictures],
   calibration: ['masks-calibration', calibration],
 };
 
@@ -53,12 +52,6 @@ function ablation({ date, rows: found }) {
   const { scenes, bare, pairs } = all.best;
   const counts = `${scenes.cases} scenes, ${bare.cases} of bare ground, ${pairs?.cases ?? 0} real pairs, ${date}:`;
   return `${counts}\n\n${table(head, [[all.without, ...columns.map(([, of]) => score(of(all)))], ...rows])}`;
-}
-
-function pictures({ best, worst }) {
-  const shown = ({ case: name, description, miou }) =>
-    `**${name}** (${description}): mean IoU ${score(miou)}\n\n![First frame, labels found and true labels of ${name}](images/masks-${name}.png)`;
-  return [['The best scenes', best], ['The worst scenes', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
 }
 
 const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);
