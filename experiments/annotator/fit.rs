@@ -57,7 +57,7 @@ fn fitted(clips: &[&Opened<'_>], options: &Options) -> Result<(ClipModel, f64), 
 }
 
 pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
-    let options = Options { rounds: 1, dump: None, ..options.clone() };
+    let options = Options { rounds: 1, ..options.clone() };
     let data = in_parallel(cases, Case::load)?;
     let cases: Vec<(&Case, &Data)> = cases.iter().zip(&data).collect();
     let clips =

@@ -5,14 +5,11 @@ mod boundary;
 #[path = "../clips/cases.rs"]
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod cases;
-mod dump;
 mod fit;
 mod measure;
 mod objects;
 mod overlap;
 mod pairs;
-#[path = "../panels.rs"]
-mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
 #[path = "../program.rs"]
@@ -22,8 +19,6 @@ mod robot;
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod scores;
 mod session;
-#[path = "../clips/strips.rs"]
-mod strips;
 
 use std::error::Error;
 use std::fs;
@@ -49,7 +44,6 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --rounds N         rounds of strokes; default 4
   --jobs N           clips at once; default one for each core
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
-  --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
   --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
   --write-docs       also write the figures to docs/figures, and docs/annotating.md from them
 
@@ -67,7 +61,6 @@ pub(crate) struct Options {
     pub(crate) rounds: usize,
     jobs: Option<usize>,
     pub(crate) out: PathBuf,
-    pub(crate) dump: Option<PathBuf>,
     pub(crate) model: ClipModel,
 }
 
@@ -85,7 +78,6 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         rounds: 4,
         jobs: None,
         out: "out/annotator".into(),
-        dump: None,
         model: ClipModel::DEFAULT,
     };
     while let Some(name) = arguments.next() {
@@ -107,7 +99,6 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
             "--set" => set(&mut options.model, &value()?)?,
-            "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),
         }
     }

@@ -9,7 +9,7 @@ use crate::cases::{Case, Data};
 use crate::overlap::{between, each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View, depths};
 use crate::session::{Effort, Session};
-use crate::{Failure, Options, dump};
+use crate::{Failure, Options};
 
 /// Clips that had part in setting constants before the others came.
 const OLD: [&str; 10] =
@@ -85,13 +85,11 @@ pub(crate) fn open<'a>(case: &Case, data: &'a Data, options: &Options) -> Result
 fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Options) -> Result<Row, Failure> {
     let width = width_of(case, data)?;
     let truths = truths_of(data);
-    dump::write(options, case, "auto", data, &automatic.labels)?;
 
     let (_, background) = areas(&automatic.labels);
     let moving = |labels: &Vec<u8>| labels.iter().map(|&label| label != background && label != NOTHING_SAID).collect();
     let auto = mean(&each(&automatic.labels.iter().map(moving).collect::<Vec<_>>(), &truths));
     let (session, mask) = given(automatic, &truths)?;
-    dump::write(options, case, "mask", data, &session.labels)?;
     let mut effort = session.effort;
     let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(automatic, prompt, &truths));
     let (boxed, touched) = (boxed?, touched?);
@@ -169,7 +167,7 @@ fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Option
     let (mut rounds, mut seconds) = (vec![click], Vec::new());
     let mut strokes: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
     let mut far_lost = [0; 2];
-    for round in 1..=options.rounds {
+    for _ in 0..options.rounds {
         let found = masks(&session.labels, label);
         let worst = worst(&each(&found, &truths));
         let said = strokes.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
@@ -184,7 +182,6 @@ fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Option
             far_lost[0] += usize::from(now[t] <= last[t] - LOSS);
         }
         rounds.push(mean(&now));
-        dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
     }
     Ok(Rounds { click, rounds, far_lost, seconds, effort: session.effort })
 }

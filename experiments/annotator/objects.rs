@@ -7,7 +7,7 @@ use crate::cases::Case;
 use crate::overlap::{each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View};
 use crate::session::Session;
-use crate::{Failure, Options, dump};
+use crate::{Failure, Options};
 
 /// Seed of the first clip; no other program uses any of these.
 const SEED: u64 = 83_000;
@@ -68,7 +68,6 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let mut session = Session::open(&data.frames, options.quality, &options.pairs(case))?;
     let given: Vec<u8> = data.truths[0].iter().map(|&label| if label > 0 { GIVEN + label } else { 0 }).collect();
     session.paint(0, &given)?;
-    dump::write(options, case, "masks", &data, &session.labels)?;
     let frame_milliseconds = session.effort.per_frame();
 
     let mut numbers: Vec<u8> = data.truths[0].iter().copied().filter(|&number| number > 0).collect();
@@ -102,7 +101,6 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         View { width, truth: &truths[worst], found: &found }.draw(GIVEN + number, free, &mut said);
         let mut corrected = session.clone();
         corrected.paint(worst, &said)?;
-        dump::write(options, case, &format!("strokes-{number}"), &data, &corrected.labels)?;
         let pixels = session.labels.iter().flatten().zip(corrected.labels.iter().flatten());
         let changed = |&(&a, &b): &(&u8, &u8)| a != b && (is_other(a, number) || is_other(b, number));
         let (assigned, stroked) = (of(&before), of(&seen(&corrected)));
