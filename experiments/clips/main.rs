@@ -5,7 +5,6 @@
 mod boundary;
 mod cases;
 mod figures;
-mod linking;
 mod measure;
 mod methods;
 #[path = "../panels.rs"]
@@ -33,7 +32,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
-  --methods A,B      only these methods: clip, stream, stream-fast, live, pairs, pairs-fast, flow, mog2, knn
+  --methods A,B      only these methods: clip, stream, stream-fast, live, flow, mog2, knn
   --out DIR          output folder; default out/clips
   --shared DIR       folder with real clips, if it exists; default ../shared
   --write-docs       also write the figures to docs/figures, and docs/clips.md from them

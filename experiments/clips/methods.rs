@@ -7,7 +7,6 @@ use veronese::clip::{ClipOptions, ClipSegmenter, StreamSegmenter};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use super::cases::{Data, labels};
-use super::linking::pair_by_pair;
 
 /// In the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,10 +15,6 @@ pub(crate) enum Method {
     Clip,
     /// The stream segmenter with a look-ahead.
     Stream(Quality, usize),
-    /// Each pair by itself, its masks linked.
-    Pairs,
-    /// The same, fast.
-    PairsFast,
     /// OpenCV: DIS flow, the dominant affine motion, a threshold.
     Flow,
     /// OpenCV: background subtraction.
@@ -28,13 +23,11 @@ pub(crate) enum Method {
 }
 
 impl Method {
-    pub(crate) const ALL: [Method; 9] = [
+    pub(crate) const ALL: [Method; 7] = [
         Method::Clip,
         Method::Stream(Quality::Best, 4),
         Method::Stream(Quality::Fast, 4),
         Method::Stream(Quality::Fast, 0),
-        Method::Pairs,
-        Method::PairsFast,
         Method::Flow,
         Method::Mog2,
         Method::Knn,
@@ -46,8 +39,6 @@ impl Method {
             Method::Stream(Quality::Best, _) => "stream",
             Method::Stream(_, 0) => "live",
             Method::Stream(..) => "stream-fast",
-            Method::Pairs => "pairs",
-            Method::PairsFast => "pairs-fast",
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
@@ -60,8 +51,6 @@ impl Method {
             Method::Stream(Quality::Best, _) => "stream, look-ahead 4",
             Method::Stream(_, 0) => "stream, fast, look-ahead 0",
             Method::Stream(..) => "stream, fast, look-ahead 4",
-            Method::Pairs => "pair by pair",
-            Method::PairsFast => "pair by pair, fast",
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
@@ -105,12 +94,9 @@ pub(crate) fn found(
     peers: &Path,
 ) -> std::result::Result<Option<Found>, Box<dyn std::error::Error + Send + Sync>> {
     let start = Instant::now();
-    let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions::default().with_quality(quality));
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
-        Method::Pairs => Some(pairs(Quality::Best)?),
-        Method::PairsFast => Some(pairs(Quality::Fast)?),
         Method::Flow | Method::Mog2 | Method::Knn => None,
     };
     if let Some(labels) = own {

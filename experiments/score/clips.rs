@@ -5,8 +5,6 @@ use crate::boundary;
 
 #[path = "../clips/cases.rs"]
 pub(crate) mod cases;
-#[path = "../clips/linking.rs"]
-mod linking;
 #[path = "../clips/methods.rs"]
 pub(crate) mod methods;
 #[path = "../clips/scores.rs"]
