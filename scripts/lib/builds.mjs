@@ -116,7 +116,7 @@ async function step(title, folder, outputs, inputs, versions, build) {
   if (!built) say(`${folder} is up to date.`);
 }
 
-async function wasmPack(name, folder, features, flags = []) {
+async function wasmPack(name, folder, features) {
   // The dependencies' sources must be downloaded before the flags below can name their folders.
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
   // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
@@ -125,27 +125,14 @@ async function wasmPack(name, folder, features, flags = []) {
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',
-    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...ofModule(features, flags)],
+    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...ofModule(features)],
     { env: FLAGS_OF_PROJECT },
   );
 }
 
-/**
- * Builds the core module without SIMD in `folder`, with the flags that it has otherwise, and returns its path. It takes the JavaScript of the
- * core module.
- */
-export async function buildPlainModule(folder) {
-  say('Building the core module without SIMD (one to three minutes when everything is new) …');
-  await wasmPack('veronese', folder, ['frames'], ['-Ctarget-feature=-simd128']);
-  const path = join(folder, 'veronese_bg.wasm');
-  const { text } = await must('The module without SIMD could not be read.', 'wasm-dis', [path], { output: 'collect' });
-  if (/\bv128\b/.test(text)) throw new Stop('The module that was built without SIMD has instructions of SIMD.');
-  return path;
-}
-
-/** Cargo's arguments for a module with these features, with further flags of the compiler. */
-function ofModule(features, flags = []) {
-  const config = `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`;
+/** Cargo's arguments for a module with these features. */
+function ofModule(features) {
+  const config = `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`;
   return ['--locked', '--config', config, '--no-default-features', '--features', features.join(',')];
 }
 
