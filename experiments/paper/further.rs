@@ -1,18 +1,16 @@
-//! Tables beyond the paper's: the estimator beside the statistical limit, the rank rule, the linear step up to ten motions.
+//! Tables beyond the paper's: the estimator beside the statistical limit, and the rank rule.
 
 use std::error::Error;
 use std::time::Instant;
 
+use veronese::embedding::EmbeddedData;
 use veronese::embedding::monomials::unknowns;
 use veronese::embedding::rank::{KAPPA, numerical_rank};
-use veronese::embedding::{EmbeddedData, MultibodyMotion};
-use veronese::factorisation::differentiation::{POINTS, motions_from_points};
-use veronese::factorisation::five_steps;
-use veronese::stages::protocol::{Problem, Protocol, Relation, SPECIAL};
+use veronese::stages::protocol::{Problem, Protocol, Relation};
 use veronese::{AffineMotion, FitOptions, MotionCount, MotionFit, Random, fit_motions};
 
 use crate::Table;
-use crate::synthetic::{self, random_motions, worst_error};
+use crate::synthetic::{self, random_motions};
 
 /// A motion with a larger relative error (eq. 20) counts as not found.
 const GROSS: f64 = 0.2;
@@ -20,14 +18,7 @@ const GROSS: f64 = 0.2;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// The tables by name.
-pub(crate) const TABLES: [(&str, Table); 6] = [
-    ("limit", limit),
-    ("configurations", configurations),
-    ("numbers", numbers),
-    ("sizes", sizes),
-    ("rank-rule", rank_rule),
-    ("degrees", degrees),
-];
+pub(crate) const TABLES: [(&str, Table); 2] = [("limit", limit), ("rank-rule", rank_rule)];
 
 fn fit(problem: &Problem, motions: MotionCount) -> Result<MotionFit> {
     Ok(fit_motions(&problem.measurements, &FitOptions::default().with_motions(motions), &mut |_| {})?)
@@ -73,41 +64,6 @@ fn limit(trials: usize, seed: u64) -> Result<()> {
     Ok(())
 }
 
-fn configurations(trials: usize, seed: u64) -> Result<()> {
-    for relation in SPECIAL {
-        let protocol = |n| Protocol { relation, ..Protocol::new(n, 0.05) };
-        (2..=4).try_for_each(|n| line(&format!("{relation:?}"), &protocol(n), trials, seed))?;
-    }
-    Ok(())
-}
-
-/// How often the number of motions is found.
-fn numbers(trials: usize, seed: u64) -> Result<()> {
-    for (noise, outliers) in [(0.0, 0.0), (0.02, 0.0), (0.05, 0.0), (0.1, 0.0), (0.0, 0.2), (0.02, 0.2), (0.05, 0.2)] {
-        for n in 1..=5 {
-            let protocol = Protocol { outliers, ..Protocol::new(n, noise) };
-            let mut right = 0;
-            for trial in 0..trials as u64 {
-                let found = fit(&protocol.problem(1_000_000 * seed + trial), MotionCount::Auto)?;
-                right += usize::from(found.count == n);
-            }
-            println!("p {noise:4.2}  outliers {outliers:.1}  n {n}: {right}/{trials} right");
-        }
-    }
-    Ok(())
-}
-
-/// The time of many measurements.
-fn sizes(_: usize, seed: u64) -> Result<()> {
-    for count in [1_000, 10_000, 100_000, 300_000] {
-        let problem = Protocol { count, ..Protocol::new(4, 0.05) }.problem(seed);
-        let start = Instant::now();
-        fit(&problem, MotionCount::Given(4))?;
-        println!("N {count}: {:.1} ms", 1e3 * start.elapsed().as_secs_f64());
-    }
-    Ok(())
-}
-
 /// How often the rank rule finds the number of motions, with raw and with scaled columns. "=" counts numbers that satisfy (12), "<=" the
 /// smallest number with a deficient rank.
 fn rank_rule(trials: usize, seed: u64) -> Result<()> {
@@ -140,34 +96,6 @@ fn rank_rule(trials: usize, seed: u64) -> Result<()> {
                 "n {n} noise {noise}: right of {trials}: raw = {raw}, raw <= {raw_least}, scaled = {scaled}, scaled <= {scaled_least}"
             );
         }
-    }
-    Ok(())
-}
-
-/// Accuracy and time of the linear step without noise; ten motions take long.
-fn degrees(_: usize, _: u64) -> Result<()> {
-    for n in 2..=10 {
-        let mut random = Random::from_seed(n as u64);
-        let truth = random_motions(n, &mut random);
-        let m = unknowns(n);
-        let count = (2 * m).max(600);
-        let data = synthetic::Protocol::B1.measurements(&truth, count, 0.0, &mut random);
-        let start = Instant::now();
-        let embedded = EmbeddedData::new(&data, n);
-        let qr = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let multibody = MultibodyMotion::from_embedded(&embedded);
-        let null = start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        let motions = motions_from_points(&multibody, &data, POINTS, &mut random);
-        let differentiation = start.elapsed().as_secs_f64();
-        println!(
-            "n {n} m {m} N {count}: QR {qr:.3} s ({:.2} Gflop/s), null vector {null:.3} s, differentiation {differentiation:.3} s; \
-             worst error: differentiation {:.1e}, five steps {:.1e}",
-            2e-9 * count as f64 * (m * m) as f64 / qr,
-            worst_error(&truth, &motions),
-            worst_error(&truth, &five_steps(&multibody)),
-        );
     }
     Ok(())
 }

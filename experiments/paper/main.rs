@@ -22,8 +22,8 @@ const HELP: &str = "\
 Repeats the paper's experiments with its method and with ours.
 
   --trials N   trials per noise level of Figure 1, 1 to 100000; default 1000
-  --table T    print a further table instead, with 50 trials by default: limit (the estimator beside the statistical limit),
-               configurations, numbers (of motions found), sizes (times), rank-rule, degrees (the linear step up to n = 10)
+  --table T    print a further table instead, with 50 trials by default: limit (the estimator beside the statistical limit) or
+               rank-rule
   --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
   --out DIR    output folder; default out/paper
   --write-docs also write the figures to docs/figures, the plot and the pictures to docs/images, and docs/experiments.md from them
