@@ -1,10 +1,10 @@
-// node measure-frames.mjs FOLDER QUALITY: what a frame of this clip costs in one worker, as JSON. Seconds are of the processor.
+// node cost-of-frame.mjs FOLDER QUALITY: what a frame of this clip costs in one worker, as JSON. Seconds are of the processor.
 
 import { readFile, readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { decodeImage, encodeIndexedPng } from '../../../pkg/dist/codecs.js';
-import { Segmenter, davisPalette } from '../../../pkg/dist/node.js';
+import { decodeImage, encodeIndexedPng } from '../../pkg/dist/codecs.js';
+import { Segmenter, davisPalette } from '../../pkg/dist/node.js';
 
 const [folder, quality] = process.argv.slice(2);
 const files = await Promise.all((await readdir(folder)).toSorted().map((name) => readFile(join(folder, name))));
@@ -34,7 +34,7 @@ const run = async (options, length = n) => {
 };
 // A module is slow until it is compiled.
 const few = 6;
-const cold = await run({}, few);
+await run({}, few);
 
 const told = [];
 const whole = await run({ onPairs: (k, bytes) => (told[k] = bytes) });
@@ -50,7 +50,6 @@ const bytesOf = (list) => Math.round(list.reduce((sum, { length }) => sum + leng
 const figures = {
   pair,
   track,
-  cold: Math.max(0, cold.tracked - (few - 1) * pair - few * track),
   label: known.labelled / (n - 1),
   decode,
   encode,
