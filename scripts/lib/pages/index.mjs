@@ -29,7 +29,7 @@ const PAGES = {
 /** The tables that are made of some figures, for the terminal. */
 export function tablesOf(name, figures) {
   const parts = Object.values(PAGES).flatMap((page) => Object.entries(page));
-  const own = parts.filter(([part, [file]]) => file === name);
+  const own = parts.filter(([, [file]]) => file === name);
   return own.map(([, [, text]]) => text(figures)).filter((text) => text !== '').join('\n\n');
 }
 

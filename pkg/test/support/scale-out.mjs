@@ -9,47 +9,40 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 
-import { installDebianPackages } from './debian.mjs';
-import { SCALE_OUT } from './npm-packages.mjs';
-import { root, which } from './project.mjs';
+import { SCALE_OUT } from '../../../scripts/lib/npm-packages.mjs';
+import { root, which } from '../../../scripts/lib/project.mjs';
+import { frame, png } from './frames.mjs';
 
 /** Lifetime of a worker's lock, milliseconds: how long the jobs of a killed worker wait. */
 const LOCK = '3000';
 const PATIENCE = 300_000;
 
-/** Whether there is a Redis or Valkey server; with `install` it is installed where that needs no confirmation. */
-export async function redisServer({ install = false } = {}) {
-  const found = () => which('redis-server') ?? which('valkey-server');
-  if (!found() && install) await installDebianPackages(['redis-server'], 'Redis');
-  return found();
-}
+/** The program of a Redis or Valkey server, where there is one. */
+export const redisServer = () => which('redis-server') ?? which('valkey-server');
 
-/** Runs everything for pairs and returns the measurements. Throws if a pair is missing, duplicated or different from a direct call. */
-export function prove(program, { pairs, size, say = () => undefined }) {
+/** Runs everything for pairs. Throws if a pair is missing, duplicated or different from a direct call. */
+export function prove(program, { pairs, size }) {
   return withServer(program, async ({ folder, redis, node, finished, worker }) => {
-    const frames = await makeFrames(join(folder, 'frames'), pairs + 1, size);
+    const frames = makeFrames(join(folder, 'frames'), pairs + 1, size);
     const out = join(folder, 'out');
     let server = redis();
     const produced = await finished(node('produce.mjs', join(folder, 'frames'), '--out', out, '--quality', 'fast'));
     assert.deepEqual(produced, { pairs, added: pairs, done: 0 });
 
-    const since = Date.now();
     const workers = [worker(), worker()];
     const until = async (share, what) => {
       await eventually(() => results(out).length >= share * pairs, what, workers);
-      return results(out).length;
     };
-    say(`killing a worker after ${await until(0.25, 'a worker to kill')} pairs`);
+    await until(0.25, 'a worker to kill');
     workers[0].child.kill('SIGKILL');
     await workers[0].ended;
     workers.push(worker());
-    say(`restarting the Redis server after ${await until(0.5, 'a server to restart')} pairs`);
+    await until(0.5, 'a server to restart');
     server.child.kill('SIGTERM');
     await server.ended;
     await sleep(500);
     server = redis();
     await until(1, 'the end');
-    const seconds = (Date.now() - since) / 1000;
 
     const collected = await finished(node('status.mjs', '--out', out, '--collect'));
     assert.deepEqual(collected, { pairs, done: pairs, failed: 0, missing: 0 });
@@ -61,8 +54,6 @@ export function prove(program, { pairs, size, say = () => undefined }) {
     // A second run changes nothing.
     assert.deepEqual(await finished(node('produce.mjs', join(folder, 'frames'), '--out', out, '--quality', 'fast')), { pairs, added: 0, done: pairs });
     await ended(workers.slice(1));
-    const did = workers.flatMap(doneBy);
-    return { pairs, seconds, jobsFinished: did.length, foundDone: did.filter(({ did }) => !did).length };
   });
 }
 
@@ -73,10 +64,10 @@ const BLOCK = 4;
  * The same for one clip of a number of blocks. A worker is stopped inside its first block, while another one solves the next, and killed.
  * Throws if a file is not to the bit what `veronese clip` writes. Returns what was done, by finished jobs.
  */
-export function proveClip(program, { blocks, size, say = () => undefined }) {
+export function proveClip(program, { blocks, size }) {
   return withServer(program, async ({ folder, start, redis, node, finished, worker }) => {
     const [frames, out, straight] = ['frames', 'out', 'straight'].map((name) => join(folder, name));
-    await makeFrames(frames, blocks * BLOCK + 1, size);
+    makeFrames(frames, blocks * BLOCK + 1, size);
     redis();
     const produce = () => finished(node('produce-clips.mjs', frames, '--out', out, '--block', String(BLOCK)));
     assert.deepEqual(await produce(), { clips: 1, done: 0, queued: 0, added: 1, blocks });
@@ -92,7 +83,6 @@ export function proveClip(program, { blocks, size, say = () => undefined }) {
     assert.ok(lost.length < BLOCK, 'it is inside its block');
     workers.push(worker());
     await eventually(() => doneBy(workers[1]).length > 0, 'a block of the other worker', workers);
-    say(`killing a worker after ${lost.length} of the ${BLOCK} pairs of its block`);
     workers[0].child.kill('SIGKILL');
     await workers[0].ended;
     // Nobody trusts what a dying machine has written.
@@ -124,7 +114,7 @@ export function proveClip(program, { blocks, size, say = () => undefined }) {
 }
 
 /** Calls `work` with what starts a server and programs of the example in a temporary folder, and ends whatever still runs. */
-export async function withServer(program, work, { appendfsync = 'always' } = {}) {
+async function withServer(program, work) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-scale-out-'));
   const running = new Set();
   const start = (command, args, env = {}) => {
@@ -146,9 +136,9 @@ export async function withServer(program, work, { appendfsync = 'always' } = {})
       return JSON.parse(state.text);
     };
     // Jobs must survive the server, so it appends each change to a file.
-    const redis = () => start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '', '--appendonly', 'yes', '--appendfsync', appendfsync]);
+    const redis = () => start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '', '--appendonly', 'yes', '--appendfsync', 'always']);
     const worker = () => node('work.mjs', '--jobs', '1', '--lock', LOCK);
-    return await work({ folder, url: env.REDIS_URL, start, redis, node, finished, worker });
+    return await work({ folder, start, redis, node, finished, worker });
   } finally {
     for (const child of running) child.kill('SIGKILL');
     rmSync(folder, { recursive: true, force: true });
@@ -176,8 +166,7 @@ function results(out) {
   return readdirSync(out, { recursive: true }).filter((name) => name.endsWith('.json'));
 }
 
-async function makeFrames(folder, count, size) {
-  const { frame, png } = await import('../../pkg/test/support/frames.mjs');
+function makeFrames(folder, count, size) {
   mkdirSync(folder);
   const frames = Array.from({ length: count }, (_, k) => frame(k / 4, { ...size, background: [1, 0.5] })); // each another, or they would be the same job
   frames.forEach((picture, k) => writeFileSync(join(folder, `f${String(k).padStart(4, '0')}.png`), png(picture)));
@@ -186,7 +175,7 @@ async function makeFrames(folder, count, size) {
 
 /** Compares some of the results with direct calls. */
 async function compare(lines, frames) {
-  const { segmentPair } = await import('../../pkg/dist/node.js');
+  const { segmentPair } = await import('veronese');
   for (let index = 0; index < lines.length; index += 23) {
     const { motions } = await segmentPair(frames[index], frames[index + 1], { quality: 'fast' });
     assert.deepEqual(lines[index].motions, JSON.parse(JSON.stringify(motions)), `pair ${index}`);
