@@ -12,7 +12,7 @@ export const python = fileURLToPath(
 );
 
 /** Why what is Python cannot run, or false. */
-export const skip = !existsSync(python) && "the annotation tools' Python packages are not installed: they need Python 3.10 or newer with venv, then `npm run setup`";
+export const skip = !existsSync(python) && "the annotation tools' Python packages are not installed: they need Python 3.10 or newer with venv, then `npm run soak -- formats`";
 
 /** Runs a script of this folder on a folder; what it printed, as JSON. */
 export function decoded(script, folder) {
