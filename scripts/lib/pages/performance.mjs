@@ -27,7 +27,6 @@ export const PARTS = {
   workers: ['browser', workers],
   stages: ['browser', stages],
   scaling: ['browser', ({ scaling }) => (scaling ? [pixels(scaling), motions(scaling)].join('\n\n') : '')],
-  first: ['first', first],
   page: ['page', page],
   ratio: ['ratio', nativeRatio],
 };
@@ -112,13 +111,6 @@ function motions({ size: pixels, motions, exponents }) {
   const rows = motions.map(({ motions: n, fast, best }) => [String(n), amount(fast), amount(best)]);
   rows.push(['exponent', fixed(exponents.motions.fast, 2), fixed(exponents.motions.best, 2)]);
   return `With a given number of motions, ${size(pixels)} pixels:\n\n${table(['motions', 'fast', 'best'], rows)}`;
-}
-
-/** The first call of a worker against later ones. */
-function first({ runs, rows, ...figures }) {
-  const heads = rows[0].first.map(({ ahead }) => (ahead === null ? 'no warm-up' : ahead === 'whole' ? 'whole' : `begun ${ahead} ms before`));
-  const lines = rows.map(({ place, size: pixels, later, first }) => [`${place}, ${size(pixels)}`, amount(later), ...first.map(({ milliseconds }) => beside(milliseconds, later))]);
-  return `${origin(figures)} Medians of ${runs} runs.\n\n${table(['', 'later calls', ...heads], lines)}`;
 }
 
 function page({ frames, size: pixels, quality, workers, seconds, opened, samples, done, stepped, tasks, first, corrected, ...figures }) {
