@@ -14,7 +14,6 @@ import { PARTS as experiments } from './experiments.mjs';
 import { PARTS as masks } from './masks.mjs';
 import { PARTS as performance } from './performance.mjs';
 import { PARTS as scaling } from './scaling.mjs';
-import { PARTS as sizes } from './sizes.mjs';
 
 const PAGES = {
   'docs/annotating.md': annotating,
@@ -23,7 +22,6 @@ const PAGES = {
   'docs/masks.md': masks,
   'docs/performance.md': performance,
   'docs/scaling.md': scaling,
-  'docs/sizes.md': sizes,
 };
 
 /** The tables that are made of some figures, for the terminal. */
