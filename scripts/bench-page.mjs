@@ -53,8 +53,9 @@ await command(async (args) => {
     const measured = await segmented(browser, address, { quality, workers });
     await writeLongClip(maker, VIDEO, CORRECTED.frames, CORRECTED.size);
     await maker.close();
-    const corrected = await correctedFrames(browser, address, quality);
-    const report = { frames, size, quality, workers, first, ...measured, corrected };
+    const { painting, ...corrected } = await correctedFrames(browser, address, quality);
+    const tasks = { ...measured.tasks, painting };
+    const report = { frames, size, quality, workers, ...measured, tasks, first, corrected };
     present('page', { command: 'npm run bench:page', chromium: browser.version() }, report, writeDocs);
   } finally {
     await browser.close();
@@ -80,7 +81,7 @@ function options(args) {
   return { frames: Number(frames), size: size.split('x').map(Number), quality, workers: Number(workers), writeDocs };
 }
 
-/** Segments the video as a person would and returns `{ seconds, opened, samples, done, stepped }`; memory in bytes. */
+/** Segments the video as a person would and returns `{ seconds, memory, tasks }`; memory in bytes. */
 async function segmented(browser, address, { quality, workers }) {
   const page = await browser.newPage();
   await page.addInitScript((processors) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => processors }), workers + 1);
@@ -96,8 +97,7 @@ async function segmented(browser, address, { quality, workers }) {
   await page.locator('#clip-segment').click();
   await reached(page, '#clip-run', 'working');
   const began = Date.now();
-  const samples = [];
-  let share = 0;
+  let [share, most] = [0, opened];
   for (;;) {
     const { phase, text, value } = await page.evaluate(() => ({
       phase: document.querySelector('#clip-run').dataset.phase,
@@ -108,16 +108,16 @@ async function segmented(browser, address, { quality, workers }) {
       if (phase !== 'done') throw new Stop(`The run ended as '${phase}': ${await page.locator('#notice').textContent()}`);
       break;
     }
-    samples.push({ seconds: (Date.now() - began) / 1000, share: value === null ? null : Number(value), text, bytes: await browserMemory(session) });
+    const bytes = await browserMemory(session);
+    most = Math.max(most, bytes);
     // The share begins anew when all pairs are solved.
     if (value !== null && (Number(value) >= share + 0.1 || Number(value) < share)) {
       share = Number(value);
-      console.log(`${samples.at(-1).seconds.toFixed(0)} s, ${text}, ${mib(samples.at(-1).bytes)} MiB`);
+      console.log(`${((Date.now() - began) / 1000).toFixed(0)} s, ${text}, ${Math.round(bytes / 2 ** 20)} MiB`);
     }
     await sleep(INTERVAL);
   }
   const seconds = (Date.now() - began) / 1000;
-  const status = await page.locator('#clip-status').textContent();
   const done = await browserMemory(session);
   const segmenting = await page.evaluate(tasksSince);
   const track = page.locator('#track');
@@ -126,7 +126,8 @@ async function segmented(browser, address, { quality, workers }) {
     await reached(page, '#run', 'done');
   }
   const tasks = { segmenting, stepping: await page.evaluate(tasksSince) };
-  return { seconds, status, opened, samples, done, stepped: await browserMemory(session), tasks };
+  const memory = { opened, 'at most while segmenting': most, segmented: done, 'after steps to 32 other frames': await browserMemory(session) };
+  return { seconds, memory, tasks };
 }
 
 /** Times from the end of strokes until the stroke is drawn, the corrected frame is, and the correction has spread, milliseconds. */
@@ -159,7 +160,7 @@ async function correctedFrames(browser, address, quality) {
     const sorted = times.map((time) => time[name]).sort((one, other) => one - other);
     return [name, { median: sorted[Math.floor(sorted.length / 2)], worst: sorted.at(-1) }];
   });
-  return { ...Object.fromEntries(figures), times, painting };
+  return { painting, ...Object.fromEntries(figures) };
 }
 
 /** Runs in the page: draws a stroke across the first object. */

@@ -1,13 +1,10 @@
 // The page of `npm run bench:browser`. Everything timed runs here on the main thread; the script calls it from outside.
 
 import { farneback, loadOpenCv, openCvPipeline } from './opencv.js';
-import { loadJsfeat, trackCorners } from './jsfeat.js';
 
 /** Frames of a clip that are not counted: the first ones are searched without anything known. */
 const UNCOUNTED = 4;
 const frames = new Map();
-/** Of so many workers each: their first clip is not counted. */
-const pools = new Map();
 let veronese;
 
 /** The cases: `load` prepares one, `run` is a call. */
@@ -16,7 +13,6 @@ const CASES = {
   best: { load: loadVeronese, run: ({ first, second }) => veronese.segmentPair(first, second, { quality: 'best' }) },
   farneback: { load: loadOpenCv, run: farneback },
   opencvPipeline: { load: loadOpenCv, run: openCvPipeline },
-  jsfeat: { load: loadJsfeat, run: trackCorners },
   clip: { load: loadVeronese, run: followClip },
   clipFlow: { load: loadOpenCv, run: clipFlow },
 };
@@ -40,38 +36,14 @@ globalThis.bench = {
     frames.set(size, { first: await image('first'), second: await image('second'), truth: await bytes('labels'), clip });
   },
 
-  /** Scales the frames of one size to another. */
-  resize(from, to) {
-    const [width, height] = to.split('x').map(Number);
-    const scaled = (frame) => {
-      const source = new OffscreenCanvas(frame.width, frame.height);
-      source.getContext('2d').putImageData(frame, 0, 0);
-      const context = new OffscreenCanvas(width, height).getContext('2d');
-      context.imageSmoothingQuality = 'high';
-      context.drawImage(source, 0, 0, width, height);
-      return context.getImageData(0, 0, width, height);
-    };
-    const { first, second } = frames.get(from);
-    frames.set(to, { first: scaled(first), second: scaled(second) });
-  },
-
-  /** Milliseconds of one call for a given number of motions. */
-  async given(motions, quality, size) {
-    await loadVeronese();
-    const { first, second } = frames.get(size);
-    const start = performance.now();
-    const { count } = await veronese.segmentPair(first, second, { motions, quality });
-    return { milliseconds: performance.now() - start, count };
-  },
-
-  /** A call: its milliseconds (of a clip, the median of a frame), the stages that it reports, and the mean overlap of its labels with the true ones. */
+  /** A call: its milliseconds (of a clip, the median of a frame), the number of its motions, and the mean overlap of its labels with the true ones. */
   async run(name, size) {
     const pair = frames.get(size);
     const start = performance.now();
     const result = await CASES[name].run(pair);
     const milliseconds = result?.perFrame ?? performance.now() - start;
     const overlap = result?.labels && pair.truth ? meanOverlap(pair.truth, result.labels) : undefined;
-    return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
+    return { milliseconds, count: result?.count, overlap };
   },
 
   /** Memory of a new instance after one call, bytes. */
@@ -83,29 +55,11 @@ globalThis.bench = {
     glue.segmentPair(first, second, { quality }, undefined);
     return memory.buffer.byteLength;
   },
-
-  /** A whole clip with so many workers: milliseconds until the first frame's masks, of a frame in the mean, and the masks' hash. */
-  async wholeClip(jobs, quality, size) {
-    await loadVeronese();
-    const { clip } = frames.get(size);
-    if (!pools.has(jobs)) pools.set(jobs, new veronese.SegmenterPool({ jobs }));
-    const start = performance.now();
-    let [first, masks] = [undefined, ''];
-    const onPreview = () => void (first ??= performance.now() - start);
-    const source = { length: clip.length, read: (index) => clip[index] };
-    for await (const { labels } of pools.get(jobs).segmentClip(source, { quality, onPreview })) masks = await hashOf(masks, labels);
-    return { perFrame: (performance.now() - start) / clip.length, first, masks };
-  },
 };
 
 async function loadVeronese() {
   veronese ??= await import('/pkg/dist/web.js');
   await veronese.init();
-}
-
-async function hashOf(before, labels) {
-  const digest = await crypto.subtle.digest('SHA-256', await new Blob([before, labels]).arrayBuffer());
-  return Array.from(new Uint8Array(digest), (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
 /** Follows the objects of a clip as from a camera: each frame is answered before the next one comes. */
