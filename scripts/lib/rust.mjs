@@ -12,9 +12,6 @@ const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
 const CARGO_CYCLONEDX = '0.5.9';
-const CARGO_PUBLIC_API = '0.52.0';
-/** What it reads changes its form from one nightly toolchain to another: this one fits the version above. */
-export const NIGHTLY = 'nightly-2026-05-20';
 // Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
@@ -91,24 +88,6 @@ export async function prepareGeckodriver() {
 /** Installs the program that lists the crates of a release. */
 export async function prepareCycloneDx() {
   await installAlone({ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] });
-}
-
-const PUBLIC_API = { program: 'cargo-public-api', crate: 'cargo-public-api', version: CARGO_PUBLIC_API };
-
-/** Installs the program that lists the names of the crate, and its toolchain. */
-export async function preparePublicApi() {
-  if (!(await hasNightly())) await rustup(['toolchain', 'install', NIGHTLY, '--profile', 'minimal'], `There is no toolchain ${NIGHTLY}`);
-  await installAlone(PUBLIC_API);
-}
-
-/** What of it is missing, if anything is. */
-export async function lacksPublicApi() {
-  if (!(await isPresent(PUBLIC_API))) return `cargo-public-api ${CARGO_PUBLIC_API}`;
-  return (await hasNightly()) ? undefined : `toolchain ${NIGHTLY}`;
-}
-
-async function hasNightly() {
-  return (await run('rustup', ['run', NIGHTLY, 'rustc', '--version'], { output: 'collect' })).code === 0;
 }
 
 /** Installs a program unless it is on the path in exactly this version. */
