@@ -9,12 +9,13 @@ import { writePages } from './lib/pages/index.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command, must } from './lib/run.mjs';
 
+const PAIRS = 'out/annotator/pairs';
 /** In this order: the pairs of the clips are solved once, and the annotator goes on with what they told. */
 const PROGRAMS = [
   ['bench', 'masks'],
   ['bench', 'masks', '--ablation'],
   ['bench', 'masks', '--calibration'],
-  ['bench', 'clips'],
+  ['bench', 'clips', '--pairs', PAIRS],
   ['annotator'],
   ['annotator', '--page', '--only', 'soccerball,car-turn'],
   ['bench', 'browser'],
@@ -28,7 +29,7 @@ await command(async (args) => {
   if (unknown !== undefined) throw new Stop(`There is no option '${unknown}', only --tables.`);
   if (args.length > 0) return writePages();
   // Of this version alone.
-  rmSync(join(root, 'out/annotator/pairs'), { recursive: true, force: true });
+  rmSync(join(root, PAIRS), { recursive: true, force: true });
   const began = Date.now();
   for (const [program, ...options] of PROGRAMS) {
     const said = ['npm', 'run', program, '--', ...options].join(' ');

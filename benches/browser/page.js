@@ -1,4 +1,4 @@
-// The page of `npm run bench:browser`. Everything timed runs here on the main thread; the script calls it from outside.
+// The page of `npm run bench -- browser`. Everything timed runs here on the main thread; the script calls it from outside.
 
 import { farneback, loadOpenCv, openCvPipeline } from './opencv.js';
 

@@ -1,4 +1,4 @@
-//! The annotator benchmark: what somebody gets for what he says of a clip. `npm run bench:annotator` runs it.
+//! The annotator benchmark: what somebody gets for what he says of a clip. `npm run annotator` runs it.
 
 #[path = "../boundary.rs"]
 mod boundary;
@@ -47,7 +47,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
   --write-docs       also write the figures to docs/figures, and docs/annotating.md from them
 
-npm run bench:annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
+npm run annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
 ";
 
 pub(crate) type Failure = Box<dyn Error + Send + Sync>;

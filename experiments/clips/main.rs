@@ -1,5 +1,5 @@
 //! The clip benchmark: labels that persist through time, of generated and real clips, beside what OpenCV gives.
-//! `npm run bench:clips` runs it.
+//! `npm run bench -- clips` runs it.
 
 #[path = "../boundary.rs"]
 mod boundary;
@@ -34,6 +34,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
   --only A,B         only clips whose name contains one of these
   --methods A,B      only these methods: clip, stream, stream-fast, live, flow, mog2, knn
   --out DIR          output folder; default out/clips
+  --pairs DIR        keeps what pairs of the real clips told, as the annotator benchmark does in out/annotator/pairs
   --shared DIR       folder with real clips, if it exists; default ../shared
   --write-docs       also write the figures to docs/figures, and docs/clips.md from them
 ";
@@ -44,6 +45,7 @@ struct Options {
     only: Vec<String>,
     methods: Vec<String>,
     out: PathBuf,
+    pairs: Option<PathBuf>,
     shared: PathBuf,
 }
 
@@ -61,6 +63,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         only: Vec::new(),
         methods: Vec::new(),
         out: PathBuf::from("out/clips"),
+        pairs: None,
         shared: PathBuf::from("../shared"),
     };
     while let Some(name) = arguments.next() {
@@ -72,6 +75,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
+            "--pairs" => options.pairs = Some(PathBuf::from(value()?)),
             "--shared" => options.shared = PathBuf::from(value()?),
             _ => return Err(format!("There is no option '{name}'.")),
         }
@@ -110,7 +114,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     if methods.is_empty() {
         return Err("There is no such method.".into());
     }
-    let measured = measure::all(&cases, &methods, out)?;
+    let measured = measure::all(&cases, &methods, out, options.pairs.as_deref())?;
     fs::write(out.join("clips.jsonl"), figures::lines(&measured)?).map_err(cannot)?;
     fs::write(out.join("clips.json"), serde_json::to_string(&Figures::of(&measured))?).map_err(cannot)?;
     for one in &measured {

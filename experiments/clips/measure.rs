@@ -45,23 +45,24 @@ impl Measured {
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// Some methods on all clips. Labels are written to `labels/METHOD/CLIP/NNNNN.png` in `out`; what other programs found is read from
-/// there.
-pub(crate) fn all(cases: &[Case], methods: &[Method], out: &Path) -> Result<Vec<Measured>> {
+/// there. What pairs of the real clips told is kept in `pairs`, where the annotator benchmark looks for it.
+pub(crate) fn all(cases: &[Case], methods: &[Method], out: &Path, pairs: Option<&Path>) -> Result<Vec<Measured>> {
     in_parallel(cases, |case| {
-        let measured = measure(case, methods, &out.join("labels"))?;
+        let measured = measure(case, methods, &out.join("labels"), pairs)?;
         let main = measured.own().map(|own| format!("{} {:.3}", own.method.name(), own.scores.j_tracks));
         eprintln!("{}: J of tracks, {}", case.name, main.unwrap_or_default());
         Ok(measured)
     })
 }
 
-fn measure(case: &Case, methods: &[Method], labels: &Path) -> Result<Measured> {
+fn measure(case: &Case, methods: &[Method], labels: &Path, pairs: Option<&Path>) -> Result<Measured> {
     let data = case.load()?;
     let first = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?;
     let size = [first.width(), first.height()];
+    let kept = pairs.filter(|_| !case.is_generated()).map(|pairs| pairs.join(format!("{}-best", case.name)));
     let (mut outcomes, mut picture) = (Vec::new(), None);
     for &method in methods {
-        let Some(found) = found(method, &case.name, &data, labels)? else { continue };
+        let Some(found) = found(method, &case.name, &data, labels, kept.as_deref())? else { continue };
         let scores = scores(&data.truths, &found.labels, size[0]);
         if found.milliseconds.is_some() {
             write(&found.labels, size, &labels.join(method.name()).join(&case.name))?;

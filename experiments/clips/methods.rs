@@ -1,5 +1,6 @@
 //! The methods compared.
 
+use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
@@ -65,10 +66,20 @@ pub(crate) struct Found {
     pub(crate) milliseconds: Option<f64>,
 }
 
-/// The clip segmenter's labels of every frame, an object the same number in all.
-pub(crate) fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
-    for frame in frames {
-        segmenter.push(frame.clone())?;
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// The clip segmenter's labels of every frame, an object the same number in all. What the pairs told is kept in a folder, if there is one.
+pub(crate) fn clip_labels(
+    mut segmenter: ClipSegmenter,
+    frames: &[Frame],
+    kept: Option<&Path>,
+) -> std::result::Result<Vec<Vec<u8>>, Failure> {
+    for (index, frame) in frames.iter().enumerate() {
+        let told = segmenter.push(frame.clone())?;
+        if let Some(folder) = kept {
+            fs::create_dir_all(folder)?;
+            fs::write(folder.join(index.to_string()), told.to_bytes())?;
+        }
     }
     let clip = segmenter.conclude();
     frames.iter().enumerate().map(|(index, frame)| Ok(clip.frame(index, frame)?.labels)).collect()
@@ -86,16 +97,18 @@ fn stream_labels(quality: Quality, look_ahead: usize, frames: &[Frame]) -> Resul
     Ok(found.into_iter().map(|frame| frame.labels).collect())
 }
 
-/// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip.
+/// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip; `kept` is as
+/// of [`clip_labels`].
 pub(crate) fn found(
     method: Method,
     name: &str,
     data: &Data,
     peers: &Path,
-) -> std::result::Result<Option<Found>, Box<dyn std::error::Error + Send + Sync>> {
+    kept: Option<&Path>,
+) -> std::result::Result<Option<Found>, Failure> {
     let start = Instant::now();
     let own = match method {
-        Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
+        Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames, kept)?),
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
         Method::Flow | Method::Mog2 | Method::Knn => None,
     };

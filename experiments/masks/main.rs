@@ -1,5 +1,5 @@
 //! The mask benchmark: generated scenes and real pairs through the pipeline, beside what OpenCV gives, with an ablation.
-//! `npm run bench:masks` runs it.
+//! `npm run bench -- masks` runs it.
 
 mod ablation;
 #[path = "../boundary.rs"]
@@ -35,7 +35,7 @@ Scores masks of generated scenes and real pairs against an OpenCV baseline, in t
   frames       writes the frames of the generated cases and prints a line per case: its name, a tab, its folder
   measure      measures and writes masks.json (means), cases.jsonl and a picture of every case
 
-Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json:
+Steps of their own, as npm run bench -- masks --STEP; each writes STEP.json:
 
   ablation     measures the scores without parts of the pipeline
   calibration  measures how often labels of each confidence are right

@@ -122,7 +122,7 @@ impl Job {
                 let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
                 let pair = SegmentOptions::default().with_quality(self.quality);
                 let segmenter = ClipSegmenter::new(ClipOptions::default().with_pair(pair))?;
-                let found = clips::methods::clip_labels(segmenter, &data.frames)?;
+                let found = clips::methods::clip_labels(segmenter, &data.frames, None)?;
                 let scores = clips::scores::scores(&data.truths, &found, width);
                 (entry.j, entry.by_hand, entry.f) = (Some(scores.j_auto), Some(scores.j_tracks), scores.f_auto);
             }

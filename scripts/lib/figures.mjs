@@ -1,4 +1,4 @@
-// The measured figures of the documentation: docs/figures/NAME.json, one file for each measurement. `npm run pages` and the site write their
+// The measured figures of the documentation: docs/figures/NAME.json, one file for each measurement. `npm run figures` and the site write their
 // tables from them.
 
 import { renameSync, writeFileSync } from 'node:fs';

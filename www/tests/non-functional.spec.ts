@@ -1,4 +1,4 @@
-//! Accessibility, content security policy, offline use, licences, size, memory. `npm run bench:page` measures how long the page is blocked.
+//! Accessibility, content security policy, offline use, licences, size, memory. `npm run bench -- page` measures how long the page is blocked.
 
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';

@@ -43,7 +43,7 @@ export function writePages() {
 /** Whether every page is what the figures give. */
 export function pagesAgree() {
   const found = stale();
-  for (const [path] of found) say(`${path} is not what docs/figures gives: npm run pages writes it.`);
+  for (const [path] of found) say(`${path} is not what docs/figures gives: npm run figures writes it.`);
   return found.length === 0;
 }
 

@@ -1,8 +1,8 @@
-// npm run bench:page: opens the page as a first visitor does and measures the time until masks are there. Then it opens a long generated video,
+// npm run bench -- page: opens the page as a first visitor does and measures the time until masks are there. Then it opens a long generated video,
 // segments all of it and steps through it, in headless Chromium, and samples the memory of all processes of the browser (Linux only). Then it
 // paints in frames of a clip of 854 × 480 pixels and measures the time until the corrected frame is drawn. Tasks that block the page are
 // counted throughout. Prints tables. Options:
-//   --frames N     length of the video (2000)
+//   --frames N     length of the video (240)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
 //   --workers N    workers for the video, as on a machine with one processor more (the page's choice here)
@@ -14,16 +14,16 @@ import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
-import { browserMemory } from './lib/browser-memory.mjs';
-import { buildPage } from './lib/builds.mjs';
-import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
-import { launchChromium } from './lib/launch-chromium.mjs';
-import { writeLongClip } from './lib/long-clip.mjs';
-import { present } from './lib/documented.mjs';
-import { prepare } from './lib/prepare.mjs';
-import { root } from './lib/project.mjs';
-import { Stop, command } from './lib/run.mjs';
-import { serve } from './lib/static-server.mjs';
+import { browserMemory } from '../lib/browser-memory.mjs';
+import { buildPage } from '../lib/builds.mjs';
+import { firstVisits, tasksSince, watchTasks } from '../lib/first-visit.mjs';
+import { launchChromium } from '../lib/launch-chromium.mjs';
+import { writeLongClip } from '../lib/long-clip.mjs';
+import { present } from '../lib/documented.mjs';
+import { prepare } from '../lib/prepare.mjs';
+import { root } from '../lib/project.mjs';
+import { Stop, command } from '../lib/run.mjs';
+import { serve } from '../lib/static-server.mjs';
 
 const HOST = '127.0.0.1';
 const OUT = join(root, 'out/bench');
@@ -56,7 +56,7 @@ await command(async (args) => {
     const { painting, ...corrected } = await correctedFrames(browser, address, quality);
     const tasks = { ...measured.tasks, painting };
     const report = { frames, size, quality, workers, ...measured, tasks, first, corrected };
-    present('page', { command: 'npm run bench:page', chromium: browser.version() }, report, writeDocs);
+    present('page', { command: 'npm run bench -- page', chromium: browser.version() }, report, writeDocs);
   } finally {
     await browser.close();
     server.close();
@@ -73,7 +73,7 @@ function options(args) {
   } catch (error) {
     throw new Stop(error.message);
   }
-  const { frames = '2000', size = '1920x1080', quality = 'fast', workers = String(Math.min(Math.max(1, cpus().length - 1), 8)), 'write-docs': writeDocs } = values;
+  const { frames = '240', size = '1920x1080', quality = 'fast', workers = String(Math.min(Math.max(1, cpus().length - 1), 8)), 'write-docs': writeDocs } = values;
   if (!/^\d+$/.test(frames) || Number(frames) < 10) throw new Stop('--frames must be a whole number from 10.');
   if (!/^\d+x\d+$/.test(size)) throw new Stop('--size must look like 1920x1080.');
   if (!['fast', 'best'].includes(quality)) throw new Stop('--quality must be fast or best.');

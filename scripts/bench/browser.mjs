@@ -1,6 +1,6 @@
-// npm run bench:browser: compares the package in headless Chromium with OpenCV.js and with the same source compiled to native code, in
+// npm run bench -- browser: compares the package in headless Chromium with OpenCV.js and with the same source compiled to native code, in
 // alternating calls on the same generated frames. Prints tables. Options:
-//   --rounds N                 calls of each kind (30)
+//   --rounds N                 calls of each kind (8)
 //   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720,1920x1080)
 //   --write-docs               writes the figures to docs/figures, and docs/performance.md from them
 
@@ -9,14 +9,14 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { gzipSync } from 'node:zlib';
 
-import { buildPackage } from './lib/builds.mjs';
-import { present } from './lib/documented.mjs';
-import { launchChromium } from './lib/launch-chromium.mjs';
-import { prepare } from './lib/prepare.mjs';
-import { root, toolsFolder } from './lib/project.mjs';
-import { Stop, command, longStep, must } from './lib/run.mjs';
-import { serve } from './lib/static-server.mjs';
-import { median } from './lib/statistics.mjs';
+import { buildPackage } from '../lib/builds.mjs';
+import { present } from '../lib/documented.mjs';
+import { launchChromium } from '../lib/launch-chromium.mjs';
+import { prepare } from '../lib/prepare.mjs';
+import { root, toolsFolder } from '../lib/project.mjs';
+import { Stop, command, longStep, must } from '../lib/run.mjs';
+import { serve } from '../lib/static-server.mjs';
+import { median } from '../lib/statistics.mjs';
 
 const FRAMES = join(root, 'out/bench/frames');
 const NATIVE = ['run', '--quiet', '--release', '--locked', '--package', 'benches', '--example', 'browser', '--'];
@@ -46,7 +46,7 @@ await command(async (args) => {
   const browser = await launchChromium(chromium.path);
   try {
     const report = { rounds, ...downloads(), ...(await measured(browser, address, rounds, sizes)) };
-    present('browser', { command: 'npm run bench:browser', chromium: browser.version() }, report, writeDocs);
+    present('browser', { command: 'npm run bench -- browser', chromium: browser.version() }, report, writeDocs);
   } finally {
     await browser.close();
     server.close();
@@ -63,7 +63,7 @@ function options(args) {
   } catch (error) {
     throw new Stop(error.message);
   }
-  const rounds = Number(values.rounds ?? 30);
+  const rounds = Number(values.rounds ?? 8);
   const sizes = (values.sizes ?? '320x240,640x480,1280x720,1920x1080').split(',');
   if (!Number.isInteger(rounds) || rounds < 1) throw new Stop('--rounds must be a whole number from 1.');
   if (!sizes.every((size) => /^\d+x\d+$/.test(size))) throw new Stop('--sizes must look like 320x240,640x480.');

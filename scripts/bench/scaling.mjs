@@ -1,4 +1,4 @@
-// npm run scaling [-- CLIP]: what a frame of a clip costs in one worker, in sizes and qualities; frames are the first of a folder, scaled by
+// npm run bench -- scaling [CLIP]: what a frame of a clip costs in one worker, in sizes and qualities; frames are the first of a folder, scaled by
 // ffmpeg. --write-docs writes the figures to docs/figures, and docs/scaling.md from them.
 
 import { mkdirSync, mkdtempSync, readdirSync, rmSync } from 'node:fs';
@@ -6,18 +6,18 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-import { buildPackage } from './lib/builds.mjs';
-import { present } from './lib/documented.mjs';
-import { prepare } from './lib/prepare.mjs';
-import { root } from './lib/project.mjs';
-import { Stop, command, must } from './lib/run.mjs';
+import { buildPackage } from '../lib/builds.mjs';
+import { present } from '../lib/documented.mjs';
+import { prepare } from '../lib/prepare.mjs';
+import { root } from '../lib/project.mjs';
+import { Stop, command, must } from '../lib/run.mjs';
 
 const CLIP = '../shared/data/clips/car-turn/frames';
 const SIZES = [[320, 240], [640, 480], [854, 480], [1920, 1080]];
 const QUALITIES = ['fast', 'best'];
 /** Frames that are segmented, of large ones fewer: no measurement is to take minutes. */
 const framesOf = ([width]) => (width > 1000 ? 9 : 13);
-const PROGRAM = fileURLToPath(new URL('lib/cost-of-frame.mjs', import.meta.url));
+const PROGRAM = fileURLToPath(new URL('../lib/cost-of-frame.mjs', import.meta.url));
 
 await command(async (args) => {
   const [clip = CLIP, ...others] = args.filter((name) => name !== '--write-docs');
@@ -37,7 +37,7 @@ await command(async (args) => {
         console.log(`${name}, ${quality}: ${stdout}`);
       }
     }
-    present('scaling', { command: 'npm run scaling', node: process.versions.node }, { frames }, args.includes('--write-docs'));
+    present('scaling', { command: 'npm run bench -- scaling', node: process.versions.node }, { frames }, args.includes('--write-docs'));
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }

@@ -1,4 +1,4 @@
-// npm run bench:annotator -- --page: an expert annotates real clips in the page, in headless Chromium, from their frames to a file for CVAT,
+// npm run annotator -- --page: an expert annotates real clips in the page, in headless Chromium, from their frames to a file for CVAT,
 // with few actions. J is that of the file. Prints a table. Options are in USAGE.
 
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
@@ -17,7 +17,7 @@ import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
 import { serve } from './lib/static-server.mjs';
 
-const USAGE = `npm run bench:annotator -- --page [OPTIONS]: an expert annotates clips in the page, in headless Chromium
+const USAGE = `npm run annotator -- --page [OPTIONS]: an expert annotates clips in the page, in headless Chromium
 
   --data DIR       folder of the clips; default ../shared/data/clips
   --only A,B       these clips; default soccerball,car-turn,motorbike
@@ -48,7 +48,7 @@ await command(async (args) => {
       await page.context().close();
     }
     const figures = rows.map(({ log: _, ...figures }) => figures);
-    present('annotator-page', { command: 'npm run bench:annotator -- --page', data: DATA, chromium: browser.version() }, { rows: figures }, options.writeDocs);
+    present('annotator-page', { command: 'npm run annotator -- --page', data: DATA, chromium: browser.version() }, { rows: figures }, options.writeDocs);
   } finally {
     await browser.close();
     server.close();
