@@ -6,7 +6,6 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
-import { identity, identityProblems } from './lib/identity.mjs';
 import { prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { projectText, root } from './lib/project.mjs';
@@ -15,7 +14,7 @@ import { changelogState } from './lib/release/changelog.mjs';
 import { LICENCES, WITH_NOTICES, licenceProblems, missingInArchive } from './lib/release/licences.mjs';
 import { buildTwice, builds, hashesOf, moduleProblems } from './lib/release/modules.mjs';
 import { checkNpmArchive } from './lib/release/package-checks.mjs';
-import { futureLinks, publicationLines } from './lib/release/publication.mjs';
+import { publicationLines } from './lib/release/publication.mjs';
 import { writeSboms } from './lib/release/sbom.mjs';
 import { makeWheel } from './lib/release/wheel.mjs';
 import { Stop, command, run } from './lib/run.mjs';
@@ -33,7 +32,6 @@ const USAGE = `npm run release -- --dry-run | --tag vX.Y.Z [--only STEP,…]
 const STEPS = {
   versions: { title: 'one version everywhere', run: checkVersions, quick: true },
   changelog: { title: 'the changelog is of this version, and dated', run: checkChangelog, quick: true },
-  identity: { title: 'names and addresses are those of identity.json', run: checkIdentity, quick: true },
   tree: { title: 'everything is committed', run: checkTree, quick: true },
   licences: { title: 'licences and notices', run: checkLicences, quick: true },
   build: { title: 'the modules, built twice', run: buildModulesTwice },
@@ -117,11 +115,6 @@ async function checkChangelog({ version, tag }) {
   return [todo ?? `the newest section is of ${version}, and dated`];
 }
 
-async function checkIdentity() {
-  refuse(await identityProblems());
-  return [Object.values(identity()).join(', ')];
-}
-
 async function checkTree(release) {
   const { code, stdout } = await run('git', ['status', '--porcelain'], { output: 'collect' });
   const changed = stdout.split('\n').filter(Boolean);
@@ -151,10 +144,9 @@ async function compareModules() {
 
 async function packArchives(release) {
   await buildPackage();
-  const { crate } = identity();
   const archives = [
     { path: await packNpm(OUT), place: 'npm', wanted: WITH_NOTICES },
-    { path: await packCrate(OUT, crate, release), place: 'Cargo', wanted: LICENCES },
+    { path: await packCrate(OUT, 'veronese', release), place: 'Cargo', wanted: LICENCES },
   ];
   const lines = [];
   for (const { path, place, wanted } of archives) {
@@ -195,6 +187,4 @@ async function listComponents(release) {
 function conclude({ version, tag, files }) {
   console.log(`\n${tag ? `${tag} is ready` : `A release of ${version} would be ready`}. In out/release, and published by the workflow:`);
   for (const line of publicationLines(files)) console.log(`  ${line}`);
-  console.log('\nThese addresses exist only after the publication:');
-  for (const link of futureLinks(identity())) console.log(`  ${link}`);
 }

@@ -2,7 +2,6 @@
 
 import { buildPackage } from './builds.mjs';
 import { constantsAreFew } from './constants.mjs';
-import { identityProblems } from './identity.mjs';
 import { importsAgree } from './imports.mjs';
 import { licencesAllowed } from './licences.mjs';
 import { pagesAgree } from './pages/index.mjs';
@@ -46,7 +45,6 @@ const RARE = [
 export async function runChecks() {
   const results = [
     ['one version everywhere', nothing(versionProblem(await versions()))],
-    ['names and addresses are those of identity.json', nothing(...(await identityProblems()))],
     ['modules import what the architecture allows', importsAgree()],
     ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
     ['the pages are what docs/figures gives', pagesAgree()],

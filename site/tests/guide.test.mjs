@@ -7,6 +7,7 @@ import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
 
 import { projectText, root } from '../../scripts/lib/project.mjs';
+import identity from '../data/identity.mjs';
 import { GUIDE, matches, pages, trimmed } from './support/pages.mjs';
 import { readersFolder } from './support/reader.mjs';
 import { RUNNERS } from './support/runners.mjs';
@@ -19,7 +20,6 @@ const WRITES = process.env.VERONESE_GUIDE === 'write';
 const ONLY = process.env.VERONESE_GUIDE_PAGES?.split(',');
 
 const all = pages();
-const identity = JSON.parse(projectText('identity.json'));
 const { version } = JSON.parse(projectText('pkg/package.json'));
 const counts = { run: 0, skipped: 0 };
 

@@ -6,12 +6,13 @@ import { join } from 'node:path';
 
 import { expect, test } from '@playwright/test';
 
+import identity from '../data/identity.mjs';
 import { PAGES, SITE, watch } from './site.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const KILOBYTE = 1024;
 /** The folder of the published site. */
-const PUBLISHED = new URL(JSON.parse(readFileSync(new URL('../../identity.json', import.meta.url), 'utf8')).site).pathname;
+const PUBLISHED = new URL(identity.site).pathname;
 
 for (const path of PAGES.filter((page) => page !== '404.html')) {
   test(`/${path} opens, in light and dark, on a phone and on a desk`, async ({ page }) => {

@@ -14,11 +14,11 @@ const version = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8')).ver
 const today = new Date().toISOString().slice(0, 10);
 /** Copied, because cases change them. */
 const COPIES = ['scripts', '.github', 'CHANGELOG.md', 'Cargo.lock', 'Cargo.toml', 'LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'THIRD-PARTY-NOTICES'];
-const MORE = ['identity.json', 'package.json', 'package-lock.json', 'pkg/LICENSE-APACHE', 'pkg/LICENSE-MIT', 'pkg/THIRD-PARTY-NOTICES', 'pkg/package.json', 'pkg/wasm'];
+const MORE = ['package.json', 'package-lock.json', 'pkg/LICENSE-APACHE', 'pkg/LICENSE-MIT', 'pkg/THIRD-PARTY-NOTICES', 'pkg/package.json', 'pkg/wasm'];
 /** Only looked at. */
 const LINKS = ['benches', 'examples', 'experiments', 'node_modules', 'scenes', 'src', 'tests', 'www'];
 const CRATES = ['python', 'wasm'];
-const QUICK = 'versions,changelog,identity,tree,licences';
+const QUICK = 'versions,changelog,tree,licences';
 
 function copyOfProject(t) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-release-test-'));
@@ -53,7 +53,7 @@ test('what is ready passes', (t) => {
   assert.equal(stderr, '');
   assert.equal(status, 0);
   project.change('CHANGELOG.md', HEADING, DATED);
-  assert.equal(project.release('--dry-run', '--tag', `v${version}`, '--only', 'versions,changelog,identity,licences').status, 0);
+  assert.equal(project.release('--dry-run', '--tag', `v${version}`, '--only', 'versions,changelog,licences').status, 0);
 });
 
 describe('refused are', () => {
@@ -78,12 +78,6 @@ describe('refused are', () => {
     project.change('CHANGELOG.md', HEADING, `## [${version}] – unreleased`);
     project.refuses(['--tag', `v${version}`, '--only', 'versions,changelog'], /unreleased: a release writes/);
     assert.equal(project.release('--dry-run', '--only', 'versions,changelog').status, 0, 'a rehearsal says so and goes on');
-  });
-
-  test('an address of another project', (t) => {
-    const project = copyOfProject(t);
-    project.change('.github/ISSUE_TEMPLATE/config.yml', 'https://github.com/veronese/veronese', 'https://github.com/somebody/veronese');
-    project.refuses(['--dry-run', '--only', 'identity'], /config\.yml: https:\/\/github\.com\/somebody\/veronese is not an address/);
   });
 
   test('uncommitted files, for a tag', (t) => {

@@ -4,8 +4,8 @@ import { copyFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
 import { projectText, root } from '../../../scripts/lib/project.mjs';
+import identity from '../../data/identity.mjs';
 
-const identity = JSON.parse(projectText('identity.json'));
 const { version } = JSON.parse(projectText('pkg/package.json'));
 
 /** The programs that the shell may run. */
