@@ -1,14 +1,14 @@
 // THIRD-PARTY-NOTICES: the licences of what others wrote and Veronese ships, from the sources that Cargo and npm have downloaded.
 // cargo-about does the same for crates, but takes minutes to compile and knows no packages of npm.
 
-import { readdirSync, readFileSync } from 'node:fs';
+import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
-import { projectText, root } from './project.mjs';
-import { must } from './run.mjs';
+import { inProject, projectText, root } from './project.mjs';
+import { must, say } from './run.mjs';
 
 /** In the project and in the npm package, and in the wheel. */
-export const NOTICES = [
+const NOTICES = [
   { paths: ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'], parts: partsOfProject },
   { paths: ['python/THIRD-PARTY-NOTICES'], parts: partsOfWheel },
 ];
@@ -64,8 +64,26 @@ async function partsOfWheel() {
   return [['In the module', [std, ...[...all.values()].sort(byName)]]];
 }
 
+/** Whether the files are of the packages that are used now. Says which are not. */
+export async function noticesAgree() {
+  const stale = [];
+  for (const file of NOTICES) {
+    const text = await notices(file);
+    stale.push(...file.paths.filter((path) => !inProject(path) || projectText(path) !== text));
+  }
+  for (const path of stale) say(`${path} is not of the packages that are used now.`);
+  return stale.length === 0;
+}
+
+export async function writeNotices() {
+  for (const file of NOTICES) {
+    const text = await notices(file);
+    for (const path of file.paths) writeFileSync(join(root, path), text);
+  }
+}
+
 /** The text of a file. */
-export async function notices({ parts: partsOf }) {
+async function notices({ parts: partsOf }) {
   const parts = await partsOf();
   const components = parts.flatMap(([, all]) => all);
   const byText = new Map();
@@ -73,7 +91,7 @@ export async function notices({ parts: partsOf }) {
   const title = ({ name, version }) => `${name} ${version}`;
   return [
     'Veronese is licensed under MIT OR Apache-2.0 (LICENSE-MIT, LICENSE-APACHE). It contains the following works of others.',
-    'Source code is where the addresses point to, in the version that is named. `npm run notices` writes this file.',
+    'Source code is where the addresses point to, in the version that is named. `npm run release -- --notices` writes this file.',
     ...parts.flatMap(([place, all]) => [`\n${place}:\n`, ...all.map((one) => `- ${title(one)}: ${one.licence}, ${one.source}`)]),
     ...[...byText].map(([text, all]) => `\n${'-'.repeat(80)}\n${all.map(title).join(', ')}\n\n${text}`),
     '',

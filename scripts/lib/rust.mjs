@@ -11,7 +11,6 @@ const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
-const CARGO_CYCLONEDX = '0.5.9';
 // Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
@@ -83,11 +82,6 @@ export async function prepareWasmTools(meanwhile) {
 /** Installs the program that drives Firefox; only its tests need it. */
 export async function prepareGeckodriver() {
   await installAlone({ program: 'geckodriver', crate: 'geckodriver', version: GECKODRIVER });
-}
-
-/** Installs the program that lists the crates of a release. */
-export async function prepareCycloneDx() {
-  await installAlone({ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] });
 }
 
 /** Installs a program unless it is on the path in exactly this version. */
