@@ -4,7 +4,6 @@ import { AsyncLocalStorage } from 'node:async_hooks';
 import { spawn } from 'node:child_process';
 import { setPriority } from 'node:os';
 
-import { account } from './processor.mjs';
 import { environment, root } from './project.mjs';
 
 /** A failure that one sentence explains to the user; commands print it without a stack trace. */
@@ -14,11 +13,11 @@ const running = new Set();
 const parts = new AsyncLocalStorage();
 
 /**
- * Runs `main` as a part of the work with a name, under which its seconds of processor are counted. What it says and what its programs show
- * goes to `write`, where that is given, and its programs get this `niceness` (0 to 19; where cores are short, those with less go first).
+ * Runs `main` as a part of the work: what it says and what its programs show goes to `write`, where that is given, and its programs get this
+ * `niceness` (0 to 19; where cores are short, those with less go first).
  */
-export function inPart({ name, write, niceness = 0 }, main) {
-  return parts.run({ name, write, niceness }, main);
+export function inPart({ write, niceness = 0 }, main) {
+  return parts.run({ write, niceness }, main);
 }
 
 /** Shows a line. */
@@ -47,7 +46,6 @@ export function run(program, args, { output = 'inherit', env = {}, cwd = root } 
     const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe], detached: true });
     if (child.pid) {
       running.add(child);
-      if (part) account(part.name, child.pid);
       if (part?.niceness) setPriority(child.pid, part.niceness);
     }
     const pieces = [];

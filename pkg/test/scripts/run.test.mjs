@@ -13,7 +13,7 @@ test('what parts and their programs show is not mixed, and programs get the nice
   const written = { one: '', two: '' };
   const nice = Number((await run('nice', [], { output: 'collect' })).text);
   const part = (name, niceness) =>
-    inPart({ name, write: (piece) => (written[name] += piece), niceness }, async () => {
+    inPart({ write: (piece) => (written[name] += piece), niceness }, async () => {
       say(`${name}:`);
       const { code } = await run('bash', ['-c', 'echo "$0"; sleep 0.2; nice >&2; exit 3', name]);
       say(`${name} ended with ${code}`);
