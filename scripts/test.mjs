@@ -1,28 +1,46 @@
-// npm test: all tests and checks of every day; `npm test -- native page` runs the named parts only. What takes long is `npm run soak`.
+// npm test: all tests and checks of every day. `npm test -- WORD` runs the tests whose file or name has the word, `npm test -- --part native,page`
+// these parts alone, or with a word these of their tests. What takes long is `npm run soak`.
 //
 // Two lanes run side by side, and what a part writes is shown when it ends. Cargo takes the cores that the page leaves. A test that fails is
 // a failure: nothing is tried again. At the end a table says what each part took.
 
+import { parseArgs } from 'node:util';
+
 import { DAILY, needsOf } from './lib/parts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { Stop, command, inPart, say } from './lib/run.mjs';
+import { NOTHING } from './lib/tests.mjs';
 
 const NICENESS = { cargo: 10, node: 0 };
 const SETUP = 'set-up';
-const NOTHING = { passed: 0, failed: 0, skipped: 0, failures: [] };
 
 await command(async (args) => {
-  const unknown = args.filter((name) => !Object.hasOwn(DAILY, name));
-  if (unknown.length > 0) {
-    console.error(`There is no part '${unknown[0]}'; there are ${Object.keys(DAILY).join(', ')}. \`npm run soak\` has more.`);
-    return 2;
-  }
-  const names = args.length > 0 ? args : Object.keys(DAILY);
+  const { names, word } = options(args);
   const start = Date.now();
-  const setup = await prepare(needsOf(names.map((name) => DAILY[name])));
+  const setup = { ...(await prepare(needsOf(names.map((name) => DAILY[name])))), word };
   const results = [{ title: SETUP, seconds: (Date.now() - start) / 1000, ...NOTHING }, ...(await runParts(names, setup))];
-  return summarise(results, (Date.now() - start) / 1000);
+  const code = summarise(results, (Date.now() - start) / 1000);
+  if (word === undefined || results.some(({ passed, failed }) => passed + failed > 0)) return code;
+  throw new Stop(`No test has '${word}' in the name of its file or its own.`);
 });
+
+/** The parts that run, and the word that their tests are to have. */
+function options(args) {
+  let found;
+  try {
+    found = parseArgs({ args, options: { part: { type: 'string' } }, allowPositionals: true });
+  } catch (error) {
+    throw new Stop(error.message);
+  }
+  const { values, positionals } = found;
+  // Several words are one: names have spaces.
+  const word = positionals.length > 0 ? positionals.join(' ') : undefined;
+  const all = Object.keys(DAILY).filter((name) => word === undefined || DAILY[name].named);
+  const names = values.part?.split(',') ?? all;
+  const unknown = names.find((name) => !all.includes(name));
+  if (unknown !== undefined) throw new Stop(`There is no part '${unknown}'; there are ${all.join(', ')}. \`npm run soak\` has more.`);
+  return { names, word };
+}
 
 /** Runs parts in their lanes; the results have the order of `names`. */
 async function runParts(names, setup) {

@@ -1,10 +1,11 @@
 // The parts of the tests. DAILY is what `npm test` runs: what users rely on, once. RARE is for `npm run soak`: what downloads much, needs
 // other programs, or looks at the same things in many more ways.
 //
-// Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs.
+// Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs. Parts with `named` can run
+// those tests alone whose file or name has `word`.
 
 import { readdirSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 
 import { findBrowsers, testInBrowsers } from './browsers.mjs';
 import { buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
@@ -14,7 +15,7 @@ import { OWN, installWheel } from './python-packages.mjs';
 import { Stop, must, say } from './run.mjs';
 import { buildSite } from './site.mjs';
 import { cargo, node, playwright, pytest } from './test-programs.mjs';
-import { added, tests } from './tests.mjs';
+import { NOTHING, added, tests } from './tests.mjs';
 
 /**
  * The crates that have native tests, and that of the Python package, which has none: named beside them, it asks for the same features of
@@ -29,22 +30,30 @@ export const DAILY = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: async () => added(await tests(cargo, 'cargo', [...NATIVE, '--tests']), await tests(cargo, 'cargo', [...NATIVE, '--doc'])),
+    named: true,
+    // The names of these tests begin with their files, as modules or paths.
+    run: async ({ word }) => {
+      const own = word === undefined ? [] : ['--', word];
+      return added(await tests(cargo, 'cargo', [...NATIVE, '--tests', ...own], {}, word), await tests(cargo, 'cargo', [...NATIVE, '--doc', ...own], {}, word));
+    },
   },
   wasm: {
     lane: 'cargo',
     title: 'the algebra in WebAssembly, under Node',
+    named: true,
     // Its library is that of the modules, compiled once.
-    run: async () => {
+    run: async ({ word }) => {
       await buildModules();
       const { args, env } = testOfModules('algebra');
-      return tests(cargo, 'cargo', args, env);
+      const own = word === undefined || 'algebra'.includes(word) ? [] : ['--', word];
+      return tests(cargo, 'cargo', [...args, ...own], env, word);
     },
   },
   check: { lane: 'cargo', title: 'checks', needs: { checks: true }, run: runChecks },
   python: {
     lane: 'cargo',
     title: 'the Python package',
+    named: true,
     needs: { ownPython: true },
     run: (setup) => ofPython('python', setup, buildTestWheel),
   },
@@ -56,9 +65,22 @@ export const DAILY = {
       return { passed: 0, failed: 0, skipped: 0, failures: [] };
     },
   },
-  package: { lane: 'node', title: 'package tests', run: () => ofPackage('test') },
-  packed: { lane: 'node', title: 'the packed package, in Node and with Vite', needs: { browser: true }, run: (setup) => ofPackage('test:packed', inBrowser(setup)) },
-  page: { lane: 'node', title: 'page tests in Chromium', needs: { browser: true }, run: (setup) => ofPage('test', setup) },
+  package: { lane: 'node', title: 'package tests', named: true, run: ({ word }) => ofPackage('test', {}, word) },
+  packed: {
+    lane: 'node',
+    title: 'the packed package, in Node and with Vite',
+    named: true,
+    needs: { browser: true },
+    run: (setup) => ofPackage('test:packed', inBrowser(setup), setup.word),
+  },
+  page: {
+    lane: 'node',
+    title: 'page tests in Chromium',
+    named: true,
+    needs: { browser: true },
+    // Playwright looks for it in files and names alike.
+    run: (setup) => ofPage('test', setup, {}, setup.word === undefined ? [] : ['--pass-with-no-tests', '--grep', literal(setup.word)]),
+  },
 };
 
 export const RARE = {
@@ -138,26 +160,38 @@ export function needsOf(parts) {
   return Object.assign({}, ...parts.map(({ needs }) => needs));
 }
 
-/** Runs a script of the package. */
-async function ofPackage(script, env = {}) {
+/** Runs a script of the package; with a word the tests whose file or name has it. */
+async function ofPackage(script, env = {}, word) {
   await buildPackage();
-  return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
+  if (word === undefined) return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
+  const folders = script === 'test' ? ['pkg/test', 'pkg/test/scripts'] : [`pkg/test/${script.split(':')[1]}`];
+  const files = folders.flatMap((folder) => readdirSync(join(root, folder)).filter((name) => name.endsWith('.test.mjs')).map((name) => `${folder}/${name}`));
+  const isNamed = (file) => basename(file, '.test.mjs').includes(word);
+  const run = (own, ...options) =>
+    own.length === 0 ? NOTHING : tests(node, process.execPath, ['--test', '--test-reporter=tap', ...options, ...own], env, word);
+  return added(await run(files.filter(isNamed)), await run(files.filter((file) => !isNamed(file)), `--test-name-pattern=${literal(word)}`));
+}
+
+/** A regular expression for a text as it is. */
+function literal(text) {
+  return text.replace(/[.*+?^${}()|[\]\\/]/g, '\\$&');
 }
 
 /** Runs a script of the page. */
 async function ofPage(script, setup, env = {}, args = []) {
   const browser = inBrowser(setup);
   await buildPage();
-  return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www', '--', ...args], { ...browser, ...env });
+  return tests(playwright, 'npm', ['run', script, '--silent', '--workspace', 'www', '--', ...args], { ...browser, ...env }, setup.word);
 }
 
 /** Runs tests of the Python package: what is installed is tested, not the sources beside the tests. */
-async function ofPython(place, { ownPython: { problem } }, build, env = {}) {
+async function ofPython(place, { ownPython: { problem }, word }, build, env = {}) {
   if (problem) return { passed: 0, failed: 0, skipped: 1, failures: [], note: problem };
   await buildPackage();
   const wheel = await build(OWN.python);
   await installWheel(OWN, wheel);
-  return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', place], { ...env, VERONESE_WHEEL: wheel });
+  const own = word === undefined ? [] : ['-k', word];
+  return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', ...own, place], { ...env, VERONESE_WHEEL: wheel }, word);
 }
 
 function inBrowser({ chromium }) {

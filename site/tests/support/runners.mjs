@@ -42,7 +42,7 @@ function runShell({ folder, block, note }) {
   return printed(folder, 'sh', ['-e', '-c', `exec 2>&1\n${run.join('\n')}`], { PATH: `${bin}:${process.env.PATH}` });
 }
 
-const WITHOUT_PYTHON = 'the Python package is not installed in .tools/python-package: `npm test -- python` builds and installs it';
+const WITHOUT_PYTHON = 'the Python package is not installed in .tools/python-package: `npm test -- --part python` builds and installs it';
 
 function hasPython() {
   return existsSync(OWN.python) && spawnSync(OWN.python, ['-c', 'import veronese']).status === 0;
