@@ -6,6 +6,7 @@ import { join, resolve } from 'node:path';
 import { buildIfChanged } from './fingerprint.mjs';
 import { cargoHome, root, which } from './project.mjs';
 import { Stop, must, run, say } from './run.mjs';
+import { pinnedRust } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
@@ -32,7 +33,7 @@ export const buildStagesModule = once(() => buildEach([STAGES]));
 async function buildEach(modules) {
   const versions = await Promise.all(
     [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
-      async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text,
+      async ([program, flag]) => (await run(program, [flag], { output: 'collect', env: pinnedRust() })).text,
     ),
   );
   // wasm-pack skips this step without an error if there is no wasm-opt, and takes any wasm-opt on the path.
@@ -55,7 +56,7 @@ export async function compileAhead() {
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
   for (const { features } of MODULES) {
     const args = ['build', '--lib', '--release', '--target', TARGET, '--package', 'veronese-wasm', ...ofModule(features)];
-    await run('cargo', args, { output: 'collect', env: FLAGS_OF_PROJECT });
+    await run('cargo', args, { output: 'collect', env: ofProject() });
   }
 }
 
@@ -126,7 +127,7 @@ async function wasmPack(name, folder, features) {
     'The WebAssembly module could not be built.',
     'wasm-pack',
     [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...ofModule(features)],
-    { env: FLAGS_OF_PROJECT },
+    { env: ofProject() },
   );
 }
 
@@ -139,7 +140,7 @@ function ofModule(features) {
 /** Cargo's arguments for a test of the modules' own crate, and the environment: with these, the libraries are those that the modules have. */
 export function testOfModules(name) {
   const args = ['test', '--package', 'veronese-wasm', '--test', name, '--release', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
-  return { args, env: { ...FLAGS_OF_PROJECT, CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner' } };
+  return { args, env: { ...ofProject(), CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner' } };
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */
@@ -149,5 +150,7 @@ function pathFlags() {
   return registries.map((registry) => `--remap-path-prefix=${join(sources, registry)}=/cargo`);
 }
 
-/** Without the variables that would override the flags of .cargo/config.toml, which enable SIMD. */
-const FLAGS_OF_PROJECT = { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined };
+/** The pinned compiler, without the variables that would override the flags of .cargo/config.toml, which enable SIMD. */
+function ofProject() {
+  return { ...pinnedRust(), RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined };
+}

@@ -8,6 +8,11 @@ import { atLeast, projectText, toolsFolder, which } from './project.mjs';
 import { Stop, longStep, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
+/**
+ * The Rust that compiles the modules that are shipped: .cargo/config.toml has internal flags of the compiler, which another version may read
+ * in another way. Everything else takes any stable Rust from rust-version in Cargo.toml onwards.
+ */
+const PINNED = '1.95.0';
 const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
@@ -40,11 +45,29 @@ export async function checkRust() {
   if (problems.length > 0) throw new Stop(problems.join('\n'));
 }
 
-/** Installs the wasm target and, for checks, the formatter and clippy. */
+/** The environment that chooses the pinned compiler; empty where that is the one on the path. */
+let pinned = {};
+
+export function pinnedRust() {
+  return pinned;
+}
+
+/** Finds or installs the pinned compiler. */
+async function preparePinned() {
+  const { text } = await run('rustc', ['--version'], { output: 'collect' });
+  if (text.startsWith(`rustc ${PINNED} `)) return;
+  if ((await run('rustup', ['run', PINNED, 'rustc', '--version'], { output: 'collect' })).code !== 0) {
+    await rustup(['toolchain', 'install', PINNED, '--profile', 'minimal', '--target', TARGET], `The modules are compiled with Rust ${PINNED}, which is not installed`);
+  }
+  pinned = { RUSTUP_TOOLCHAIN: PINNED };
+}
+
+/** Installs the pinned compiler, the wasm target for both and, for checks, the formatter and clippy. */
 export async function prepareCompiler({ checks }) {
-  const { text } = await run('rustc', ['--print', 'target-libdir', '--target', TARGET], { output: 'collect' });
-  if (!existsSync(text.trim())) {
-    await rustup(['target', 'add', TARGET], `Rust cannot compile for ${TARGET}`);
+  await preparePinned();
+  for (const env of Object.keys(pinned).length > 0 ? [{}, pinned] : [{}]) {
+    const { text } = await run('rustc', ['--print', 'target-libdir', '--target', TARGET], { output: 'collect', env });
+    if (!existsSync(text.trim())) await rustup(['target', 'add', TARGET], `Rust cannot compile for ${TARGET}`, env);
   }
   if (!checks) return;
   const components = [];
@@ -130,10 +153,10 @@ async function binstall(crate) {
   return (await run('cargo', args, { output: 'collect' })).code === 0;
 }
 
-async function rustup(args, lack) {
+async function rustup(args, lack, env = {}) {
   const advice = `run \`rustup ${args.join(' ')}\``;
   if (!which('rustup')) throw new Stop(`${lack}, and there is no rustup to add it: install Rust from ${RUSTUP}.`);
-  await longStep(`rustup ${args.join(' ')}`, `${lack}, and adding it failed: ${advice} and see why.`, 'rustup', args);
+  await longStep(`rustup ${args.join(' ')}`, `${lack}, and adding it failed: ${advice} and see why.`, 'rustup', args, { env });
 }
 
 /** Build scripts are native programs and need a linker, which rustup does not install. */
