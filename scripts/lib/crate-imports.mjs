@@ -1,0 +1,137 @@
+// Which file of the crate uses which: files that use each other, directly or by way of others, cannot be read or changed alone. oxlint looks
+// for the same in TypeScript and JavaScript; for Rust there is no tool that knows files.
+
+import { readdirSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { projectText, root } from './project.mjs';
+import { say } from './run.mjs';
+
+/** The top modules of `src`: each may use those before it. */
+const ORDER = `error exponential hash lanes model motion order random frame linear measurements recording progress options codecs components
+  embedding refinement view answer factorisation estimation best labelling paper pair clip points literal stages`.split(/\s+/);
+
+/** Files that still use each other, below `src`. This list only shrinks. */
+const KNOWN = [
+  ['view/brightness.rs', 'view/cost.rs'],
+  ['codecs.rs', 'codecs/header.rs'],
+  ['pair.rs', 'pair/background.rs', 'pair/evidence.rs', 'pair/hypothesis.rs', 'pair/labels.rs', 'pair/recorded.rs', 'pair/report.rs', 'pair/report/unknown.rs'],
+  [
+    'clip/annotation.rs', 'clip/correction.rs', 'clip/correction/local.rs', 'clip/correction/look.rs', 'clip/correction/memory.rs',
+    'clip/correction/outline.rs', 'clip/correction/placing.rs', 'clip/correction/sweep.rs', 'clip/correction/track.rs', 'clip/correction/view.rs',
+    'clip/correction/world.rs', 'clip/job.rs', 'clip/whole.rs',
+  ],
+];
+
+/** Whether no files use each other but the known ones, and top modules only those before them. Prints what differs. */
+export function crateImportsAgree() {
+  const uses = usesOf(sources());
+  const circles = circlesOf(uses);
+  const within = (file, circle) => [...uses.get(file)].filter((other) => circle.includes(other)).join(' ');
+  const problems = [
+    ...circles
+      .filter((circle) => !KNOWN.some((known) => circle.every((file) => known.includes(file))))
+      .map((circle) => ['These files of src use each other:', ...circle.map((file) => `  ${file} → ${within(file, circle)}`)].join('\n')),
+    ...KNOWN.flat().filter((file) => !circles.flat().includes(file)).map((file) => `${file} is in no circle any more: take it off the list in scripts/lib/crate-imports.mjs.`),
+  ];
+  const top = (file) => file.split('/')[0].replace('.rs', '');
+  for (const [file, others] of uses) {
+    for (const other of file === 'lib.rs' ? [] : others) {
+      if (ORDER.indexOf(top(other)) > ORDER.indexOf(top(file)) || !ORDER.includes(top(other))) problems.push(`${file} uses ${other}, which comes after it.`);
+    }
+  }
+  for (const problem of problems) say(problem);
+  return problems.length === 0;
+}
+
+/** Every file below `src` without its tests and comments, by its path there. */
+function sources() {
+  const files = readdirSync(join(root, 'src'), { recursive: true }).map((path) => String(path).replaceAll('\\', '/'));
+  const own = files.filter((path) => path.endsWith('.rs') && !/(^|\/)tests(\/|\.rs$)/.test(path));
+  return new Map(own.map((path) => [path, withoutTests(projectText(`src/${path}`))]));
+}
+
+function withoutTests(source) {
+  const code = source.replace(/\/\/.*$/gm, '');
+  const tests = /^#\[cfg\(test\)\]\n(pub\(crate\) )?mod \w+ \{$/m.exec(code);
+  return tests ? code.slice(0, tests.index) : code;
+}
+
+/** For each file those that it uses. What a file passes on from its modules, by `mod` or `pub use`, does not count, and is followed. */
+export function usesOf(files) {
+  const modules = new Map([...files].map(([path, text]) => {
+    const place = path === 'lib.rs' ? [] : path.replace(/(\/mod)?\.rs$/, '').split('/');
+    const children = new Set([...text.matchAll(/\bmod (\w+);/g)].map(([, name]) => name));
+    const imports = [...text.matchAll(/\b(pub(?:\([^)]*\))?\s+)?use\s+([^;]+);/g)].map(([, isPassed, tree]) => ({ isPassed, paths: expanded(tree) }));
+    return [place.join('::'), { path, place, children, imports, code: text.replace(/\b(?:pub(?:\([^)]*\))?\s+)?use\s+[^;]+;/g, '') }];
+  }));
+  /** The segments from the top of the crate; undefined if they are another crate's. */
+  const absolute = ({ place, children }, [first, ...rest]) => {
+    if (first === 'crate') return rest;
+    if (first === 'self') return [...place, ...rest];
+    if (first === 'super') return rest[0] === 'super' ? absolute({ place: place.slice(0, -1), children }, rest) : [...place.slice(0, -1), ...rest];
+    return children.has(first) ? [...place, first, ...rest] : undefined;
+  };
+  /** The file that has what stands at a path. */
+  const fileOf = (segments, depth = 0) => {
+    let length = segments.length;
+    while (length > 0 && !modules.has(segments.slice(0, length).join('::'))) length -= 1;
+    const found = modules.get(segments.slice(0, length).join('::'));
+    const name = segments[length];
+    for (const { isPassed, paths } of found.imports) {
+      const passed = isPassed && depth < 8 && paths.find(({ as }) => as === name);
+      const target = passed && absolute(found, passed.segments);
+      if (target) return fileOf([...target, ...segments.slice(length + 1)], depth + 1);
+    }
+    return found.path;
+  };
+  return new Map([...modules.values()].map((module) => {
+    const inCode = [...module.code.matchAll(/(?<![\w:])(\w+(?:::\w+)+)/g)].map(([, path]) => path.split('::'));
+    const inUses = module.imports.flatMap(({ isPassed, paths }) => paths.map(({ segments }) => segments).filter(([first]) => !(isPassed && module.children.has(first))));
+    const targets = [...inCode, ...inUses].map((segments) => absolute(module, segments)).filter((segments) => segments !== undefined);
+    return [module.path, new Set(targets.map((segments) => fileOf(segments)).filter((path) => path !== module.path))];
+  }));
+}
+
+/** `a::{b, c::{d as e}}` as its paths, with the name that each has here. */
+function expanded(tree, before = []) {
+  const text = tree.trim();
+  const brace = text.indexOf('{');
+  const head = (brace < 0 ? text : text.slice(0, brace)).split(/\s+as\s+/);
+  const segments = [...before, ...head[0].split('::').map((part) => part.trim()).filter(Boolean)];
+  if (brace < 0) {
+    const own = segments.at(-1) === 'self' && segments.length > 1 ? segments.slice(0, -1) : segments;
+    return [{ segments: own, as: head[1] ?? own.at(-1) }];
+  }
+  let [depth, from, parts] = [0, brace + 1, []];
+  for (let k = brace; k < text.length; k += 1) {
+    if (text[k] === '{') depth += 1;
+    if (text[k] === '}') depth -= 1;
+    if ((text[k] === ',' && depth === 1) || depth === 0) {
+      parts = [...parts, text.slice(from, k)];
+      from = k + 1;
+    }
+    if (depth === 0) break;
+  }
+  return parts.filter((part) => part.trim() !== '').flatMap((part) => expanded(part, segments));
+}
+
+/** The sets of files that reach each other, sorted: Tarjan's strongly connected components. */
+export function circlesOf(uses) {
+  const [index, low, stack, found] = [new Map(), new Map(), [], []];
+  const visit = (file) => {
+    index.set(file, index.size);
+    low.set(file, index.get(file));
+    stack.push(file);
+    for (const other of uses.get(file)) {
+      if (!index.has(other)) visit(other);
+      if (stack.includes(other)) low.set(file, Math.min(low.get(file), low.get(other)));
+    }
+    if (low.get(file) === index.get(file)) {
+      const own = stack.splice(stack.indexOf(file));
+      if (own.length > 1) found.push(own.sort());
+    }
+  };
+  for (const file of uses.keys()) if (!index.has(file)) visit(file);
+  return found;
+}
