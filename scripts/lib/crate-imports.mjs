@@ -116,7 +116,7 @@ function expanded(tree, before = []) {
   return parts.filter((part) => part.trim() !== '').flatMap((part) => expanded(part, segments));
 }
 
-/** The sets of files that reach each other, sorted: Tarjan's strongly connected components. */
+/** The sets of files that reach each other, sorted: the strongly connected components. */
 export function circlesOf(uses) {
   const [index, low, stack, found] = [new Map(), new Map(), [], []];
   const visit = (file) => {
