@@ -103,7 +103,6 @@ fn mirrored(data: &Data, [across, down]: [bool; 2]) -> Result<Data, Failure> {
         second: frame(1)?,
         truth: data.truth.as_ref().map(|truth| (0..truth.len()).map(|p| truth[from(p)]).collect()),
         occluded: None,
-        flow: None,
     })
 }
 
@@ -121,7 +120,7 @@ pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method, images: u
         let data = &mirrored(data, image)?;
         let options = SegmentOptions::default().with_quality(quality);
         let found = segment_pair_with(model, &data.first, &data.second, &options)?;
-        let scores = outcome(method, data, &found.labels, &grouped(&found), &[], 0.0);
+        let scores = outcome(method, data, &found.labels, &grouped(&found), 0.0);
         let (Some(single), Some(groups)) = (scores.single, scores.grouped) else {
             return Err(format!("{} has no truth", case.sequence).into());
         };

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use scenes::{Background, Scene, SceneOptions, Speed};
+use veronese::Frame;
 use veronese::codecs::{Picture, decode_image, encode_colour_png};
-use veronese::{AffineMotion, Frame};
 
 use super::scores::VOID;
 
@@ -47,12 +47,10 @@ pub(crate) enum Set {
     Pairs,
     /// Several real pairs of each of many sequences, with masks.
     Sequences,
-    /// Pairs with true flow.
-    Flow,
 }
 
 impl Set {
-    pub(crate) const ALL: [Set; 11] = [
+    pub(crate) const ALL: [Set; 10] = [
         Set::Generated,
         Set::Colour,
         Set::Large,
@@ -63,7 +61,6 @@ impl Set {
         Set::SharedScenes,
         Set::Pairs,
         Set::Sequences,
-        Set::Flow,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -78,7 +75,6 @@ impl Set {
             Set::SharedScenes => "shared-scenes",
             Set::Pairs => "pairs",
             Set::Sequences => "sequences",
-            Set::Flow => "flow",
         }
     }
 
@@ -92,15 +88,14 @@ impl Set {
             Set::Slow => "one object moving 0.3 pixels",
             Set::Still => "static scene, noise only",
             Set::SharedScenes => "generated outside the project, photographic textures",
-            Set::Pairs => "real pairs with masks",
-            Set::Sequences => "real pairs of 30 sequences",
-            Set::Flow => "pairs with true flow",
+            Set::Pairs => "24 pairs of DAVIS, CDnet 2014 and Wallflower",
+            Set::Sequences => "30 sequences of DAVIS 2016",
         }
     }
 
     /// Whether the truth is one label for each thing that moves, rather than foreground and background.
     pub(crate) fn is_scene(self) -> bool {
-        !matches!(self, Set::Pairs | Set::Sequences | Set::Flow)
+        !matches!(self, Set::Pairs | Set::Sequences)
     }
 }
 
@@ -132,8 +127,6 @@ pub(crate) struct Data {
     pub(crate) truth: Option<Vec<u8>>,
     /// Pixels that are hidden or outside in the second frame; known of generated scenes.
     pub(crate) occluded: Option<Vec<bool>>,
-    /// True flow, NaN where unknown.
-    pub(crate) flow: Option<Vec<[f32; 2]>>,
 }
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -180,7 +173,6 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
             let has = |file: &str| path.join(file).is_file();
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
             let set = match set {
-                Set::Pairs if has("flow.flo") => Set::Flow,
                 set if has("mask.png") => set,
                 _ => continue,
             };
@@ -287,7 +279,7 @@ fn of_scene(scene: Scene) -> Data {
     let [_, first, second] = scene.frames;
     let [_, first_rgba, second_rgba] = scene.rgba;
     let (truth, occluded) = (Some(scene.labels), Some(scene.occluded));
-    Data { rgba: [first_rgba, second_rgba], first, second, truth, occluded, flow: None }
+    Data { rgba: [first_rgba, second_rgba], first, second, truth, occluded }
 }
 
 fn of_folder(folder: &Path, set: Set) -> Result<Data> {
@@ -302,11 +294,7 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
     let (one, two) = (frame("first")?, frame("second")?);
     let (first, second) = (one.frame()?, two.frame()?);
     let rgba = [one.rgba, two.rgba];
-    let mut data = Data { rgba, first, second, truth: None, occluded: None, flow: None };
-    if set == Set::Flow {
-        data.flow = Some(flow(&read("flow.flo")?, data.first.width(), data.first.height())?);
-        return Ok(data);
-    }
+    let mut data = Data { rgba, first, second, truth: None, occluded: None };
     let mut truth = labels("mask.png")?;
     if set == Set::Sequences {
         // One object, in whatever grey its mask has.
@@ -323,22 +311,9 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
     Ok(data)
 }
 
-/// Middlebury's format: the number 202021.25, width, height, then u and v of each pixel; beyond 1e9 it is unknown.
-fn flow(bytes: &[u8], width: usize, height: usize) -> Result<Vec<[f32; 2]>> {
-    let words: Vec<[u8; 4]> = bytes.as_chunks::<4>().0.to_vec();
-    let size = [width as u32, height as u32];
-    let header = words.len() >= 3 && f32::from_le_bytes(words[0]) == 202_021.25;
-    if !header || [words[1], words[2]].map(u32::from_le_bytes) != size || words.len() != 3 + 2 * width * height {
-        return Err("flow.flo is not the flow of these frames".into());
-    }
-    let known = |word: [u8; 4]| Some(f32::from_le_bytes(word)).filter(|v| v.abs() <= 1e9).unwrap_or(f32::NAN);
-    Ok(words[3..].chunks_exact(2).map(|pair| [known(pair[0]), known(pair[1])]).collect())
-}
-
-/// What the baseline found in a folder: labels and the motion of each.
+/// What the baseline found in a folder.
 pub(crate) struct Baseline {
     pub(crate) labels: Vec<u8>,
-    pub(crate) motions: Vec<AffineMotion>,
     pub(crate) milliseconds: f64,
 }
 
@@ -350,15 +325,6 @@ pub(crate) fn baseline(folder: &Path) -> Result<Option<Baseline>> {
     }
     let labels = decode_image(&fs::read(labels)?)?.rgba.chunks_exact(4).map(|pixel| pixel[0]).collect();
     let result: serde_json::Value = serde_json::from_slice(&fs::read(result)?)?;
-    let rows = |motion: &serde_json::Value| -> Option<AffineMotion> {
-        let entry = |row: usize, column: usize| motion[row][column].as_f64();
-        let mut matrix = [0.0; 6];
-        for (k, slot) in matrix.iter_mut().enumerate() {
-            *slot = entry(k / 3, k % 3)?;
-        }
-        Some(AffineMotion::new(matrix))
-    };
-    let motions = result["affine"].as_array().map(|list| list.iter().filter_map(rows).collect()).unwrap_or_default();
     let milliseconds = result["ms"]["total"].as_f64().unwrap_or(f64::NAN);
-    Ok(Some(Baseline { labels, motions, milliseconds }))
+    Ok(Some(Baseline { labels, milliseconds }))
 }

@@ -2,7 +2,7 @@
 //! unknown.
 
 use serde_json::{Value, json};
-use veronese::{Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
+use veronese::{Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
 
 use crate::Failure;
 use crate::cases::{Case, Data, Set, a_third};
@@ -11,7 +11,6 @@ use crate::scores::VOID;
 
 /// Lower edges of the ranges of confidence.
 const RANGES: [f64; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995];
-const QUALITIES: [Quality; 2] = [Quality::Best, Quality::Fast];
 
 /// Pixels in a range of confidence.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,8 +57,6 @@ struct OfScenes {
     occluded: [usize; 2],
     /// The same of the others.
     visible: [usize; 2],
-    /// Of the visible pixels that are marked: those whose label would have been wrong.
-    saved: usize,
 }
 
 impl OfScenes {
@@ -78,7 +75,6 @@ impl OfScenes {
             let kind = if occluded[p] { &mut counts.occluded } else { &mut counts.visible };
             kind[0] += 1;
             kind[1] += usize::from(mark);
-            counts.saved += usize::from(mark && !occluded[p] && !right);
         }
         Ok(Some(counts))
     }
@@ -89,45 +85,32 @@ impl OfScenes {
             self.occluded[k] += other.occluded[k];
             self.visible[k] += other.visible[k];
         }
-        self.saved += other.saved;
     }
 }
 
-/// Counts over the pixels of real pairs, in which one object has a mask: of those that are said to be an object, then of those said to be
-/// background.
+/// Counts over the pixels of real pairs, in which one object has a mask: of those that are said to be an object, which are right in the mask,
+/// then of those said to be background, which are right outside it.
 #[derive(Clone, Copy, Debug, Default)]
-struct OfPairs {
-    /// The group says it. An object is right in the mask, background outside it.
-    grouped: [Ranges; 2],
-    /// The truth says it of every label, as a user would join them.
-    by_hand: [Ranges; 2],
-}
+struct OfPairs([Ranges; 2]);
 
 impl OfPairs {
-    fn of(data: &Data, quality: Quality) -> Result<OfPairs> {
-        let options = SegmentOptions::default().with_quality(quality).with_confidence(true);
+    fn of(data: &Data) -> Result<OfPairs> {
+        let options = SegmentOptions::default().with_confidence(true);
         let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
         let truth = data.truth.as_deref().unwrap_or_default();
-        let meaning = meanings(&found.labels, truth);
         let is_object = objects(&found);
         let mut counts = OfPairs::default();
         for ((&label, &confidence), &truth) in found.labels.iter().zip(found.confidence.iter().flatten()).zip(truth) {
-            if truth == VOID {
-                continue;
+            if truth != VOID {
+                let said = is_object[usize::from(label)];
+                counts.0[usize::from(!said)].count(confidence, said == (truth != 0));
             }
-            let [label, inside] = [usize::from(label), usize::from(truth != 0)];
-            let (grouped, by_hand) = (usize::from(is_object[label]), usize::from(meaning[label] != 0));
-            counts.grouped[1 - grouped].count(confidence, grouped == inside);
-            counts.by_hand[1 - by_hand].count(confidence, by_hand == inside);
         }
         Ok(counts)
     }
 
     fn add(&mut self, other: &OfPairs) {
-        for k in 0..2 {
-            self.grouped[k].add(&other.grouped[k]);
-            self.by_hand[k].add(&other.by_hand[k]);
-        }
+        self.0.iter_mut().zip(&other.0).for_each(|(own, other)| own.add(other));
     }
 }
 
@@ -145,12 +128,10 @@ fn meanings(found: &[u8], truth: &[u8]) -> [u8; 256] {
     std::array::from_fn(|f| (0..=255u8).rev().max_by_key(|&t| votes[f][usize::from(t)]).unwrap_or(0))
 }
 
-/// The counts of a case.
+/// The counts of a case: of a scene, or of a real pair.
 pub(crate) struct Counted {
-    case: Case,
     scene: Option<OfScenes>,
-    /// Of a real pair, with each quality.
-    pair: Option<[OfPairs; QUALITIES.len()]>,
+    pair: Option<OfPairs>,
 }
 
 /// Counts the generated scenes and two real pairs of each sequence among the cases.
@@ -159,49 +140,22 @@ pub(crate) fn measure(cases: &[Case]) -> std::result::Result<Vec<Counted>, Failu
     chosen.extend(cases.iter().filter(|case| case.set.is_scene()).cloned());
     in_parallel(&chosen, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
-        let real = case.set == Set::Sequences;
-        let with = |k: usize| OfPairs::of(&data, QUALITIES[k]);
-        let pair = if real { Some([with(0)?, with(1)?]) } else { None };
+        let pair = if case.set == Set::Sequences { Some(OfPairs::of(&data)?) } else { None };
         eprintln!("{}", case.name);
-        Ok(Counted { case: case.clone(), scene: OfScenes::of(&data)?, pair })
+        Ok(Counted { scene: OfScenes::of(&data)?, pair })
     })
-}
-
-fn sum_of_scenes(counted: &[Counted]) -> OfScenes {
-    let mut sum = OfScenes::default();
-    counted.iter().filter_map(|one| one.scene.as_ref()).for_each(|counts| sum.add(counts));
-    sum
-}
-
-/// The sums of the real pairs: of all, then of both folds of every second sequence.
-fn sums_of_pairs(counted: &[Counted]) -> [[OfPairs; QUALITIES.len()]; 3] {
-    let pairs: Vec<_> = counted.iter().filter_map(|one| Some((one.case.sequence(), one.pair?))).collect();
-    let mut sequences: Vec<&str> = pairs.iter().map(|(sequence, _)| *sequence).collect();
-    sequences.dedup();
-    let mut sums = [[OfPairs::default(); QUALITIES.len()]; 3];
-    for (sequence, counts) in &pairs {
-        let place = sequences.iter().position(|name| name == sequence).unwrap_or_default();
-        for sum in [0, 1 + place % 2] {
-            sums[sum].iter_mut().zip(counts).for_each(|(sum, counts)| sum.add(counts));
-        }
-    }
-    sums
 }
 
 /// The counts as values for programs.
 pub(crate) fn json(counted: &[Counted]) -> Value {
-    let scenes = sum_of_scenes(counted);
-    let both = |[object, background]: &[Ranges; 2]| json!({ "object": object.json(), "background": background.json() });
-    let of_pairs = |counts: &OfPairs| json!({ "grouped": both(&counts.grouped), "byHand": both(&counts.by_hand) });
-    let named = |name: &str, [best, fast]: &[OfPairs; 2]| json!({ "pairs": name, "best": of_pairs(best), "fast": of_pairs(fast) });
-    let pairs: Vec<Value> = FOLDS.iter().zip(&sums_of_pairs(counted)).map(|(name, sums)| named(name, sums)).collect();
+    let (mut scenes, mut pairs) = (OfScenes::default(), OfPairs::default());
+    counted.iter().filter_map(|one| one.scene.as_ref()).for_each(|counts| scenes.add(counts));
+    counted.iter().filter_map(|one| one.pair.as_ref()).for_each(|counts| pairs.add(counts));
     json!({
-        "scenes": scenes.ranges.json(), "pairs": pairs,
+        "scenes": scenes.ranges.json(), "object": pairs.0[0].json(), "background": pairs.0[1].json(),
         "unknown": {
             "occluded": scenes.occluded[0], "occludedMarked": scenes.occluded[1],
-            "visible": scenes.visible[0], "visibleMarked": scenes.visible[1], "wrongAndMarked": scenes.saved,
+            "visible": scenes.visible[0], "visibleMarked": scenes.visible[1],
         },
     })
 }
-
-const FOLDS: [&str; 3] = ["all", "first fold", "second fold"];

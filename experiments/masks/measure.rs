@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use veronese::{AffineMotion, Quality, SegmentOptions, segment_pair};
+use veronese::{Quality, SegmentOptions, segment_pair};
 
 use crate::cases::{Case, Set, baseline};
 use crate::outcome::{Method, Outcome, grouped, outcome};
@@ -32,12 +32,8 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 pub(crate) fn all(cases: &[Case], baselines: &Path) -> Result<Vec<Measured>> {
     in_parallel(cases, |case| {
         let measured = measure(case, baselines)?;
-        let main = measured.of(Method::Best).map(|best| match (&best.single, best.flow_error) {
-            (Some(single), _) => format!("mean IoU {:.3}", single.miou),
-            (None, Some(error)) => format!("flow error {error:.2} px"),
-            _ => String::new(),
-        });
-        eprintln!("{}: {}", case.name, main.unwrap_or_default());
+        let main = measured.of(Method::Best).and_then(|best| best.single.as_ref()).map(|single| single.miou);
+        eprintln!("{}: mean IoU {:.3}", case.name, main.unwrap_or_default());
         Ok(measured)
     })
 }
@@ -52,17 +48,15 @@ fn measure(case: &Case, baselines: &Path) -> Result<Measured> {
         let options = SegmentOptions::default().with_quality(quality);
         let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
         let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-        let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
         let groups = grouped(&found);
-        outcomes.push(outcome(method, &data, &found.labels, &groups, &motions, milliseconds));
+        outcomes.push(outcome(method, &data, &found.labels, &groups, milliseconds));
         if method == Method::Best {
             shown.push(if matches!(case.set, Set::Pairs | Set::Sequences) { groups } else { found.labels });
         }
     }
     let their = baseline(&baselines.join(&case.name)).map_err(|error| error.to_string())?;
     if let Some(their) = their.filter(|their| their.labels.len() == data.rgba[0].len() / 4) {
-        let (labels, motions) = (&their.labels, &their.motions);
-        outcomes.push(outcome(Method::Baseline, &data, labels, labels, motions, their.milliseconds));
+        outcomes.push(outcome(Method::Baseline, &data, &their.labels, &their.labels, their.milliseconds));
         shown.push(their.labels);
     }
     shown.extend(data.truth.clone());

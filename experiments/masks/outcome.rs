@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use veronese::{AffineMotion, Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair_with};
+use veronese::{Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair_with};
 
 use super::cases::Data;
-use super::scores::{Scores, flow_error, scores};
+use super::scores::{Scores, scores};
 
 /// The methods compared, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -38,8 +38,6 @@ pub(crate) struct Outcome {
     pub(crate) single: Option<Scores>,
     /// Figures of the groups; of the baseline, which has none, the same as of its labels.
     pub(crate) grouped: Option<Scores>,
-    /// Median end point error of the flow that labels and motions imply, pixels.
-    pub(crate) flow_error: Option<f64>,
     pub(crate) milliseconds: f64,
 }
 
@@ -48,24 +46,10 @@ pub(crate) fn grouped(found: &Segmentation) -> Vec<u8> {
     found.labels.iter().map(group).collect()
 }
 
-pub(crate) fn outcome(
-    method: Method,
-    data: &Data,
-    labels: &[u8],
-    groups: &[u8],
-    motions: &[AffineMotion],
-    milliseconds: f64,
-) -> Outcome {
+pub(crate) fn outcome(method: Method, data: &Data, labels: &[u8], groups: &[u8], milliseconds: f64) -> Outcome {
     let width = data.first.width();
     let against = |labels: &[u8]| data.truth.as_deref().map(|truth| scores(truth, labels, width));
-    let flow_of = |label: u8, x: f64, y: f64| motions.get(usize::from(label)).map(|motion| motion.flow(x, y));
-    Outcome {
-        method,
-        single: against(labels),
-        grouped: against(groups),
-        flow_error: data.flow.as_ref().map(|flow| flow_error(flow, labels, width, flow_of)),
-        milliseconds,
-    }
+    Outcome { method, single: against(labels), grouped: against(groups), milliseconds }
 }
 
 /// What the pipeline gives with other constants, and with the quality of a method.
@@ -76,5 +60,5 @@ pub(crate) fn of_model(model: &'static Model, method: Method, data: &Data) -> Re
     let start = Instant::now();
     let found = segment_pair_with(model, first, second, &options)?;
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-    Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))
+    Ok(outcome(method, data, &found.labels, &grouped(&found), milliseconds))
 }

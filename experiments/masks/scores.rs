@@ -11,8 +11,6 @@ use super::boundary::Grid;
 pub(crate) const VOID: u8 = 255;
 /// A found label with a smaller share of the pixels than this is not counted.
 const SMALLEST_SHARE: f64 = 0.002;
-/// Width of the ring along the frame's border whose most frequent label is the background for `j_auto`, pixels.
-const RING: usize = 8;
 
 /// The figures of one labelling. Those of foreground and background exist where the truth has both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -21,19 +19,13 @@ pub(crate) struct Scores {
     /// Mean over the true labels of the intersection over union with the found label that is assigned to each, one to one, so
     /// that the sum is largest; 0 where there is none.
     pub(crate) miou: f64,
-    /// Share of pixels that are right, for the assignment with most of them.
-    pub(crate) accuracy: f64,
     /// Intersection over union of the foreground, where each found label is foreground if most of its pixels are: what a user
     /// gets who joins labels by hand.
     pub(crate) j_oracle: Option<f64>,
     /// The same where everything is foreground but the label with most background pixels.
     pub(crate) j_background: Option<f64>,
-    /// The same where everything is foreground but the label with most pixels along the frame's border.
-    pub(crate) j_auto: Option<f64>,
     /// F measure of the border of the foreground of `j_background`, within 0.8 % of the diagonal.
     pub(crate) boundary: Option<f64>,
-    /// F measure of all borders between labels.
-    pub(crate) all_boundaries: Option<f64>,
     /// Adjusted Rand index.
     pub(crate) rand: f64,
     /// Number of true labels.
@@ -118,16 +110,11 @@ pub(crate) fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
     let least = SMALLEST_SHARE * total as f64;
     let known: Vec<bool> = truth.iter().map(|&t| t != VOID).collect();
     let grid = Grid { width, known: &known };
-    let masked = |labels: &[u8]| labels.iter().zip(&known).map(|(&l, &k)| if k { i16::from(l) } else { -1 }).collect();
-    let (all_true, all_found): (Vec<i16>, Vec<i16>) = (masked(truth), masked(found));
     let mut result = Scores {
         miou: table.best_sum(|t, f| table.overlap(t, f)) / table.truth.len() as f64,
-        accuracy: table.best_sum(|t, f| table.counts[t][f] as f64) / total as f64,
         j_oracle: None,
         j_background: None,
-        j_auto: None,
         boundary: None,
-        all_boundaries: grid.boundary(&all_true, &all_found),
         rand: table.rand(),
         truth_count: table.truth.len(),
         found_count: table.labels().filter(|&f| table.of_found(f) as f64 >= least).count(),
@@ -146,10 +133,6 @@ pub(crate) fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
         let chosen = select(&|f| f != background);
         result.j_oracle = Some(intersection_over_union(&select(&|f| foreground[usize::from(f)]), &moving));
         result.j_background = Some(intersection_over_union(&chosen, &moving));
-        result.j_auto = Some(match most_frequent_on_ring(found, width) {
-            Some(ring) => intersection_over_union(&select(&|f| f != ring), &moving),
-            None => 0.0,
-        });
         let levels = |mask: &[bool]| mask.iter().map(|&m| i16::from(m)).collect::<Vec<i16>>();
         result.boundary = grid.boundary(&levels(&moving), &levels(&chosen));
     }
@@ -166,52 +149,8 @@ fn first_largest(counts: impl Iterator<Item = (u8, usize)>) -> Option<u8> {
     best.map(|(label, _)| label)
 }
 
-fn most_frequent_on_ring(labels: &[u8], width: usize) -> Option<u8> {
-    let height = labels.len() / width;
-    let mut counts = [0usize; 255];
-    for (p, &label) in labels.iter().enumerate() {
-        let (x, y) = (p % width, p / width);
-        let inside = x >= RING && y >= RING && x + RING < width && y + RING < height;
-        if let Some(count) = counts.get_mut(usize::from(label)).filter(|_| !inside) {
-            *count += 1;
-        }
-    }
-    first_largest((0..255).zip(counts).filter(|&(_, count)| count > 0))
-}
-
 fn intersection_over_union(a: &[bool], b: &[bool]) -> f64 {
     let both = a.iter().zip(b).filter(|&(&a, &b)| a && b).count();
     let either = a.iter().zip(b).filter(|&(&a, &b)| a || b).count();
     if either == 0 { 1.0 } else { both as f64 / either as f64 }
-}
-
-/// Median of sorted values: of two in the middle their mean; NaN of none.
-fn median(sorted: &[f64]) -> f64 {
-    match sorted.len() {
-        0 => f64::NAN,
-        n => 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]),
-    }
-}
-
-/// Median over the pixels with known flow of the distance between it and the flow of the motion of the pixel's label; a pixel
-/// without a label counts as standing still. `flow` has NaN where nothing is known.
-pub(crate) fn flow_error(
-    flow: &[[f32; 2]],
-    labels: &[u8],
-    width: usize,
-    flow_of: impl Fn(u8, f64, f64) -> Option<[f64; 2]>,
-) -> f64 {
-    let mut errors: Vec<f64> = flow
-        .iter()
-        .zip(labels)
-        .enumerate()
-        .filter(|(_, (known, _))| known.iter().all(|c| c.is_finite()))
-        .map(|(p, (known, &label))| {
-            let [u, v] = flow_of(label, (p % width) as f64, (p / width) as f64).unwrap_or_default();
-            let (du, dv) = (u - f64::from(known[0]), v - f64::from(known[1]));
-            (du * du + dv * dv).sqrt()
-        })
-        .collect();
-    errors.sort_by(f64::total_cmp);
-    median(&errors)
 }

@@ -1,15 +1,10 @@
 // The tables of docs/masks.md.
 
-import { change, fixed, origin, percent, score, table } from './table.mjs';
-
-/** From this confidence on a label counts as sure. */
-const SURE = 0.95;
+import { change, origin, percent, score, table } from './table.mjs';
 
 export const PARTS = {
   scenes: ['masks', (figures) => `${origin(figures)}\n\n${scenes(figures)}`],
-  sequences: ['masks', ({ sequences }) => real(sequences)],
-  pairs: ['masks', ({ pairs }) => real(pairs)],
-  flow: ['masks', flow],
+  pairs: ['masks', ({ sequences, pairs }) => real([...sequences, ...pairs])],
   ablation: ['masks-ablation', ablation],
   calibration: ['masks-calibration', calibration],
 };
@@ -27,11 +22,6 @@ function real(pairs) {
     of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score),
   ]);
   return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand'], rows);
-}
-
-function flow({ flow }) {
-  if (flow.length === 0) return '';
-  return table(['pair', 'best', 'fast', 'baseline'], flow.map(({ pair, best, fast, baseline }) => [pair, ...[best, fast, baseline].map((error) => fixed(error, 2))]));
 }
 
 /** The scores of the whole pipeline, then by how much they change without each part. */
@@ -56,30 +46,17 @@ function ablation({ date, rows: found }) {
 
 const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);
 
-function calibration({ date, scenes, pairs, unknown }) {
+function calibration({ date, scenes, object, background, unknown }) {
   const edge = (share) => Number((100 * share).toFixed(1));
   const heads = scenes.map(({ from }, k) => `${edge(from)} to ${edge(scenes[k + 1]?.from ?? 1)} %`);
   const cells = (ranges, k) => {
     const { pixels, confidence, right } = ranges[k];
     return [pixels / sum(ranges, 'pixels'), confidence / pixels, right / pixels].map((share) => percent(share, 1));
   };
-  const { object, background } = pairs[0].best.grouped;
   const ranges = heads.map((head, k) => [head, ...cells(scenes, k), ...cells(object, k), ...cells(background, k)]);
   const head = ['confidence', 'scenes: share', 'mean', 'right', 'objects: share', 'mean', 'right', 'background: share', 'mean', 'right'];
   const marked = (of) => percent(unknown[`${of}Marked`] / unknown[of]);
   const sentence = `\`markUnknown\` marks ${marked('occluded')} of the hidden pixels of the scenes and ${marked('visible')} of the others.`;
-  const folds = pairs.flatMap(({ pairs: name, ...byQuality }) =>
-    Object.entries(byQuality).map(([quality, { grouped: { object, background } }]) => {
-      const sure = object.filter(({ from }) => from >= SURE);
-      const error = (calibrationError(object) + calibrationError(background)) / 2;
-      return [name, quality, score(error), percent(sum(sure, 'pixels') / sum(object, 'pixels')), percent(sum(sure, 'right') / sum(sure, 'pixels'))];
-    }),
-  );
-  return [`${date}.`, table(head, ranges), sentence, table(['pairs', 'quality', 'calibration error', 'sure', 'of them in the mask'], folds)].join('\n\n');
-}
-
-/** The mean difference between confidence and share of right labels. */
-function calibrationError(ranges) {
-  return ranges.reduce((total, { confidence, right }) => total + Math.abs(confidence - right), 0) / sum(ranges, 'pixels');
+  return [`${date}.`, table(head, ranges), sentence].join('\n\n');
 }
 

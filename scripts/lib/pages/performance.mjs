@@ -8,7 +8,6 @@ const TITLES = {
   farneback: 'OpenCV.js, Farneback’s flow alone',
   opencvPipeline: 'OpenCV.js, flow to labels',
   clip: '`segmentClip`, fast, `lookAhead: 0`, a frame',
-  clipFlow: 'OpenCV.js, Farneback’s flow alone, a frame of the clip',
 };
 
 export const PARTS = {
@@ -27,7 +26,7 @@ function downloads({ wasmGzip, jsGzip, readyMs, peers: { opencv }, peersReadyMs 
 /** `first`: on a fresh page; `overlap`: mean IoU of the true labels and the labels found. */
 function calls({ sizes }) {
   const rows = Object.entries(sizes).flatMap(([pixels, cases]) =>
-    Object.entries(cases).map(([name, { median, native, first, overlap, memoryBytes }]) => [
+    Object.entries(cases).filter(([name]) => name in TITLES).map(([name, { median, native, first, overlap, memoryBytes }]) => [
       size(pixels),
       TITLES[name],
       amount(median),
