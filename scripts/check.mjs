@@ -1,4 +1,4 @@
-// npm run check: formatting, lints, documentation, types, spelling.
+// npm run check: formatting, lints, documentation, types, links, spelling.
 
 import { runChecks } from './lib/checks.mjs';
 import { prepare } from './lib/prepare.mjs';

