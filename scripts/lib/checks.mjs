@@ -1,7 +1,7 @@
 // Checks besides the tests: formatting, lints, documentation, types, spelling, versions. A warning is a failure.
 
 import { buildPackage } from './builds.mjs';
-import { constantsAreFew } from './constants.mjs';
+import { constantsAreExplained } from './constants.mjs';
 import { crateImportsAgree } from './crate-imports.mjs';
 import { licencesAllowed } from './licences.mjs';
 import { pagesAgree } from './pages/index.mjs';
@@ -47,7 +47,7 @@ export async function runChecks() {
   const results = [
     ['one version everywhere', nothing(versionProblem(await versions()))],
     ['no new circles of files in the crate', crateImportsAgree()],
-    ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
+    ['every chosen number is explained', constantsAreExplained()],
     ['the pages are what docs/figures gives', pagesAgree()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
