@@ -65,7 +65,7 @@ describe('README.md', () => {
     const text = readFileSync(at('README.md'), 'utf8');
     const [, quoted] = /```text\n(.*? motions in .*?)\n```/s.exec(text);
     assert.equal(withoutTimes(quoted), withoutTimes(describePair(found)));
-    // "Motions 2 and 3 are parts of the car on the left and share a group."
+    // "2 and 3 are parts of the car on the left, which `--grouped` joins."
     const groups = found.motions.map(({ group }) => group);
     assert.equal(groups[2], groups[3]);
     assert.equal(new Set(groups).size, 3);
