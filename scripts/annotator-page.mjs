@@ -11,11 +11,10 @@ import { mean, overlap } from './lib/annotator/overlap.mjs';
 import { annotatedPage } from './lib/annotator/page.mjs';
 import { buildPage } from './lib/builds.mjs';
 import { present } from './lib/documented.mjs';
-import { launchChromium } from './lib/launch-chromium.mjs';
+import { openBrowser } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
-import { serve } from './lib/static-server.mjs';
 
 const USAGE = `npm run annotator -- --page [OPTIONS]: an expert annotates clips in the page, in headless Chromium
 
@@ -23,7 +22,6 @@ const USAGE = `npm run annotator -- --page [OPTIONS]: an expert annotates clips 
   --only A,B       these clips; default soccerball,car-turn,motorbike
   --actions N      most actions for a clip; default 20
   --write-docs     also write the figures to docs/figures, and docs/annotating.md from them`;
-const HOST = '127.0.0.1';
 const DATA = { chosenOn: 'motorbike, the rules of the expert', heldOut: 'the other clips, of the rules' };
 const VIEW = { width: 1440, height: 900 };
 
@@ -32,12 +30,9 @@ await command(async (args) => {
   if (options === null) return console.log(USAGE);
   for (const clip of options.only) if (!existsSync(join(options.data, clip, 'masks'))) throw new Stop(`${join(options.data, clip)} has no frames and masks.`);
   const { chromium } = await prepare({ browser: true });
-  if (chromium.problem) throw new Stop(chromium.problem);
   await buildPage();
   const { decodeImage } = await import('../pkg/dist/codecs.js');
-  const server = await serve(join(root, 'www/dist'), { host: HOST });
-  const address = `http://${HOST}:${server.address().port}/`;
-  const browser = await launchChromium(chromium.path);
+  const { browser, address, close } = await openBrowser(chromium, join(root, 'www/dist'));
   const rows = [];
   try {
     for (const clip of options.only) {
@@ -50,9 +45,7 @@ await command(async (args) => {
     const figures = rows.map(({ log: _, ...figures }) => figures);
     present('annotator-page', { command: 'npm run annotator -- --page', data: DATA, chromium: browser.version() }, { rows: figures }, options.writeDocs);
   } finally {
-    await browser.close();
-    server.close();
-    server.closeAllConnections();
+    await close();
   }
   return 0;
 });

@@ -11,11 +11,10 @@ import { gzipSync } from 'node:zlib';
 
 import { buildPackage } from '../lib/builds.mjs';
 import { present } from '../lib/documented.mjs';
-import { launchChromium } from '../lib/launch-chromium.mjs';
+import { openBrowser } from '../lib/launch-chromium.mjs';
 import { prepare } from '../lib/prepare.mjs';
 import { root, toolsFolder } from '../lib/project.mjs';
 import { Stop, command, longStep, must } from '../lib/run.mjs';
-import { serve } from '../lib/static-server.mjs';
 import { median } from '../lib/statistics.mjs';
 
 const FRAMES = join(root, 'out/bench/frames');
@@ -28,29 +27,23 @@ const PAIRS = [...OURS, 'farneback', 'opencvPipeline'];
 const CASES = [...PAIRS, 'clip', 'clipFlow'];
 /** Number of fresh pages for each case and size. */
 const FRESH_PAGES = 3;
-const HOST = '127.0.0.1';
 /** Without the page's own policy, because OpenCV.js creates functions from text when it starts. */
 const HEADERS = { 'X-Content-Type-Options': 'nosniff' };
 
 await command(async (args) => {
   const { rounds, sizes, writeDocs } = options(args);
   const { chromium } = await prepare({ browser: true });
-  if (chromium.problem) throw new Stop(chromium.problem);
   await buildPackage();
   await preparePeer();
   mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');
   await must('The frames could not be generated.', 'cargo', [...NATIVE, 'scenes', FRAMES, ...sizes]);
-  const server = await serve(root, { host: HOST, headers: HEADERS });
-  const address = `http://${HOST}:${server.address().port}/benches/browser/page.html`;
-  const browser = await launchChromium(chromium.path);
+  const { browser, address, close } = await openBrowser(chromium, root, HEADERS);
   try {
-    const report = { rounds, ...downloads(), ...(await measured(browser, address, rounds, sizes)) };
+    const report = { rounds, ...downloads(), ...(await measured(browser, `${address}benches/browser/page.html`, rounds, sizes)) };
     present('browser', { command: 'npm run bench -- browser', chromium: browser.version() }, report, writeDocs);
   } finally {
-    await browser.close();
-    server.close();
-    server.closeAllConnections();
+    await close();
     rmSync(FRAMES, { recursive: true, force: true });
   }
 });

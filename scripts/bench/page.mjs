@@ -17,15 +17,13 @@ import { parseArgs } from 'node:util';
 import { browserMemory } from '../lib/browser-memory.mjs';
 import { buildPage } from '../lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from '../lib/first-visit.mjs';
-import { launchChromium } from '../lib/launch-chromium.mjs';
+import { openBrowser } from '../lib/launch-chromium.mjs';
 import { writeLongClip } from '../lib/long-clip.mjs';
 import { present } from '../lib/documented.mjs';
 import { prepare } from '../lib/prepare.mjs';
 import { root } from '../lib/project.mjs';
 import { Stop, command } from '../lib/run.mjs';
-import { serve } from '../lib/static-server.mjs';
 
-const HOST = '127.0.0.1';
 const OUT = join(root, 'out/bench');
 const VIDEO = join(OUT, 'long-clip.webm');
 /** Between samples of the memory, milliseconds. */
@@ -37,12 +35,9 @@ await command(async (args) => {
   const { frames, size, quality, workers, writeDocs } = options(args);
   if (process.platform !== 'linux') throw new Stop('The memory of processes is read from /proc, which only Linux has.');
   const { chromium } = await prepare({ browser: true });
-  if (chromium.problem) throw new Stop(chromium.problem);
   await buildPage();
   mkdirSync(OUT, { recursive: true });
-  const server = await serve(join(root, 'www/dist'), { host: HOST });
-  const address = `http://${HOST}:${server.address().port}/`;
-  const browser = await launchChromium(chromium.path);
+  const { browser, address, close } = await openBrowser(chromium, join(root, 'www/dist'));
   try {
     console.log('Opening the page as a first visitor …');
     const first = await firstVisits(browser, address);
@@ -58,9 +53,7 @@ await command(async (args) => {
     const report = { frames, size, quality, workers, ...measured, tasks, first, corrected };
     present('page', { command: 'npm run bench -- page', chromium: browser.version() }, report, writeDocs);
   } finally {
-    await browser.close();
-    server.close();
-    server.closeAllConnections();
+    await close();
     rmSync(VIDEO, { force: true });
   }
 });

@@ -2,28 +2,23 @@
 
 import { segmentPair } from '../../../pkg/dist/node.js';
 import { browserMemory } from '../browser-memory.mjs';
-import { launchChromium } from '../launch-chromium.mjs';
+import { openBrowser } from '../launch-chromium.mjs';
 import { root } from '../project.mjs';
-import { Stop } from '../run.mjs';
-import { serve } from '../static-server.mjs';
 import { flatMemory, hashOf, sameAsBefore } from './checks.mjs';
 import { OPTIONS, REFERENCE, pairOf } from './frames.mjs';
 
 const BATCH = 25;
-const HOST = '127.0.0.1';
 
 /** Yields how many are done after each batch. */
 export async function* page({ from, total, references, jobs, setup: { chromium } }) {
-  if (chromium.problem) throw new Stop(chromium.problem);
   const { first, second } = pairOf(REFERENCE);
   sameAsBefore(references, 'pairs', hashOf(await segmentPair(first, second, OPTIONS)));
-  const server = await serve(root, { host: HOST, headers: {} });
-  const browser = await launchChromium(chromium.path);
+  const { browser, address, close } = await openBrowser(chromium, root, {});
   const memory = flatMemory();
   try {
     const session = await browser.newBrowserCDPSession();
     const opened = await browser.newPage();
-    await opened.goto(`http://${HOST}:${server.address().port}/scripts/lib/soak/page.html`, { waitUntil: 'load' });
+    await opened.goto(`${address}scripts/lib/soak/page.html`, { waitUntil: 'load' });
     await opened.waitForFunction(() => globalThis.soak !== undefined);
     for (let done = from; done < total; ) {
       const count = Math.min(BATCH, total - done);
@@ -35,8 +30,6 @@ export async function* page({ from, total, references, jobs, setup: { chromium }
       yield { done, note: memory(await browserMemory(session)) };
     }
   } finally {
-    await browser.close();
-    server.close();
-    server.closeAllConnections();
+    await close();
   }
 }
