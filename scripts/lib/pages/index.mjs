@@ -5,9 +5,8 @@ import { renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { figuresOf } from '../figures.mjs';
-import { marked } from '../marked.mjs';
 import { projectText, root } from '../project.mjs';
-import { say } from '../run.mjs';
+import { Stop, say } from '../run.mjs';
 import { PARTS as annotating } from './annotating.mjs';
 import { PARTS as clips } from './clips.mjs';
 import { PARTS as experiments } from './experiments.mjs';
@@ -54,4 +53,15 @@ function stale() {
     return [path, marked(projectText(path), path, Object.fromEntries(texts))];
   });
   return written.filter(([path, text]) => text !== projectText(path));
+}
+
+/** The text of a page with other text between `<!-- begin NAME … -->` and `<!-- end NAME -->`, for the parts of these names. */
+function marked(page, path, parts) {
+  let text = page;
+  for (const [name, part] of Object.entries(parts)) {
+    const place = new RegExp(`(<!-- begin ${name}\\b[^>]*-->\n)(?:[^]*?\n)??(<!-- end ${name} -->)`);
+    if (!place.test(text)) throw new Stop(`${path} has no part '${name}' between markers.`);
+    text = text.replace(place, (_, begin, end) => `${begin}\n${part.trim()}\n\n${end}`);
+  }
+  return text;
 }
