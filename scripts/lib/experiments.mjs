@@ -10,11 +10,19 @@ import { checkRust } from './rust.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--package', 'experiments', '--features', 'ablation,plot', '--example'];
 
+let said = false;
+
+/** Starts a program; says once that cargo may build it first. */
+async function start(name, args, options) {
+  await checkRust();
+  if (!said) console.error('Building the program if it has changed (some minutes when everything is new) …');
+  said = true;
+  return run('cargo', [...CARGO, name, '--', ...args], options);
+}
+
 /** Runs a program and returns its exit code. */
 export async function experiment(name, args) {
-  await checkRust();
-  console.error('Building the program if it has changed (some minutes when everything is new) …');
-  return (await run('cargo', [...CARGO, name, '--', ...args])).code;
+  return (await start(name, args)).code;
 }
 
 /** The same, but a failure stops the command. */
@@ -45,9 +53,7 @@ export function outOf(args, usual) {
  */
 export async function runPeers(name, args, { out, old, program, argumentsOf }) {
   for (const folder of old) rmSync(join(out, folder), { recursive: true, force: true });
-  await checkRust();
-  console.error('Building the program if it has changed (some minutes when everything is new) …');
-  const { code, text, stdout } = await run('cargo', [...CARGO, name, '--', 'frames', ...args], { output: 'collect' });
+  const { code, text, stdout } = await start(name, ['frames', ...args], { output: 'collect' });
   if (code !== 0) throw new Stop(text.trim());
   const cases = stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
   const python = cases.length > 0 && (await findOpenCv());
