@@ -16,11 +16,6 @@ const KNOWN = [
   ['view/brightness.rs', 'view/cost.rs'],
   ['codecs.rs', 'codecs/header.rs'],
   ['pair.rs', 'pair/background.rs', 'pair/evidence.rs', 'pair/hypothesis.rs', 'pair/labels.rs', 'pair/recorded.rs', 'pair/report.rs', 'pair/report/unknown.rs'],
-  [
-    'clip/annotation.rs', 'clip/correction.rs', 'clip/correction/local.rs', 'clip/correction/look.rs', 'clip/correction/memory.rs',
-    'clip/correction/outline.rs', 'clip/correction/placing.rs', 'clip/correction/sweep.rs', 'clip/correction/track.rs', 'clip/correction/view.rs',
-    'clip/correction/world.rs', 'clip/job.rs', 'clip/whole.rs',
-  ],
 ];
 
 /** Whether no files use each other but the known ones, and top modules only those before them. Prints what differs. */

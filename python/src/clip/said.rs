@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use pyo3::prelude::*;
 use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, Spread};
-use veronese::{Error, MAX_SIDE};
+use veronese::MAX_SIDE;
 
 use crate::errors::Failure;
 use crate::frames::image;
