@@ -779,7 +779,7 @@ fn a_restored_clip_goes_on_with_the_same_bits() {
     for shot in [&mut shot, &mut again] {
         shot.correct(5, &mask(&shot.truths[5], &[(2, 9), (0, 0)]));
         shot.correct(1, &shot.nothing());
-        shot.renumber(12, number);
+        shot.renumber(12, 9);
     }
     assert!(shot.state() == again.state());
 }

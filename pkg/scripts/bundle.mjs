@@ -1,6 +1,7 @@
 // Joins the compiled sources into few files: each one is a request, and a browser that loads the package unbundled is ready only
 // after the last; part of `npm run build`.
 
+import { copyFileSync } from 'node:fs';
 import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { rolldown } from 'rolldown';
@@ -82,3 +83,6 @@ await bundle.write({
   },
 });
 await bundle.close();
+
+// The package has the project's licences.
+for (const name of ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES']) copyFileSync(`${folder('..')}${name}`, `${folder('.')}${name}`);

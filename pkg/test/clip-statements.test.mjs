@@ -55,9 +55,9 @@ describe('a locked object', () => {
     assert.deepEqual((await said({ ...given, locked: [2] })).labels, (await said(given)).labels);
     // What was said before it was locked may be said again.
     const corrections = [{ frame: 3, labels: half(2, 3, 2) }];
-    const before = await said({ corrections });
-    assert.deepEqual((await run({ state: before.state, corrections, locked: [2] })).labels, before.labels);
-    const other = await failure(run({ state: before.state, corrections: [{ frame: 3, labels: half(2, 3, 2).fill(255, 0, PIXELS / 4) }], locked: [2] }));
+    const before = await said({ corrections, locked: [2] });
+    assert.deepEqual((await run({ state: before.state, corrections })).labels, before.labels);
+    const other = await failure(run({ state: before.state, corrections: [{ frame: 3, labels: half(2, 3, 2).fill(255, 0, PIXELS / 4) }] }));
     assert.equal(other.code, 'object-locked');
   });
 });

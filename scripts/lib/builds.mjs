@@ -9,6 +9,8 @@ import { Stop, must, run, say } from './run.mjs';
 import { pinnedRust } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
+/** What the package and the page carry. */
+const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
 const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
 /**
@@ -66,8 +68,8 @@ export const buildPackage = once(async () => {
   // Includes the modules, because one entry of the package embeds them.
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
-  const inputs = [...sources, ...glue, 'package-lock.json'];
-  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
+  const inputs = [...sources, ...glue, ...LICENCES, 'package-lock.json'];
+  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js', 'pkg/THIRD-PARTY-NOTICES'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 });
@@ -76,8 +78,7 @@ export const buildPackage = once(async () => {
 export const buildPage = once(async () => {
   await buildPackage();
   const built = ['pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm'];
-  const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
-  const inputs = ['www', 'examples/embed', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];
+  const inputs = ['www', 'examples/embed', 'scripts/lib/policy.mjs', ...built, ...LICENCES, 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );

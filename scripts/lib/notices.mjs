@@ -9,8 +9,8 @@ import { must, say } from './run.mjs';
 
 /** In the project and in the npm package, and in the wheel. */
 const NOTICES = [
-  { paths: ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'], parts: partsOfProject },
-  { paths: ['python/THIRD-PARTY-NOTICES'], parts: partsOfWheel },
+  { path: 'THIRD-PARTY-NOTICES', parts: partsOfProject },
+  { path: 'python/THIRD-PARTY-NOTICES', parts: partsOfWheel },
 ];
 
 /** In the package's scripts, but no dependency of theirs. */
@@ -69,7 +69,7 @@ export async function noticesAgree() {
   const stale = [];
   for (const file of NOTICES) {
     const text = await notices(file);
-    stale.push(...file.paths.filter((path) => !inProject(path) || projectText(path) !== text));
+    if (!inProject(file.path) || projectText(file.path) !== text) stale.push(file.path);
   }
   for (const path of stale) say(`${path} is not of the packages that are used now.`);
   return stale.length === 0;
@@ -78,7 +78,7 @@ export async function noticesAgree() {
 export async function writeNotices() {
   for (const file of NOTICES) {
     const text = await notices(file);
-    for (const path of file.paths) writeFileSync(join(root, path), text);
+    writeFileSync(join(root, file.path), text);
   }
 }
 
