@@ -39,6 +39,19 @@ pub(crate) fn lower(values: &mut [f32], others: &[f32]) {
     each_with(values, [others], |v, [o]| if o < v { o } else { v });
 }
 
+/// Sum of a row in eight lanes, an order that vectorises and is the same on every platform.
+pub(crate) fn lane_sum(row: &[f32]) -> f32 {
+    let mut lanes = [0.0f32; 8];
+    let chunks = row.chunks_exact(8);
+    let rest: f32 = chunks.remainder().iter().sum();
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane += value;
+        }
+    }
+    lanes.iter().sum::<f32>() + rest
+}
+
 /// The first N values of a slice as an array of known length: in place, or, if the slice is shorter, a copy in `space` followed by
 /// arbitrary values.
 pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]) -> &'a [f32; N] {

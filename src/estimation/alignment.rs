@@ -9,11 +9,10 @@ use nalgebra::{SMatrix, SVector};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::{CHUNK, Footprints};
-use crate::lanes::whole;
+use crate::lanes::{lane_sum, whole};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::brightness::{GREY, Photometric};
-use crate::view::cost::lane_sum;
 use crate::view::level::Level;
 
 /// Which entries of the motion are free.

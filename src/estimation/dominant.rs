@@ -3,7 +3,7 @@
 use super::alignment::{Alignment, Convergence, Freedom, Support, align};
 use crate::motion::AffineMotion;
 use crate::view::brightness::Photometric;
-use crate::view::cost::{CostModel, cost_with, total};
+use crate::view::cost::{CostModel, cost_with};
 use crate::view::level::Level;
 
 /// How the dominant motion is found.
@@ -31,7 +31,7 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch
     let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
-        let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)));
+        let sum = cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)).total();
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
@@ -53,7 +53,7 @@ pub(crate) fn dominant_motion_near(
     };
     let mut best = static_candidate(finest, start, how.brightness);
     let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, how);
-    let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)));
+    let sum = cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)).total();
     if sum < best.0 {
         best = (sum, motion, photometric);
     }
@@ -69,7 +69,7 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
             let (dx, dy) = (f64::from(dx), f64::from(dy));
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
             let plane = cost_with(level, &shift, photometric, CostModel::estimation(level.model));
-            let cost = total(&plane) / plane.values().len() as f64
+            let cost = plane.total() / plane.values().len() as f64
                 + f64::from(level.model.negligible) * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
@@ -119,6 +119,6 @@ fn static_candidate(level: &Level, mut photometric: Photometric, brightness: boo
     if brightness {
         photometric = photometric.refined_at_rest(level);
     }
-    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation(level.model)));
+    let cost = cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation(level.model)).total();
     (cost, AffineMotion::STATIC, photometric)
 }

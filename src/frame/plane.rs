@@ -1,5 +1,7 @@
 //! A rectangle of `f32` values, row by row: every image quantity of the pipeline.
 
+use crate::lanes::lane_sum;
+
 /// Width × height values, row-major; (0, 0) is the top-left pixel.
 #[derive(Debug, PartialEq)]
 pub struct Plane {
@@ -74,6 +76,11 @@ impl Plane {
             values.extend(row.iter().step_by(stride));
         }
         Plane::from_vec(width, height, values)
+    }
+
+    /// Sum of all values, in the same order on every platform.
+    pub(crate) fn total(&self) -> f64 {
+        (0..self.height).map(|y| f64::from(lane_sum(self.row(y)))).sum()
     }
 
     /// Row y.

@@ -16,7 +16,6 @@ use crate::labelling::{BACKGROUND, mask_of};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::view::brightness::Photometric;
-use crate::view::cost::total;
 use crate::view::level::Level;
 
 impl Settings {
@@ -102,7 +101,7 @@ pub(super) fn cost(pair: &Pair, motions: &[AffineMotion]) -> f64 {
 }
 
 fn cost_of(selected: &[ScoredMotion]) -> f64 {
-    total(&smallest_cost(selected))
+    smallest_cost(selected).total()
 }
 
 /// Motions that were found at another size, scaled to this one. The first is the dominant one.

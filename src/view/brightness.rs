@@ -2,7 +2,6 @@
 
 use std::rc::Rc;
 
-use super::cost::total;
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
 use crate::model::Model;
@@ -107,7 +106,7 @@ impl Photometric {
 
 fn mean_and_deviation(plane: &Plane) -> (f64, f64) {
     let n = plane.values().len() as f64;
-    let mean = total(plane) / n;
+    let mean = plane.total() / n;
     let variance = plane.values().iter().map(|&v| (f64::from(v) - mean) * (f64::from(v) - mean)).sum::<f64>() / n;
     (mean, variance.sqrt())
 }

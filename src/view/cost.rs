@@ -184,24 +184,6 @@ pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
     cheapest
 }
 
-/// Sum of a cost plane.
-pub(crate) fn total(plane: &Plane) -> f64 {
-    (0..plane.height()).map(|y| f64::from(lane_sum(plane.row(y)))).sum()
-}
-
-/// Sum of a row in eight lanes, an order that vectorises and is the same on every platform.
-pub(crate) fn lane_sum(row: &[f32]) -> f32 {
-    let mut lanes = [0.0f32; 8];
-    let chunks = row.chunks_exact(8);
-    let rest: f32 = chunks.remainder().iter().sum();
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane += value;
-        }
-    }
-    lanes.iter().sum::<f32>() + rest
-}
-
 /// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
 /// (1.4826 × median absolute deviation), between that of rounding and 8.
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {

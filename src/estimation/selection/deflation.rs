@@ -11,7 +11,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::view::brightness::Photometric;
-use crate::view::cost::total;
 use crate::view::level::Level;
 
 /// When to add a motion, and how many proposals to try.
@@ -194,12 +193,12 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32)
 /// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.
 pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
     while selected.len() > 1 {
-        let with_all = total(&smallest_cost(selected));
+        let with_all = smallest_cost(selected).total();
         let mut cheapest = (f64::INFINITY, 0);
         for k in 1..selected.len() {
             let mut others: Vec<ScoredMotion> = selected.clone();
             others.remove(k);
-            let absence = total(&smallest_cost(&others)) - with_all;
+            let absence = smallest_cost(&others).total() - with_all;
             if absence < cheapest.0 {
                 cheapest = (absence, k);
             }

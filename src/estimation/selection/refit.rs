@@ -7,7 +7,6 @@ use crate::frame::filter::eroded;
 use crate::lanes::each_with;
 use crate::model::Model;
 use crate::view::brightness::Photometric;
-use crate::view::cost::total;
 use crate::view::level::Level;
 
 /// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
@@ -31,7 +30,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize,
 fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
     let mut weighted = cost.clone();
     each_with(weighted.values_mut(), [weights.values()], |c, [w]| c * w);
-    total(&weighted)
+    weighted.total()
 }
 
 /// Weights of the pixels where motion `k` is cheapest, eroded and softened.

@@ -3,10 +3,9 @@
 use super::SegmentedMotion;
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
-use crate::lanes::each_with;
+use crate::lanes::{each_with, lane_sum};
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::view::cost::lane_sum;
 
 /// Pixels, residuals, boxes and group numbers of the motions.
 pub(crate) fn describe(
