@@ -16,7 +16,7 @@ use std::rc::Rc;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
-use crate::estimation::dominant::{DominantSearch, dominant_motion, dominant_motion_near};
+use crate::estimation::dominant::{DominantSearch, dominant_motion};
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::model::Model;
@@ -177,23 +177,9 @@ impl Pair {
         Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
     }
 
-    /// Finds the dominant motion, measures the noise and removes the change of brightness, if it is estimated.
-    fn find_dominant(&mut self, how: DominantSearch) -> AffineMotion {
-        let found = dominant_motion(&self.levels, self.base, how);
-        self.settle_dominant(found, how)
-    }
-
-    /// As [`find_dominant`](Self::find_dominant), near a motion that is expected.
-    fn find_dominant_near(&mut self, expected: &AffineMotion, how: DominantSearch) -> AffineMotion {
-        let found = dominant_motion_near(&self.levels, self.base, expected, how);
-        self.settle_dominant(found, how)
-    }
-
-    fn settle_dominant(
-        &mut self,
-        (mut motion, photometric): (AffineMotion, Photometric),
-        search: DominantSearch,
-    ) -> AffineMotion {
+    /// Finds the dominant motion, near one that is expected, measures the noise and removes the change of brightness, if it is estimated.
+    fn find_dominant(&mut self, expected: Option<&AffineMotion>, search: DominantSearch) -> AffineMotion {
+        let (mut motion, photometric) = dominant_motion(&self.levels, self.base, expected, search);
         self.remove(photometric);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];

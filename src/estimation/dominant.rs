@@ -16,18 +16,25 @@ pub(crate) struct DominantSearch {
 }
 
 /// The dominant motion of the working frame and the change of brightness (none unless it is estimated), from the levels `base` and coarser.
-pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch) -> (AffineMotion, Photometric) {
-    let coarsest = &levels[levels.len() - 1];
+/// Near a motion that is expected, the base level is enough.
+pub(crate) fn dominant_motion(
+    levels: &[Level],
+    base: usize,
+    expected: Option<&AffineMotion>,
+    how: DominantSearch,
+) -> (AffineMotion, Photometric) {
+    let finest = &levels[base].thinned();
+    let levels = if expected.is_some() { &levels[..=base] } else { levels };
+    let coarsest = if expected.is_some() { finest } else { &levels[levels.len() - 1] };
     let start = match how.brightness {
         true => Photometric::from_moments(&coarsest.first, &coarsest.second, coarsest.model),
         false => Photometric::default(),
     };
-    let mut candidates = vec![AffineMotion::STATIC];
-    let shift = best_shift(coarsest, start);
-    if shift != AffineMotion::STATIC {
-        candidates.push(shift);
-    }
-    let finest = &levels[base].thinned();
+    let mut candidates = match expected {
+        Some(motion) => vec![*motion],
+        None => vec![AffineMotion::STATIC, best_shift(coarsest, start)],
+    };
+    candidates.dedup();
     let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
@@ -35,27 +42,6 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
-    }
-    (best.1, best.2)
-}
-
-/// [`dominant_motion`] near one that is expected, from the base level alone.
-pub(crate) fn dominant_motion_near(
-    levels: &[Level],
-    base: usize,
-    expected: &AffineMotion,
-    how: DominantSearch,
-) -> (AffineMotion, Photometric) {
-    let finest = &levels[base].thinned();
-    let start = match how.brightness {
-        true => Photometric::from_moments(&finest.first, &finest.second, finest.model),
-        false => Photometric::default(),
-    };
-    let mut best = static_candidate(finest, start, how.brightness);
-    let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, how);
-    let sum = cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)).total();
-    if sum < best.0 {
-        best = (sum, motion, photometric);
     }
     (best.1, best.2)
 }

@@ -44,7 +44,7 @@ impl Solved {
 pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings, stages: &mut Stages<'_>) -> Solved {
     let mut at_rest = pair.clone();
     stages.begin("dominant");
-    let dominant = pair.find_dominant(settings.dominant_search());
+    let dominant = pair.find_dominant(None, settings.dominant_search());
     let moving = under(pair, dominant, likely, settings, stages);
     let mut known = moving.labelled.motions.clone();
     if known[BACKGROUND] == AffineMotion::STATIC {

@@ -103,7 +103,7 @@ pub(crate) fn solve(
         let cost = if settings.follows {
             // Of a pair prepared as one that is followed: costs are in units of its noise.
             let mut followed = Pair::new(first, pyramid, second, settings);
-            followed.find_dominant_near(&labelled.motions[BACKGROUND], settings.dominant_search());
+            followed.find_dominant(Some(&labelled.motions[BACKGROUND]), settings.dominant_search());
             hypothesis::cost(&followed, &labelled.motions)
         } else {
             0.0
@@ -139,7 +139,7 @@ fn follow(
     settings: &Settings,
 ) -> Option<(labels::Labelled, [f64; 2])> {
     let model = settings.model;
-    let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.dominant_search());
+    let dominant = pair.find_dominant(Some(&prior.motions[BACKGROUND]), settings.dominant_search());
     let objects = &prior.motions[BACKGROUND + 1..];
     let (found, cost) = hypothesis::followed(pair, dominant, objects, &mut labels, settings);
     // Costs rise when a motion is missing, but also when more is occluded.
