@@ -147,8 +147,6 @@ pub mod paper;
 mod points;
 mod progress;
 mod random;
-#[cfg(feature = "stages")]
-mod recording;
 pub mod refinement;
 #[cfg(feature = "stages")]
 pub mod stages;

@@ -4,8 +4,7 @@ mod background;
 mod evidence;
 mod hypothesis;
 pub(crate) mod labels;
-#[cfg(feature = "stages")]
-mod recorded;
+pub(crate) mod observer;
 pub(crate) mod report;
 pub(crate) mod settings;
 pub(crate) mod solution;
@@ -27,6 +26,7 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::noise;
 use crate::view::level::{Level, levels};
 use background::Solved;
+use observer::Observer;
 use settings::Settings;
 
 /// The stages of [`segment_pair`], in order.
@@ -43,7 +43,7 @@ pub fn segment_pair(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
-    segment_with(first, second, options, Settings::new(options, size(first), &Model::DEFAULT), progress)
+    segment_observed([first, second], options, &Model::DEFAULT, &mut Stages::new(STAGES, progress))
 }
 
 /// [`segment_pair`] with other constants, for studies and fits.
@@ -58,62 +58,33 @@ pub fn segment_pair_with(
     second: &Frame,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    segment_with(first, second, options, Settings::new(options, size(first), model), &mut |_| {})
+    segment_observed([first, second], options, model, &mut ())
 }
 
-/// [`segment_pair`], with what its stages find noted in `recording`.
-///
-/// # Errors
-/// As [`segment_pair`].
-#[cfg(feature = "stages")]
-pub(crate) fn segment_pair_recorded(
-    first: &Frame,
-    second: &Frame,
-    options: &SegmentOptions,
-    recording: &mut crate::recording::Recording,
-) -> Result<Segmentation> {
-    let settings = Settings::new(options, size(first), &Model::DEFAULT);
-    let mut ignored = |_| {};
-    segment_in([first, second], options, settings, |rounds| {
-        Stages::in_rounds(STAGES, rounds, &mut ignored).recorded(recording)
-    })
-}
-
-fn segment_with(
-    first: &Frame,
-    second: &Frame,
-    options: &SegmentOptions,
-    settings: Settings,
-    progress: Progress<'_>,
-) -> Result<Segmentation> {
-    segment_in([first, second], options, settings, |rounds| Stages::in_rounds(STAGES, rounds, progress))
-}
-
-/// Segments two frames in stages that `stages` makes for a number of rounds.
-#[inline(always)]
-fn segment_in<'a>(
+/// [`segment_pair`], of which an observer is told while it goes on.
+pub(crate) fn segment_observed(
     [first, second]: [&Frame; 2],
     options: &SegmentOptions,
-    settings: Settings,
-    stages: impl FnOnce(usize) -> Stages<'a>,
+    model: &'static Model,
+    observer: &mut dyn Observer,
 ) -> Result<Segmentation> {
     options.motions.validate()?;
     check_sizes(first, second)?;
+    let settings = Settings::new(options, size(first), model);
     let detail = settings.of_detail(options, size(first));
-    let mut stages = stages(1 + usize::from(detail.is_some()));
-    stages.begin_round(0);
+    let rounds = 1 + usize::from(detail.is_some());
+    observer.round_begins(0, rounds);
     let pair = Pair::of_frames([first, second], &settings);
-    let mut solved = background::solve(pair, &[], &settings, &mut stages);
+    let mut solved = background::solve(pair, &[], &settings, observer);
     if let Some(settings) = detail {
-        stages.begin_round(1);
+        observer.round_begins(1, rounds);
         let pair = Pair::of_frames([first, second], &settings);
-        solved = solved.continued(pair, &settings, &mut stages);
+        solved = solved.continued(pair, &settings, observer);
     }
     let Solved { pair, mut labelled } = solved;
     labels::return_shadows(&pair, &mut labelled, &settings);
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recording.working = recorded::labelled(&pair, &labelled));
-    stages.begin("masks");
+    observer.finished(&pair, &labelled.motions, &labelled.labels);
+    observer.stage_begins("masks");
     Ok(report::report(&pair, labelled, &settings, [first, second], options))
 }
 
@@ -130,13 +101,13 @@ pub(crate) fn check_sizes(first: &Frame, second: &Frame) -> Result<()> {
 #[derive(Clone)]
 pub(crate) struct Pair {
     /// Level 0 is the working size.
-    levels: Vec<Level>,
+    pub(crate) levels: Vec<Level>,
     /// Index of the level on which the dominant motion is found and others are proposed.
-    base: usize,
+    pub(crate) base: usize,
     /// Index of the level on which motions are first selected, the base level or a finer one.
-    selection: usize,
+    pub(crate) selection: usize,
     /// Index of the level on which the draft labels are solved.
-    draft: usize,
+    pub(crate) draft: usize,
     /// What the labels follow, at the sizes of the levels down to the base or the draft level.
     appearance: Rc<Appearance>,
     /// Full-size pixels per working pixel.

@@ -39,45 +39,16 @@ pub(crate) struct Stages<'a> {
     rounds: usize,
     /// Rounds that are over.
     over: usize,
-    /// Takes what the stages find, if somebody wants it.
-    #[cfg(feature = "stages")]
-    recording: Option<&'a mut crate::recording::Recording>,
 }
 
 impl<'a> Stages<'a> {
     pub(crate) fn new(names: &'static [&'static str], progress: Progress<'a>) -> Self {
-        Stages::in_rounds(names, 1, progress)
+        Stages { names, progress, rounds: 1, over: 0 }
     }
 
-    /// Stages of which all but the last are gone through in several rounds.
-    pub(crate) fn in_rounds(names: &'static [&'static str], rounds: usize, progress: Progress<'a>) -> Self {
-        Stages {
-            names,
-            progress,
-            rounds,
-            over: 0,
-            #[cfg(feature = "stages")]
-            recording: None,
-        }
-    }
-
-    /// The same, with what the stages find noted in `recording`.
-    #[cfg(feature = "stages")]
-    pub(crate) fn recorded(self, recording: &'a mut crate::recording::Recording) -> Self {
-        Stages { recording: Some(recording), ..self }
-    }
-
-    /// Notes something, if somebody wants it.
-    #[cfg(feature = "stages")]
-    pub(crate) fn record(&mut self, note: impl FnOnce(&mut crate::recording::Recording)) {
-        if let Some(recording) = &mut self.recording {
-            note(recording);
-        }
-    }
-
-    /// Reports that the first stage of another round begins.
-    pub(crate) fn begin_round(&mut self, round: usize) {
-        self.over = round;
+    /// Reports that the first stage of a round begins, of `rounds` in which all stages but the last are gone through.
+    pub(crate) fn begin_round(&mut self, round: usize, rounds: usize) {
+        (self.over, self.rounds) = (round, rounds);
         self.begin(self.names[0]);
     }
 

@@ -39,6 +39,7 @@ mod measured;
 pub mod pair;
 mod pixel;
 pub mod protocol;
+mod recorder;
 mod spectra;
 
 pub use figure_1::{Figure1Trial, TrialError, figure_1_trial};

@@ -6,14 +6,12 @@
 
 use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
-#[cfg(feature = "stages")]
-use super::recorded;
+use super::observer::Observer;
 use super::settings::Settings;
 use super::{Objects, Pair};
 use crate::estimation::selection::ScoredMotion;
 use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
-use crate::progress::Stages;
 use crate::view::level::Level;
 
 /// A pair whose change of brightness is removed, and its labels.
@@ -24,28 +22,32 @@ pub(super) struct Solved {
 
 impl Solved {
     /// The search carried on at the working size of `pair`, from the motions that were found.
-    pub(super) fn continued(self, mut pair: Pair, settings: &Settings, stages: &mut Stages<'_>) -> Solved {
+    pub(super) fn continued(self, mut pair: Pair, settings: &Settings, observer: &mut dyn Observer) -> Solved {
         let scale = self.pair.reduction / pair.reduction;
         let motions: Vec<AffineMotion> = self.labelled.motions.iter().map(|motion| motion.scaled(scale)).collect();
         let runner_up = self.labelled.runner_up.map(|motion| motion.scaled(scale));
-        stages.begin("dominant");
+        observer.stage_begins("dominant");
         pair.take_dominant(&motions[BACKGROUND], settings.brightness());
-        stages.begin("refinement");
+        observer.stage_begins("refinement");
         let found = refine(&pair, known(&pair, &motions, runner_up), settings);
-        stages.begin("labels");
-        let labelled = label(&pair, found, settings);
-        #[cfg(feature = "stages")]
-        stages.record(|recording| recording.detail = Some(recorded::labelled(&pair, &labelled)));
+        observer.stage_begins("labels");
+        let labelled = label(&pair, found, settings, observer);
+        observer.carried_on(&pair, &labelled.motions, &labelled.labels);
         Solved { pair, labelled }
     }
 }
 
 /// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.
-pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings, stages: &mut Stages<'_>) -> Solved {
+pub(super) fn solve(
+    mut pair: Pair,
+    likely: &[AffineMotion],
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> Solved {
     let mut at_rest = pair.clone();
-    stages.begin("dominant");
+    observer.stage_begins("dominant");
     let dominant = pair.find_dominant(None, settings.dominant_search());
-    let moving = under(pair, dominant, likely, settings, stages);
+    let moving = under(pair, dominant, likely, settings, observer);
     let mut known = moving.labelled.motions.clone();
     if known[BACKGROUND] == AffineMotion::STATIC {
         return moving;
@@ -58,12 +60,11 @@ pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings
     }
     at_rest.take_rest(&objects, settings.brightness());
     known.extend(likely);
-    let at_rest = under(at_rest, AffineMotion::STATIC, &known, settings, stages);
+    let at_rest = under(at_rest, AffineMotion::STATIC, &known, settings, observer);
     // Lengths can be compared only if they assume the same noise.
     let noise = moving.pair.finest().noise.min(at_rest.pair.finest().noise);
     let [rest, motion] = [&at_rest, &moving].map(|solved| solved.labelled.length(solved.pair.finest(), noise));
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recording.chosen = usize::from(rest < motion));
+    observer.chosen(usize::from(rest < motion));
     if rest < motion { at_rest } else { moving }
 }
 
@@ -73,17 +74,15 @@ fn under(
     background: AffineMotion,
     likely: &[AffineMotion],
     settings: &Settings,
-    stages: &mut Stages<'_>,
+    observer: &mut dyn Observer,
 ) -> Solved {
-    let found = with_dominant(&pair, background, likely, settings, stages);
-    stages.begin("refinement");
+    let found = with_dominant(&pair, background, likely, settings, observer);
+    observer.stage_begins("refinement");
     let found = refine(&pair, found, settings);
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::refined(recording, &pair, &found));
-    stages.begin("labels");
-    let labelled = label(&pair, found, settings);
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::solved(recording, &pair, &labelled));
+    observer.refined(&pair, &found.selected);
+    observer.stage_begins("labels");
+    let labelled = label(&pair, found, settings, observer);
+    observer.labelled(&pair, &labelled.motions, &labelled.labels);
     Solved { pair, labelled }
 }
 

@@ -1,8 +1,7 @@
 //! The motions of a pair: they are proposed and selected beside the dominant one, then refined level by level.
 
 use super::Pair;
-#[cfg(feature = "stages")]
-use super::recorded;
+use super::observer::Observer;
 use super::settings::Settings;
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::estimation::dominant::DominantSearch;
@@ -14,7 +13,6 @@ use crate::frame::filter::eroded;
 use crate::labelling::regions::description::price_on;
 use crate::labelling::{BACKGROUND, mask_of};
 use crate::motion::AffineMotion;
-use crate::progress::Stages;
 use crate::view::brightness::Photometric;
 use crate::view::level::Level;
 
@@ -116,25 +114,22 @@ pub(super) fn with_dominant(
     dominant: AffineMotion,
     others: &[AffineMotion],
     settings: &Settings,
-    stages: &mut Stages<'_>,
+    observer: &mut dyn Observer,
 ) -> Found {
     let level = &pair.levels[pair.base];
-    stages.begin("measurements");
+    observer.stage_begins("measurements");
     let flow = local_flow(&pair.levels, &dominant, pair.base);
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::seen(recording, pair, dominant, &flow, settings));
-    stages.begin("algebra");
+    observer.dominant_found(pair, dominant, &flow, settings);
+    observer.stage_begins("algebra");
     let mut proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
     proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
     proposals.extend(others);
-    stages.begin("selection");
+    observer.stage_begins("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::proposed(recording, level, &selected, &proposals, settings.deflation(level)));
+    observer.proposed(pair, &selected[0], &proposals, settings.deflation(level));
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
-    #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::selected(recording, pair, &selected));
+    observer.selected(pair, &selected);
     settings.refit(level, &mut selected, settings.model.rounds);
     Found { selected, runner_up }
 }

@@ -6,6 +6,7 @@
 
 use super::Pair;
 use super::hypothesis::Found;
+use super::observer::Observer;
 use super::settings::Settings;
 use crate::components::absorb_small;
 use crate::frame::Plane;
@@ -31,8 +32,6 @@ pub(super) struct Labelled {
     pub(super) labels: Vec<u8>,
     /// The best motion that was rejected, here or during selection, because it did not pay for itself.
     pub(super) runner_up: Option<AffineMotion>,
-    #[cfg(feature = "stages")]
-    pub(super) draft: crate::recording::Labels,
 }
 
 impl Labelled {
@@ -58,19 +57,16 @@ pub(crate) struct LabelState<'a> {
     pub(super) labels: Vec<u8>,
     /// The motion pruned last, or the best one rejected by the selection.
     runner_up: Option<AffineMotion>,
-    #[cfg(feature = "stages")]
-    draft: crate::recording::Labels,
 }
 
-pub(super) fn label(pair: &Pair, found: Found, settings: &Settings) -> Labelled {
+pub(super) fn label(pair: &Pair, found: Found, settings: &Settings, observer: &mut dyn Observer) -> Labelled {
     let mut state = LabelState::new(pair, found, settings);
     state.solve();
     state.prune();
     state.try_static_background();
     state.correct_occlusion();
     state.regroup();
-    #[cfg(feature = "stages")]
-    state.record_draft(pair);
+    observer.drafted(pair, &state.motions, &state.labels);
     if pair.draft == 0 {
         state.add_colour_costs(pair);
         state.solve_final();
@@ -155,30 +151,13 @@ impl<'a> LabelState<'a> {
             labels,
             motions,
             runner_up: None,
-            #[cfg(feature = "stages")]
-            draft: crate::recording::Labels::default(),
         }
-    }
-
-    /// Keeps the labels and motions of the draft level.
-    #[cfg(feature = "stages")]
-    fn record_draft(&mut self, pair: &Pair) {
-        self.draft = super::recorded::labels(pair, self.level, &self.motions, &self.labels);
     }
 
     /// Without small components and motions that have no pixels.
     fn finished(mut self, pair: &Pair) -> Labelled {
         self.clean(pair.finest().width());
-        #[cfg(feature = "stages")]
-        let draft = std::mem::take(&mut self.draft);
-        let LabelState { motions, labels, runner_up, .. } = self;
-        Labelled {
-            motions,
-            labels,
-            runner_up,
-            #[cfg(feature = "stages")]
-            draft,
-        }
+        Labelled { motions: self.motions, labels: self.labels, runner_up: self.runner_up }
     }
 
     fn size(&self) -> (usize, usize) {

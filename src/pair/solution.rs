@@ -9,7 +9,6 @@ use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::Regions;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
-use crate::progress::Stages;
 use crate::view::cost::{CostModel, cheapest, costs, inverse};
 
 /// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
@@ -84,8 +83,6 @@ pub(crate) fn solve(
     expected: Expected<'_>,
 ) -> Solution {
     let model = settings.model;
-    let mut ignored = |_| {};
-    let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, settings);
     let (likely, followed) = match expected {
         Expected::Nothing => (&[][..], None),
@@ -98,7 +95,7 @@ pub(crate) fn solve(
     };
     let (mut labelled, limits) = followed.unwrap_or_else(|| {
         let Solved { pair: solved, labelled } =
-            background::solve(Pair::new(first, pyramid, second, settings), likely, settings, &mut stages);
+            background::solve(Pair::new(first, pyramid, second, settings), likely, settings, &mut ());
         pair = solved;
         let cost = if settings.follows {
             // Of a pair prepared as one that is followed: costs are in units of its noise.

@@ -18,10 +18,11 @@
 use crate::error::Result;
 use crate::frame::{Derivatives, Frame, Plane};
 use crate::measurements::Measurements;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
-use crate::pair::{Segmentation, segment_pair_recorded};
-use crate::recording::{Hypothesis, Labels, Proposed, Recording, Source, Supported};
+use crate::pair::{Segmentation, segment_observed};
+use crate::stages::recorder::Recorder;
 
 /// The result of [`segment_pair_stages`].
 #[non_exhaustive]
@@ -43,7 +44,7 @@ pub struct PairStages {
 
 /// A grid of pixels: its pixel (x, y) lies at `scale` (x, y) of the full frame.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grid {
     /// Width in its own pixels.
     pub width: usize,
@@ -142,7 +143,7 @@ pub struct SelectedMotion {
 
 /// Labels with their motions. The first motion is the background's; numbers are not yet those of the report.
 #[non_exhaustive]
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Labelling {
     /// The pixels of the labels.
     pub grid: Grid,
@@ -152,72 +153,21 @@ pub struct Labelling {
     pub labels: Vec<u8>,
 }
 
-/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, which notes what it has.
+/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
 ///
 /// # Errors
 /// As [`segment_pair`](crate::segment_pair).
 pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptions) -> Result<PairStages> {
-    let mut recording = Recording::default();
-    let result = segment_pair_recorded(first, second, options, &mut recording)?;
+    let mut recorder = Recorder::default();
+    let result = segment_observed([first, second], options, &Model::DEFAULT, &mut recorder)?;
     let groups = 1 + result.motions.iter().map(|motion| motion.group).max().unwrap_or(0);
     let of_group = |group| result.motions.iter().filter(move |motion| motion.group == group).map(|motion| motion.label);
     Ok(PairStages {
-        hypotheses: recording.hypotheses.into_iter().map(background).collect(),
-        chosen: recording.chosen,
-        detail: recording.detail.map(labelling),
-        working: labelling(recording.working),
+        hypotheses: recorder.hypotheses,
+        chosen: recorder.chosen,
+        detail: recorder.detail,
+        working: recorder.working,
         groups: (0..groups).map(|group| of_group(group).collect()).collect(),
         result,
     })
-}
-
-fn background(hypothesis: Hypothesis) -> Background {
-    let Hypothesis { dominant, reduction, seen, measured, proposals, price, .. } = hypothesis;
-    let Hypothesis { selected, selection, refined, refinement, draft, labels, .. } = hypothesis;
-    let scale = seen.pixel * reduction;
-    let supported = |all: Vec<Supported>| -> Vec<SelectedMotion> {
-        let full = |one: Supported| SelectedMotion { matrix: one.motion.scaled(reduction), support: one.support };
-        all.into_iter().map(full).collect()
-    };
-    let candidate = |proposed: Proposed| CandidateMotion {
-        matrix: proposed.motion.scaled(reduction),
-        source: match proposed.source {
-            Source::Constraint(degree) => CandidateSource::Constraint(degree),
-            Source::Window => CandidateSource::Window,
-            Source::Known => CandidateSource::Hypothesis,
-        },
-        gain: proposed.gain,
-        support: proposed.support,
-    };
-    let [x, y, t] = seen.derivatives;
-    let mut local_flow = seen.flow;
-    local_flow.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|flow| *flow *= scale as f32);
-    Background {
-        dominant: dominant.scaled(reduction),
-        base: Grid { width: seen.residual.width(), height: seen.residual.height(), scale },
-        noise: f64::from(seen.noise),
-        residual: seen.residual,
-        derivatives: Derivatives { x, y, t },
-        local_flow,
-        measured: measured.map(|measured| MeasuredPixels {
-            places: measured.places.iter().map(|place| place.map(|side| side as f64 * scale)).collect(),
-            measurements: measured.measurements,
-            weights: measured.weights,
-            unit: measured.unit * scale,
-        }),
-        candidates: proposals.into_iter().map(candidate).collect(),
-        price,
-        selected: supported(selected),
-        selection: labelling(selection),
-        refined: supported(refined),
-        refinement: labelling(refinement),
-        draft: labelling(draft),
-        labelling: labelling(labels),
-    }
-}
-
-fn labelling(labels: Labels) -> Labelling {
-    let Labels { size: [width, height], scale, reduction, motions, labels } = labels;
-    let motions = motions.iter().map(|motion| motion.scaled(reduction)).collect();
-    Labelling { grid: Grid { width, height, scale }, motions, labels }
 }

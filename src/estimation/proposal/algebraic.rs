@@ -21,25 +21,11 @@ use crate::view::level::Level;
 /// Entries of a motion; groups of fewer pixels propose none.
 const ENTRIES: usize = 6;
 
-/// The measurements that the dominant motion does not explain, with their weights.
-struct Unexplained {
-    measurements: Measurements,
-    weights: Vec<f64>,
-    /// Their pixels.
-    #[cfg(feature = "stages")]
-    places: Vec<[usize; 2]>,
-}
-
-/// What [`from_algebra`] fits polynomials to, unless it is too little.
-#[cfg(feature = "stages")]
-pub(crate) fn recorded(
-    level: &Level,
-    dominant: &AffineMotion,
-    flow: &LocalFlow,
-    most: usize,
-) -> Option<crate::recording::Measured> {
-    let Unexplained { measurements, weights, places } = unexplained(level, dominant, flow, most)?;
-    Some(crate::recording::Measured { measurements, weights, places, unit: level.model.algebra_unit })
+/// The measurements that the dominant motion does not explain. Positions are in units of half the width, from the middle of the level.
+pub(crate) struct Unexplained {
+    pub(crate) measurements: Measurements,
+    /// How badly the dominant motion explains each, 0…1.
+    pub(crate) weights: Vec<f64>,
 }
 
 /// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
@@ -63,7 +49,13 @@ pub(crate) fn from_algebra(
     motions
 }
 
-fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Option<Unexplained> {
+/// At most `most` pixels to which [`from_algebra`] fits polynomials; none where they are too few.
+pub(crate) fn unexplained(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    most: usize,
+) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
     let model = level.model;
     let position_variance = model.position_variance();
@@ -118,8 +110,6 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
     Some(Unexplained {
         measurements: measurements.ok()?,
         weights: chosen.clone().map(|k| f64::from(weights[k])).collect(),
-        #[cfg(feature = "stages")]
-        places: points().map(|(x, y)| [x, y]).collect(),
     })
 }
 

@@ -71,28 +71,26 @@ fn blocks(plane: &Plane, side: usize) -> Plane {
     means
 }
 
-/// The gain estimated on block means.
-fn rough_gain(current: &Plane, cost: &Plane, window: f32, model: &Model) -> f64 {
-    let mut difference = current.clone();
-    each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
-    gain_of(&gaussian(&difference, window / BLOCK as f32), model.margin) * (BLOCK * BLOCK) as f64
-}
+/// The costs of proposals on block means, of which their gains are estimated before they are refined.
+pub(crate) struct RoughCosts(Vec<Plane>);
 
-/// What each proposal gains beside `selected` before it is refined, as the first round of [`add_motions`] ranks them.
-#[cfg(feature = "stages")]
-pub(crate) fn rough_gains(
-    level: &Level,
-    selected: &[ScoredMotion],
-    proposals: &[AffineMotion],
-    how: Deflation,
-) -> Vec<f64> {
-    let (thinning, thinned) = (level.thinning(), level.thinned());
-    let current = blocks(&smallest_cost(selected), BLOCK);
-    let gain = |&motion: &AffineMotion| {
-        let cost = blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
-        rough_gain(&current, &cost, how.window, level.model)
-    };
-    proposals.iter().map(gain).collect()
+impl RoughCosts {
+    /// `thinned` has every `thinning`-th pixel of every `thinning`-th row of a level.
+    pub(crate) fn new(thinned: &Level, thinning: usize, proposals: &[AffineMotion]) -> RoughCosts {
+        let block = BLOCK / thinning;
+        RoughCosts(proposals.iter().map(|&motion| blocks(&ScoredMotion::new(thinned, motion).cost, block)).collect())
+    }
+
+    /// How much each proposal lowers the current costs of all pixels.
+    pub(crate) fn gains(&self, current: &Plane, window: f32, model: &Model) -> Vec<f64> {
+        let current = blocks(current, BLOCK);
+        let gain = |cost: &Plane| {
+            let mut difference = current.clone();
+            each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
+            gain_of(&gaussian(&difference, window / BLOCK as f32), model.margin) * (BLOCK * BLOCK) as f64
+        };
+        self.0.iter().map(gain).collect()
+    }
 }
 
 /// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
@@ -109,12 +107,10 @@ pub(crate) fn add_motions(
     let model = level.model;
     let thinning = level.thinning();
     let thinned = level.thinned();
-    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
-    let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
+    let rough = RoughCosts::new(&thinned, thinning, proposals);
     loop {
         let current = smallest_cost(selected);
-        let current_blocks = blocks(&current, BLOCK);
-        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window, model)).collect();
+        let gains = rough.gains(&current, how.window, model);
         let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, ScoredMotion)> = None;
         let order = descending(gains.iter().copied());

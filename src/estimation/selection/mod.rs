@@ -1,12 +1,10 @@
 //! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
 //! levels.
 
-mod deflation;
+pub(crate) mod deflation;
 mod fine;
 mod refit;
 
-#[cfg(feature = "stages")]
-pub(crate) use deflation::rough_gains;
 pub(crate) use deflation::{Deflation, add_motions, prune};
 pub(crate) use fine::fine_proposals;
 pub(crate) use refit::refit;
