@@ -48,8 +48,9 @@ pub use flow::{MultibodyFlow, multibody_flow};
 pub use grey::grey_derivatives;
 pub use map::{VeroneseMap, veronese_map};
 pub use measured::motion_measurements;
-pub use pair::{PairStages, segment_pair_stages};
+pub use pair::PairStages;
 pub use pixel::{PixelStages, motions_at_pixel};
+pub use recorder::segment_pair_stages;
 pub use spectra::{Spectrum, embedded_spectra};
 
 use crate::error::{Error, Result};

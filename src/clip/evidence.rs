@@ -9,7 +9,7 @@ use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::counts;
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::pair::solution::{Prior, Solution};
+use crate::pair::frame_motions::{FrameMotions, Prior};
 use crate::view::cost::inverse;
 
 /// Odds are multiples of this many nats, so that they take little room when they are kept.
@@ -171,9 +171,9 @@ impl KeptPairs {
     }
 }
 
-/// Log-odds of object against background at every working pixel, nats. The largest group of the solution is the background.
-pub(crate) fn odds(solution: &Solution) -> Plane {
-    let Solution { labels, probabilities, groups, .. } = solution;
+/// Log-odds of object against background at every working pixel, nats. The largest group is the background.
+pub(crate) fn odds(found: &FrameMotions) -> Plane {
+    let FrameMotions { labels, probabilities, groups, .. } = found;
     let sizes = counts(labels, groups.len());
     let total = |group: usize| (0..groups.len()).filter(|&k| groups[k] == group).map(|k| sizes[k]).sum::<usize>();
     let largest = groups[descending((0..groups.len()).map(|k| total(groups[k]) as f64))[0]];
@@ -189,8 +189,8 @@ pub(crate) fn odds(solution: &Solution) -> Plane {
     odds
 }
 
-/// The flow of a solution.
-pub(crate) fn flow(solution: Solution) -> Flow {
-    let Solution { labels, motions, probabilities, .. } = solution;
+/// The flow of motions that were found.
+pub(crate) fn flow(found: FrameMotions) -> Flow {
+    let FrameMotions { labels, motions, probabilities, .. } = found;
     Flow { width: probabilities[0].width(), labels, motions, measured: true }
 }

@@ -4,7 +4,7 @@
 use crate::error::{Error, Result};
 use crate::hash::hash;
 use crate::motion::AffineMotion;
-use crate::pair::solution::Prior;
+use crate::pair::frame_motions::Prior;
 
 /// A value that can be written as bytes and read again.
 pub(super) trait Saved: Sized {

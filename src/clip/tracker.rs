@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::options::Quality;
+use crate::pair::frame_motions::{Expected, FrameMotions, Prior, frame_motions};
 use crate::pair::settings::Settings;
-use crate::pair::solution::{Expected, Prior, Solution, solve};
 
 /// Follows objects through a clip.
 #[derive(Debug)]
@@ -286,6 +286,6 @@ fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
 }
 
 /// What the first of two frames shows when it is compared with the second.
-fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> Solution {
-    solve(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
+fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> FrameMotions {
+    frame_motions(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
 }

@@ -4,11 +4,11 @@
 //! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed. In the end,
 //! shadows are given back to the background.
 
-use super::Pair;
-use super::hypothesis::Found;
+use super::frames::Pair;
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::components::absorb_small;
+use crate::estimation::selection::ScoredMotion;
 use crate::frame::Plane;
 use crate::labelling::regions::description::{counts, length, price_of_motion, weight_of_pixel, worth};
 use crate::labelling::regions::merging::best_merger;
@@ -26,84 +26,101 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, costs};
 use crate::view::level::Level;
 
-/// Motions (pixels of the working size) and the label of each pixel.
-pub(super) struct Labelled {
+/// A pair with its motions (pixels of the working size) and the label of each working pixel.
+pub(super) struct LabelledPair {
+    /// Its change of brightness is removed.
+    pub(super) pair: Pair,
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Vec<u8>,
     /// The best motion that was rejected, here or during selection, because it did not pay for itself.
-    pub(super) runner_up: Option<AffineMotion>,
+    pub(super) rejected: Option<AffineMotion>,
 }
 
-impl Labelled {
-    /// Description length of both frames on the level of the working size if their noise is as given, nats.
-    pub(super) fn length(&self, level: &Level, noise: f32) -> f64 {
-        let level = Level { noise, ..level.clone() };
+impl LabelledPair {
+    /// Description length of both frames at the working size if their noise is as given, nats.
+    pub(super) fn length(&self, noise: f32) -> f64 {
+        let level = Level { noise, ..self.pair.finest().clone() };
         length(&self.motions, &estimation_costs(&level, &self.motions), &self.labels, level.width(), level.model)
     }
 }
 
-/// A labelling in progress: the motions, their costs and the current labels.
-pub(crate) struct LabelState<'a> {
+/// The energy of the labels on the draft level: the motions, their costs, the weights of borders, and the labels of least energy so far.
+struct LabelEnergy<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
     /// Label costs, corrected for occlusion.
-    pub(crate) costs: Vec<Plane>,
+    costs: Vec<Plane>,
     /// Label costs before the correction for occlusion.
     uncorrected: LabelCosts,
     /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
-    pub(super) labels: Vec<u8>,
+    labels: Vec<u8>,
     /// The motion pruned last, or the best one rejected by the selection.
-    runner_up: Option<AffineMotion>,
+    rejected: Option<AffineMotion>,
 }
 
-pub(super) fn label(pair: &Pair, found: Found, settings: &Settings, observer: &mut dyn Observer) -> Labelled {
-    let mut state = LabelState::new(pair, found, settings);
-    state.solve();
-    state.prune();
-    state.try_static_background();
-    state.correct_occlusion();
-    state.regroup();
-    observer.drafted(pair, &state.motions, &state.labels);
+/// Labels a pair by the selected motions.
+pub(super) fn label(
+    pair: Pair,
+    selected: &[ScoredMotion],
+    rejected: Option<AffineMotion>,
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> LabelledPair {
+    let mut energy = LabelEnergy { rejected, ..LabelEnergy::new(&pair, selected, settings) };
+    energy.solve();
+    energy.prune();
+    energy.try_static_background();
+    energy.correct_occlusion();
+    energy.regroup();
+    observer.drafted(&pair, &energy.motions, &energy.labels);
     if pair.draft == 0 {
-        state.add_colour_costs(pair);
-        state.solve_final();
+        energy.add_colour_costs(&pair);
+        energy.solve_final();
     } else {
-        state.sharpen(pair);
+        energy.sharpen(&pair);
     }
-    state.finished(pair)
+    let (motions, labels, rejected) = energy.finished(&pair);
+    LabelledPair { pair, motions, labels, rejected }
 }
 
 /// Labels that go on from those expected at the working size: unless regions are merged or split, they are solved once.
-pub(super) fn label_on(pair: &Pair, found: Found, expected: Vec<u8>, settings: &Settings) -> Labelled {
-    let mut state = LabelState::new(pair, found, settings);
-    state.labels = expected;
-    state.prune();
-    state.try_static_background();
-    if state.motions.len() > 1 {
-        state.update_occlusion();
+pub(super) fn label_on(pair: Pair, selected: &[ScoredMotion], expected: Vec<u8>, settings: &Settings) -> LabelledPair {
+    let mut energy = LabelEnergy { labels: expected, ..LabelEnergy::new(&pair, selected, settings) };
+    energy.prune();
+    energy.try_static_background();
+    if energy.motions.len() > 1 {
+        energy.update_occlusion();
     }
-    state.regroup();
-    state.add_colour_costs(pair);
-    state.solve_final();
-    state.prune();
-    state.finished(pair)
+    energy.regroup();
+    energy.add_colour_costs(&pair);
+    energy.solve_final();
+    energy.prune();
+    let (motions, labels, rejected) = energy.finished(&pair);
+    LabelledPair { pair, motions, labels, rejected }
 }
 
 /// Gives shadows of objects back to the background.
-pub(super) fn return_shadows(pair: &Pair, labelled: &mut Labelled, settings: &Settings) {
-    if labelled.motions.len() < 2 || !settings.returns_shadows {
+pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
+    let LabelledPair { pair, motions, labels, .. } = labelled;
+    if motions.len() < 2 || !settings.returns_shadows {
         return;
     }
     let (palette, borders) = (&pair.appearance.palette, borders(pair, 0, settings));
-    let Labelled { motions, labels, .. } = labelled;
     shadows::return_shadows(pair.finest(), palette, &borders, motions, labels, settings.coherence.solver);
     let sizes = absorb_small_components(labels, pair.finest().width(), motions.len(), settings.model);
     for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
         motions.remove(k);
     }
+}
+
+/// Label costs of motions on the draft level: no motion pays for pixels that are occluded in the second frame, as far as `labels` tell.
+pub(crate) fn visible_costs(pair: &Pair, motions: &[AffineMotion], labels: &[u8], settings: &Settings) -> Vec<Plane> {
+    let (level, coherence) = (&pair.levels[pair.draft], settings.coherence);
+    let costs = LabelCosts::new(level, motions, coherence).costs;
+    with_visibility(level, motions, &costs, labels, coherence.object_bias)
 }
 
 /// Smoothness weights on a level.
@@ -122,57 +139,36 @@ pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<P
     raw
 }
 
-impl<'a> LabelState<'a> {
-    fn new(pair: &'a Pair, found: Found, settings: &'a Settings) -> LabelState<'a> {
-        let motions = found.selected.into_iter().map(|scored| scored.motion).collect();
+impl<'a> LabelEnergy<'a> {
+    /// The energy of labels that all are those of the background.
+    fn new(pair: &'a Pair, selected: &[ScoredMotion], settings: &'a Settings) -> LabelEnergy<'a> {
         let level = &pair.levels[pair.draft];
-        let labels = vec![0; level.width() * level.height()];
-        let mut state =
-            LabelState { runner_up: found.runner_up, ..LabelState::resumed(pair, motions, labels, settings) };
-        state.reset_costs();
-        state
-    }
-
-    /// The state of a labelling whose motions and labels, of the draft level, are known. It has no costs until occlusion is corrected.
-    pub(crate) fn resumed(
-        pair: &'a Pair,
-        motions: Vec<AffineMotion>,
-        labels: Vec<u8>,
-        settings: &'a Settings,
-    ) -> LabelState<'a> {
-        let level = &pair.levels[pair.draft];
-        LabelState {
+        let motions: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
+        let uncorrected = LabelCosts::new(level, &motions, settings.coherence);
+        LabelEnergy {
             level,
             settings,
             borders: borders(pair, pair.draft, settings),
-            costs: Vec::new(),
-            uncorrected: LabelCosts::new(level, &motions, settings.coherence),
-            raw: Vec::new(),
-            labels,
+            costs: uncorrected.costs.clone(),
+            uncorrected,
+            raw: estimation_costs(level, &motions),
+            labels: vec![BACKGROUND as u8; level.width() * level.height()],
             motions,
-            runner_up: None,
+            rejected: None,
         }
     }
 
-    /// Without small components and motions that have no pixels.
-    fn finished(mut self, pair: &Pair) -> Labelled {
+    /// Motions, labels and the rejected motion, without small components and motions that have no pixels.
+    fn finished(mut self, pair: &Pair) -> (Vec<AffineMotion>, Vec<u8>, Option<AffineMotion>) {
         self.clean(pair.finest().width());
-        Labelled { motions: self.motions, labels: self.labels, runner_up: self.runner_up }
-    }
-
-    fn size(&self) -> (usize, usize) {
-        (self.level.width(), self.level.height())
+        (self.motions, self.labels, self.rejected)
     }
 
     /// Computes the costs of all motions anew.
     fn recompute_costs(&mut self) {
         self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
-        self.reset_costs();
-    }
-
-    fn reset_costs(&mut self) {
-        self.raw = estimation_costs(self.level, &self.motions);
         self.costs = self.uncorrected.costs.clone();
+        self.raw = estimation_costs(self.level, &self.motions);
     }
 
     fn solve(&mut self) {
@@ -184,14 +180,14 @@ impl<'a> LabelState<'a> {
     }
 
     /// Adds the costs of the colours.
-    pub(super) fn add_colour_costs(&mut self, pair: &Pair) {
+    fn add_colour_costs(&mut self, pair: &Pair) {
         if self.uses_colour() {
             add_colours(&mut self.costs, &pair.appearance.palette, &self.labels, self.level.model);
         }
     }
 
     /// Solves for the final labels.
-    pub(super) fn solve_final(&mut self) {
+    fn solve_final(&mut self) {
         self.labels = self.borders.solve(&self.costs, self.settings.coherence.solver);
     }
 
@@ -225,12 +221,12 @@ impl<'a> LabelState<'a> {
     fn prune(&mut self) {
         let most = self.settings.most;
         while self.motions.len() > self.settings.least {
-            let worths = worth(&self.raw, &self.labels, self.size().0, self.level.model);
+            let worths = worth(&self.raw, &self.labels, self.level.width(), self.level.model);
             let Some((weakest, value)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
             if *value > 0.0 && self.motions.len() <= most {
                 break;
             }
-            self.runner_up = Some(self.motions[weakest]);
+            self.rejected = Some(self.motions[weakest]);
             self.remove(weakest);
             // Only the pixels of the removed motion are undecided.
             self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
@@ -257,7 +253,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
-    pub(crate) fn update_occlusion(&mut self) {
+    fn update_occlusion(&mut self) {
         let object_bias = self.settings.coherence.object_bias;
         self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }

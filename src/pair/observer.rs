@@ -1,6 +1,6 @@
 //! Who is told of what the stages of a pair find, while they find it: a listener to progress, or the figures of the site.
 
-use super::Pair;
+use super::frames::Pair;
 use super::settings::Settings;
 use crate::estimation::proposal::local_flow::LocalFlow;
 use crate::estimation::selection::{Deflation, ScoredMotion};

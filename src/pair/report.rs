@@ -4,6 +4,7 @@
 use serde::Serialize;
 
 mod doubt;
+mod evidence;
 mod junctions;
 mod statistics;
 mod unknown;
@@ -11,15 +12,13 @@ mod unknown;
 pub use junctions::Junction;
 pub(crate) use statistics::describe;
 
-use super::Pair;
-use super::evidence::evidence;
-use super::labels::Labelled;
+use super::groups::Regions;
+use super::labels::LabelledPair;
 use super::settings::Settings;
 use crate::answer::{Candidate, UNLABELLED};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
-use crate::labelling::regions::groups::Regions;
 use crate::labelling::resolution::upsampling::{enlarged, upsample};
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
@@ -93,15 +92,15 @@ pub struct PairEvidence {
 
 /// The result of a pair.
 pub(super) fn report(
-    pair: &Pair,
-    labelled: Labelled,
+    labelled: LabelledPair,
     settings: &Settings,
     [first, second]: [&Frame; 2],
     options: &SegmentOptions,
 ) -> Segmentation {
+    let pair = &labelled.pair;
     let level = pair.finest();
     let (size, model) = ([level.width(), level.height()], level.model);
-    let candidates = evidence(pair, &labelled, settings);
+    let candidates = evidence::evidence(&labelled, settings);
     let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
         costs(level, &labelled.motions, CostModel::labels(model))
@@ -109,7 +108,7 @@ pub(super) fn report(
         Vec::new()
     };
     let mut sure = probabilities(&costs, &labelled.labels, model);
-    let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
+    let unknown = options.mark_unknown.then(|| unknown::unknown(&labelled, &sure));
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
     let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);

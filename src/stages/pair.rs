@@ -15,16 +15,12 @@
 //! * **Labels** minimise an energy in which neighbours agree; the paper gives each pixel the motion of its smallest residual, which is noisy,
 //!   as one pixel has one equation for two components.
 
-use crate::error::Result;
-use crate::frame::{Derivatives, Frame, Plane};
+use crate::frame::{Derivatives, Plane};
 use crate::measurements::Measurements;
-use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::options::SegmentOptions;
-use crate::pair::{Segmentation, segment_observed};
-use crate::stages::recorder::Recorder;
+use crate::pair::Segmentation;
 
-/// The result of [`segment_pair_stages`].
+/// The result of [`segment_pair_stages`](super::segment_pair_stages).
 #[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct PairStages {
@@ -151,23 +147,4 @@ pub struct Labelling {
     pub motions: Vec<AffineMotion>,
     /// The label of every pixel of `grid`, row by row.
     pub labels: Vec<u8>,
-}
-
-/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
-///
-/// # Errors
-/// As [`segment_pair`](crate::segment_pair).
-pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptions) -> Result<PairStages> {
-    let mut recorder = Recorder::default();
-    let result = segment_observed([first, second], options, &Model::DEFAULT, &mut recorder)?;
-    let groups = 1 + result.motions.iter().map(|motion| motion.group).max().unwrap_or(0);
-    let of_group = |group| result.motions.iter().filter(move |motion| motion.group == group).map(|motion| motion.label);
-    Ok(PairStages {
-        hypotheses: recorder.hypotheses,
-        chosen: recorder.chosen,
-        detail: recorder.detail,
-        working: recorder.working,
-        groups: (0..groups).map(|group| of_group(group).collect()).collect(),
-        result,
-    })
 }

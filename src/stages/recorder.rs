@@ -1,29 +1,52 @@
 //! Notes what the stages of a pair find, in pixels of the full frame.
 
+use crate::error::Result;
 use crate::estimation::proposal::algebraic::{from_algebra, unexplained};
 use crate::estimation::proposal::local_flow::{LocalFlow, samples};
 use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::deflation::RoughCosts;
 use crate::estimation::selection::{Deflation, ScoredMotion};
-use crate::frame::{Derivatives, Plane};
+use crate::frame::{Derivatives, Frame, Plane};
 use crate::labelling::regions::description::counts;
 use crate::lanes::each_with;
+use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::pair::Pair;
+use crate::options::SegmentOptions;
+use crate::pair::frames::Pair;
 use crate::pair::observer::Observer;
+use crate::pair::segment_observed;
 use crate::pair::settings::Settings;
 use crate::stages::pair::{
-    Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, SelectedMotion,
+    Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, PairStages, SelectedMotion,
 };
 use crate::view::level::Level;
 
+/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
+///
+/// # Errors
+/// As [`segment_pair`](crate::segment_pair).
+pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptions) -> Result<PairStages> {
+    let mut recorder = Recorder::default();
+    let result = segment_observed([first, second], options, &Model::DEFAULT, &mut recorder)?;
+    let groups = 1 + result.motions.iter().map(|motion| motion.group).max().unwrap_or(0);
+    let of_group = |group| result.motions.iter().filter(move |motion| motion.group == group).map(|motion| motion.label);
+    Ok(PairStages {
+        hypotheses: recorder.hypotheses,
+        chosen: recorder.chosen,
+        detail: recorder.detail,
+        working: recorder.working,
+        groups: (0..groups).map(|group| of_group(group).collect()).collect(),
+        result,
+    })
+}
+
 /// All that was found of a pair.
 #[derive(Default)]
-pub(super) struct Recorder {
-    pub(super) hypotheses: Vec<Background>,
-    pub(super) chosen: usize,
-    pub(super) detail: Option<Labelling>,
-    pub(super) working: Labelling,
+struct Recorder {
+    hypotheses: Vec<Background>,
+    chosen: usize,
+    detail: Option<Labelling>,
+    working: Labelling,
     /// The newest labels of the draft level.
     draft: Labelling,
 }

@@ -15,10 +15,11 @@ use crate::labelling::solver::MAX_LABELS;
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
-use crate::pair::labels::LabelState;
+use crate::pair::dominant::Dominant;
+use crate::pair::frames::{Pair, check_sizes};
+use crate::pair::labels::visible_costs;
 use crate::pair::report::{SegmentedMotion, describe};
 use crate::pair::settings::Settings;
-use crate::pair::{Pair, check_sizes};
 use crate::progress::{Progress, Stages};
 
 const STAGES: &[&str] = &["frames", "labels", "masks"];
@@ -179,11 +180,10 @@ struct Working<'a> {
 
 impl<'a> Working<'a> {
     fn new(first: &'a Frame, second: &Frame, correction: &'a Correction<'a>, settings: &Settings) -> Working<'a> {
-        let (pyramid, other) = (settings.pyramid(first), settings.pyramid(second));
-        let mut pair = Pair::new(first, &pyramid, &other, settings);
+        let mut pair = Pair::of_frames([first, second], settings);
         let reduction = pair.reduction;
         let motions: Vec<AffineMotion> = correction.motions.iter().map(|m| m.scaled(1.0 / reduction)).collect();
-        pair.take_dominant(&motions[0], settings.brightness());
+        pair.settle_dominant(Dominant::Known(&motions[0]), settings);
         let (width, step) = (first.width(), reduction as usize);
         let (w, h) = (pair.finest().width(), pair.finest().height());
         let middle = |p: usize| {
@@ -192,16 +192,15 @@ impl<'a> Working<'a> {
         };
         // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
         let label = |p: usize| Some(correction.labels[middle(p)]).filter(|&l| l != UNLABELLED).unwrap_or_default();
-        let labels = (0..w * h).map(label).collect();
-        let mut state = LabelState::resumed(&pair, motions, labels, settings);
-        state.update_occlusion();
+        let labels: Vec<u8> = (0..w * h).map(label).collect();
+        let costs = visible_costs(&pair, &motions, &labels, settings);
         let still = Still::new(first);
         let [columns, rows] = still.size();
         // In pixels of the costs for each of those of the corrections.
         let scale = |k: usize| (k * still.step() + still.step() / 2) / step;
         let at_size =
             |cost: &Plane| Plane::from_fn(columns, rows, |x, y| cost.at(scale(x).min(w - 1), scale(y).min(h - 1)));
-        Working { frame: first, correction, costs: state.costs.iter().map(at_size).collect(), still }
+        Working { frame: first, correction, costs: costs.iter().map(at_size).collect(), still }
     }
 
     /// The pixel that a full-size one belongs to.

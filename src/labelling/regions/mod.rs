@@ -1,6 +1,5 @@
 //! Regions of one label: what they cost to describe, and where splitting or joining them pays.
 
 pub(crate) mod description;
-pub(crate) mod groups;
 pub(crate) mod merging;
 pub(crate) mod splitting;

@@ -14,8 +14,8 @@
 
 use crate::frame::Plane;
 use crate::labelling::regions::description::counts;
-use crate::labelling::regions::groups::shares_on_frame;
 use crate::model::Model;
+use crate::pair::groups::shares_on_frame;
 
 /// Smallest and largest P that are told apart. A safeguard.
 const LIMITS: [f32; 2] = [0.002, 0.998];

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-use crate::labelling::regions::groups::Regions;
+use crate::pair::groups::Regions;
 
 /// The common border of two motions of a [`Segmentation`](super::Segmentation), and whether they may be one thing.
 #[non_exhaustive]

@@ -4,14 +4,13 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::{Footprint, RowPath};
 use crate::labelling::terms::visibility::hidden;
-use crate::pair::Pair;
-use crate::pair::labels::Labelled;
+use crate::pair::labels::LabelledPair;
 use crate::view::cost::{CostModel, cost};
 
 /// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
 /// whose label is more likely wrong than right.
-pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Vec<bool> {
-    let level = pair.finest();
+pub(super) fn unknown(labelled: &LabelledPair, probabilities: &[Plane]) -> Vec<bool> {
+    let level = labelled.pair.finest();
     let model = level.model;
     let texture = gaussian(&level.energy, model.window_wide());
     let no_texture = model.no_texture * level.noise * level.noise;

@@ -1,19 +1,22 @@
-//! A pair solved at the working size, for those who go on from there: no numbering, no full-size labels, no evidence for the number.
+//! The motions of the first frame of a pair at the working size, for clips, which go on from there: no numbering, no full-size labels, no
+//! evidence for the number.
 
-use super::background::{self, Solved};
+use super::dominant::Dominant;
+use super::frames::Pair;
+use super::groups::Regions;
+use super::labels::{LabelledPair, label_on, return_shadows};
 use super::settings::Settings;
-use super::{Pair, hypothesis, labels};
+use super::{hypotheses, motions};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
-use crate::labelling::regions::groups::Regions;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cheapest, costs, inverse};
 
-/// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
+/// The motions of a frame to another one, and where they are. The background has label [`BACKGROUND`].
 #[derive(Clone, Debug)]
-pub(crate) struct Solution {
+pub(crate) struct FrameMotions {
     /// Pixels of the working size.
     pub(crate) motions: Vec<AffineMotion>,
     /// The label of every working pixel.
@@ -28,10 +31,20 @@ pub(crate) struct Solution {
     unexplained: f32,
 }
 
-impl Solution {
+impl FrameMotions {
     /// Whether the frames have so little in common that there must be a cut between them.
     pub(crate) fn is_cut(&self) -> bool {
         self.unexplained > 0.5
+    }
+
+    /// What a fast stream expects of the next pair.
+    pub(crate) fn prior(&self) -> Option<Prior> {
+        self.prior.clone()
+    }
+
+    /// The motions of its objects, the other way round.
+    pub(crate) fn reversed(&self) -> Vec<AffineMotion> {
+        self.motions[BACKGROUND + 1..].iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect()
     }
 }
 
@@ -53,18 +66,6 @@ impl Prior {
     }
 }
 
-impl Solution {
-    /// What a fast stream expects of the next pair.
-    pub(crate) fn prior(&self) -> Option<Prior> {
-        self.prior.clone()
-    }
-
-    /// The motions of its objects, the other way round.
-    pub(crate) fn reversed(&self) -> Vec<AffineMotion> {
-        self.motions[BACKGROUND + 1..].iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect()
-    }
-}
-
 /// What is known before a pair is solved.
 pub(crate) enum Expected<'a> {
     Nothing,
@@ -75,80 +76,74 @@ pub(crate) enum Expected<'a> {
 }
 
 /// Solves the pair of a frame and another one, whose pyramid is `second`.
-pub(crate) fn solve(
+pub(crate) fn frame_motions(
     first: &Frame,
     pyramid: &FramePyramid,
     second: &FramePyramid,
     settings: &Settings,
     expected: Expected<'_>,
-) -> Solution {
+) -> FrameMotions {
     let model = settings.model;
-    let mut pair = Pair::new(first, pyramid, second, settings);
+    let pair = || Pair::new(first, pyramid, second, settings);
     let (likely, followed) = match expected {
         Expected::Nothing => (&[][..], None),
         Expected::Motions(motions) => (motions, None),
-        // Frames so narrow that they are not halved to the size of drafts are not followed.
-        Expected::Labels(prior, labels) => (
-            &prior.motions[BACKGROUND + 1..],
-            (pair.draft == 0 && pair.selection == 0).then(|| follow(&mut pair, prior, labels, settings)).flatten(),
-        ),
+        Expected::Labels(prior, labels) => (&prior.motions[BACKGROUND + 1..], follow(pair(), prior, labels, settings)),
     };
     let (mut labelled, limits) = followed.unwrap_or_else(|| {
-        let Solved { pair: solved, labelled } =
-            background::solve(Pair::new(first, pyramid, second, settings), likely, settings, &mut ());
-        pair = solved;
+        let labelled = hypotheses::solve(pair(), likely, settings, &mut ());
         let cost = if settings.follows {
             // Of a pair prepared as one that is followed: costs are in units of its noise.
-            let mut followed = Pair::new(first, pyramid, second, settings);
-            followed.find_dominant(Some(&labelled.motions[BACKGROUND]), settings.dominant_search());
-            hypothesis::cost(&followed, &labelled.motions)
+            let mut followed = pair();
+            followed.settle_dominant(Dominant::Sought(Some(&labelled.motions[BACKGROUND])), settings);
+            motions::cost(&motions::scored(&followed, &labelled.motions))
         } else {
             0.0
         };
         (labelled, [(1.0 + model.follow_tolerance) * cost, cost])
     });
     let with_shadows = labelled.labels.clone();
-    labels::return_shadows(&pair, &mut labelled, settings);
+    return_shadows(&mut labelled, settings);
+    let LabelledPair { pair, motions, labels, .. } = labelled;
     let level = pair.finest();
-    let mut costs = costs(level, &labelled.motions, CostModel::labels(model));
+    let mut costs = costs(level, &motions, CostModel::labels(model));
     let most = model.largest_cost();
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     // Where a shadow was given back to the background, a change of light explains it as well as any motion does.
     for (p, cost) in costs[BACKGROUND].values_mut().iter_mut().enumerate() {
-        if is_background(labelled.labels[p]) && !is_background(with_shadows[p]) {
+        if is_background(labels[p]) && !is_background(with_shadows[p]) {
             *cost = smallest.values()[p];
         }
     }
-    let probabilities = probabilities(&costs, &labelled.labels, model);
-    let groups = Regions::new(&labelled.motions, &labelled.labels, level.width(), model).groups();
+    let probabilities = probabilities(&costs, &labels, model);
+    let groups = Regions::new(&motions, &labels, level.width(), model).groups();
     let [enough, searched] = limits;
-    let prior = settings.follows.then(|| Prior { motions: labelled.motions.clone(), enough, searched });
-    Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, prior, unexplained }
+    let prior = settings.follows.then(|| Prior { motions: motions.clone(), enough, searched });
+    FrameMotions { motions, labels, probabilities, groups, prior, unexplained }
 }
 
 /// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;
-/// none if they do not explain the pair.
-fn follow(
-    pair: &mut Pair,
-    prior: &Prior,
-    mut labels: Vec<u8>,
-    settings: &Settings,
-) -> Option<(labels::Labelled, [f64; 2])> {
+/// none if they do not explain the pair, or frames are so narrow that they are not halved to the size of drafts.
+fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Settings) -> Option<(LabelledPair, [f64; 2])> {
+    if pair.draft > 0 || pair.selection > 0 {
+        return None;
+    }
     let model = settings.model;
-    let dominant = pair.find_dominant(Some(&prior.motions[BACKGROUND]), settings.dominant_search());
+    let dominant = pair.settle_dominant(Dominant::Sought(Some(&prior.motions[BACKGROUND])), settings);
     let objects = &prior.motions[BACKGROUND + 1..];
-    let (found, cost) = hypothesis::followed(pair, dominant, objects, &mut labels, settings);
+    let selected = motions::follow(&pair, dominant, objects, &mut labels, settings);
+    let cost = motions::cost(&selected);
     // Costs rise when a motion is missing, but also when more is occluded.
     let enough = if cost < prior.enough {
         // Else costs that rise little by little would never lead to a look for others.
         prior.enough.min((1.0 + model.follow_tolerance) * cost)
     } else if cost < (1.0 + model.follow_tolerance_searched) * prior.searched
-        && !hypothesis::is_missing(pair, &found, settings)
+        && !motions::is_missing(&pair, &selected, settings)
     {
         (1.0 + model.follow_tolerance) * cost
     } else {
         return None;
     };
-    Some((labels::label_on(pair, found, labels, settings), [enough, prior.searched]))
+    Some((label_on(pair, &selected, labels, settings), [enough, prior.searched]))
 }

@@ -17,7 +17,7 @@
 //! region is measured again along its whole border. A chain of small jumps therefore does not join two regions that differ along their own
 //! border; otherwise a slowly moving limb would tie a whole animal to the ground.
 
-use super::description::border_lengths;
+use crate::labelling::regions::description::border_lengths;
 use crate::labelling::{BACKGROUND, across_borders};
 use crate::model::Model;
 use crate::motion::AffineMotion;

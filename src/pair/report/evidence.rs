@@ -1,8 +1,5 @@
 //! Evidence for the number of motions: description lengths with fewer and with more motions than were found.
 
-use super::Pair;
-use super::labels::{Labelled, borders, estimation_costs};
-use super::settings::Settings;
 use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::regions::description::{length, price_of_motion, worth};
@@ -10,15 +7,18 @@ use crate::labelling::solver::Solver;
 use crate::labelling::terms::data::label_costs;
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
+use crate::pair::labels::{LabelledPair, borders, estimation_costs};
+use crate::pair::settings::Settings;
 
 /// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
 /// solved for each number at the base level, without costs of occlusion and colour.
-pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
+pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Candidate> {
+    let pair = &labelled.pair;
     let level = &pair.levels[pair.base];
     let width = level.width();
     let n = labelled.motions.len();
     let mut motions: Vec<AffineMotion> =
-        labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
+        labelled.motions.iter().chain(&labelled.rejected).copied().take(MAX_MOTIONS).collect();
     let mut raw = estimation_costs(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
     let borders = borders(pair, pair.base, settings);

@@ -1,0 +1,95 @@
+//! The dominant motion of a pair, along which the noise is measured, and the change of brightness, which is removed.
+
+use super::frames::Pair;
+use super::settings::Settings;
+use crate::estimation::alignment::{Alignment, Support, align};
+use crate::estimation::dominant::{DominantSearch, dominant_motion};
+use crate::motion::AffineMotion;
+use crate::view::brightness::Photometric;
+use crate::view::cost::noise;
+use crate::view::level::Level;
+
+/// Where the dominant motion comes from.
+pub(crate) enum Dominant<'a> {
+    /// It is looked for, near one that is expected if there is one.
+    Sought(Option<&'a AffineMotion>),
+    /// It is known.
+    Known(&'a AffineMotion),
+    /// The background is at rest behind these objects.
+    Rest(&'a Objects<'a>),
+}
+
+/// Objects before a background that may be at rest: their motions, and labels of the working size, whose rows are `width` long.
+pub(crate) struct Objects<'a> {
+    pub(super) motions: &'a [AffineMotion],
+    pub(super) labels: &'a [u8],
+    pub(super) width: usize,
+}
+
+impl Objects<'_> {
+    /// The change of brightness. Along a single motion that of plain ground would be that of the objects.
+    fn brightness_at_rest(&self, level: &Level) -> Photometric {
+        let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
+        let step = level.stride << level.index;
+        Photometric::along_labels(level, &motions, &|x, y| usize::from(self.labels[y * step * self.width + x * step]))
+    }
+}
+
+impl Pair {
+    /// Settles the dominant motion, removes the change of brightness along it, if that is estimated, and measures the noise.
+    pub(crate) fn settle_dominant(&mut self, dominant: Dominant<'_>, settings: &Settings) -> AffineMotion {
+        let motion = match dominant {
+            Dominant::Sought(expected) => self.find_dominant(expected, settings),
+            Dominant::Known(motion) => {
+                if settings.brightness() {
+                    self.remove(Photometric::along(&self.levels[self.base], motion));
+                }
+                *motion
+            }
+            Dominant::Rest(objects) => {
+                for _ in 0..rest_rounds(settings) {
+                    self.remove(objects.brightness_at_rest(&self.levels[self.base]));
+                    let level = &mut self.levels[self.base];
+                    level.noise = noise(level, &AffineMotion::STATIC);
+                }
+                AffineMotion::STATIC
+            }
+        };
+        self.levels.iter_mut().for_each(|level| level.noise = noise(level, &motion));
+        motion
+    }
+
+    fn find_dominant(&mut self, expected: Option<&AffineMotion>, settings: &Settings) -> AffineMotion {
+        let search = DominantSearch { brightness: settings.brightness(), convergence: settings.dominant };
+        let (motion, photometric) = dominant_motion(&self.levels, self.base, expected, search);
+        self.remove(photometric);
+        if motion == AffineMotion::STATIC {
+            return motion;
+        }
+        let base = &mut self.levels[self.base];
+        let model = base.model;
+        base.noise = noise(base, &motion);
+        let how = Alignment::of_region(model.iterations, model.ridge_background, model).until(settings.dominant);
+        align(base, &motion, &Support::everything(base), &mut Photometric::default(), how)
+    }
+
+    /// A sample of the base level much as [`Dominant::Rest`] would leave it, for a fraction of the time.
+    pub(super) fn sample_of_rest(&self, objects: &Objects<'_>, settings: &Settings) -> Level {
+        let mut level = self.levels[self.base].clone();
+        for _ in 0..rest_rounds(settings) {
+            objects.brightness_at_rest(&level.thinned()).remove_from(&mut level);
+            level.noise = noise(&level, &AffineMotion::STATIC);
+        }
+        level.noise = noise(&level, &AffineMotion::STATIC);
+        level.thinned()
+    }
+
+    fn remove(&mut self, photometric: Photometric) {
+        self.levels.iter_mut().for_each(|level| photometric.remove_from(level));
+    }
+}
+
+/// How often the change of brightness and the noise of a background at rest take turns.
+fn rest_rounds(settings: &Settings) -> usize {
+    if settings.brightness() { settings.model.rounds } else { 0 }
+}

@@ -1,0 +1,54 @@
+//! Two frames at several sizes: what motions and labels are compared on.
+
+use std::rc::Rc;
+
+use super::settings::Settings;
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::view::level::{Level, levels};
+
+/// The levels of a pair, from the working size down. A pair of the same frames the other way round is one with the frames swapped.
+#[derive(Clone)]
+pub(crate) struct Pair {
+    /// Level 0 is the working size.
+    pub(crate) levels: Vec<Level>,
+    /// Index of the level on which the dominant motion is found and others are proposed.
+    pub(crate) base: usize,
+    /// Index of the level on which motions are first selected, the base level or a finer one.
+    pub(crate) selection: usize,
+    /// Index of the level on which the draft labels are solved.
+    pub(crate) draft: usize,
+    /// What the labels follow, at the sizes of the levels down to the base or the draft level.
+    pub(super) appearance: Rc<Appearance>,
+    /// Full-size pixels per working pixel.
+    pub(crate) reduction: f64,
+}
+
+impl Pair {
+    /// The pair of two frames.
+    pub(crate) fn of_frames([first, second]: [&Frame; 2], settings: &Settings) -> Pair {
+        let [pyramid, second] = [first, second].map(|frame| settings.pyramid(frame));
+        // The pyramids end here: the pair has the planes to itself and need not copy what it changes.
+        Pair::new(first, &pyramid, &second, settings)
+    }
+
+    /// `pyramid` is that of `first`.
+    pub(super) fn new(first: &Frame, pyramid: &FramePyramid, second: &FramePyramid, settings: &Settings) -> Pair {
+        let levels = levels(&pyramid.levels, &second.levels, settings.model);
+        let within =
+            |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
+        let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
+        let appearance = Rc::clone(pyramid.appearance(first));
+        Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
+    }
+
+    pub(crate) fn finest(&self) -> &Level {
+        &self.levels[0]
+    }
+}
+
+pub(crate) fn check_sizes(first: &Frame, second: &Frame) -> Result<()> {
+    let [first, second] = [first, second].map(|frame| (frame.width(), frame.height()));
+    if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
+}

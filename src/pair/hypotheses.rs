@@ -1,0 +1,93 @@
+//! The hypotheses about the background: it does what the dominant motion says, or nothing.
+//!
+//! The dominant motion explains more pixels than any other *single* motion. Plain ground fits every motion, so that it may be one that
+//! spans several objects although the camera is at rest. Where most pixels speak for rest, both hypotheses are therefore solved to the end, each
+//! with objects and a change of brightness of its own, and the one that describes the frames in fewer nats is taken.
+
+use super::dominant::{Dominant, Objects};
+use super::frames::Pair;
+use super::labels::{LabelledPair, label};
+use super::motions::{refine, scored, select};
+use super::observer::Observer;
+use super::settings::Settings;
+use crate::estimation::selection::ScoredMotion;
+use crate::labelling::BACKGROUND;
+use crate::motion::AffineMotion;
+use crate::view::level::Level;
+
+/// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.
+pub(super) fn solve(
+    mut pair: Pair,
+    likely: &[AffineMotion],
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> LabelledPair {
+    let mut at_rest = pair.clone();
+    observer.stage_begins("dominant");
+    let dominant = pair.settle_dominant(Dominant::Sought(None), settings);
+    let moving = under(pair, dominant, likely, settings, observer);
+    let mut known = moving.motions.clone();
+    if known[BACKGROUND] == AffineMotion::STATIC {
+        return moving;
+    }
+    let width = moving.pair.finest().width();
+    let objects = Objects { motions: &known[BACKGROUND + 1..], labels: &moving.labels, width };
+    if !rest_is_likely(&at_rest.sample_of_rest(&objects, settings), &known[BACKGROUND]) {
+        return moving;
+    }
+    let rest = at_rest.settle_dominant(Dominant::Rest(&objects), settings);
+    known.extend(likely);
+    let at_rest = under(at_rest, rest, &known, settings, observer);
+    // Lengths can be compared only if they assume the same noise.
+    let noise = moving.pair.finest().noise.min(at_rest.pair.finest().noise);
+    let [rest, motion] = [&at_rest, &moving].map(|labelled| labelled.length(noise));
+    observer.chosen(usize::from(rest < motion));
+    if rest < motion { at_rest } else { moving }
+}
+
+/// Solves a pair whose background is known.
+fn under(
+    pair: Pair,
+    background: AffineMotion,
+    likely: &[AffineMotion],
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> LabelledPair {
+    let (mut selected, rejected) = select(&pair, background, likely, settings, observer);
+    observer.stage_begins("refinement");
+    let rejected = refine(&pair, &mut selected, settings).or(rejected);
+    observer.refined(&pair, &selected);
+    observer.stage_begins("labels");
+    let labelled = label(pair, &selected, rejected, settings, observer);
+    observer.labelled(&labelled.pair, &labelled.motions, &labelled.labels);
+    labelled
+}
+
+/// Carries a search on at the working size of `pair`, from the motions that were found.
+pub(super) fn carry_on(
+    found: LabelledPair,
+    mut pair: Pair,
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> LabelledPair {
+    let scale = found.pair.reduction / pair.reduction;
+    let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.scaled(scale)).collect();
+    let rejected = found.rejected.map(|motion| motion.scaled(scale));
+    observer.stage_begins("dominant");
+    pair.settle_dominant(Dominant::Known(&motions[BACKGROUND]), settings);
+    observer.stage_begins("refinement");
+    let mut selected = scored(&pair, &motions);
+    let rejected = refine(&pair, &mut selected, settings).or(rejected);
+    observer.stage_begins("labels");
+    let labelled = label(pair, &selected, rejected, settings, observer);
+    observer.carried_on(&labelled.pair, &labelled.motions, &labelled.labels);
+    labelled
+}
+
+/// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans
+/// may be explained so much worse at rest that it outweighs the ground around it.
+fn rest_is_likely(level: &Level, motion: &AffineMotion) -> bool {
+    let [rest, moving] = [AffineMotion::STATIC, *motion].map(|motion| ScoredMotion::new(level, motion).cost);
+    let pixels = || rest.values().iter().zip(moving.values());
+    pixels().filter(|(rest, moving)| rest < moving).count() >= pixels().filter(|(rest, moving)| rest > moving).count()
+}

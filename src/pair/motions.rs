@@ -1,0 +1,139 @@
+//! The motions of a hypothesis: they are proposed and selected beside the dominant one, which is the first, then refined level by level.
+
+use super::frames::Pair;
+use super::observer::Observer;
+use super::settings::Settings;
+use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
+use crate::estimation::proposal::algebraic::from_algebra;
+use crate::estimation::proposal::local_flow::local_flow;
+use crate::estimation::proposal::tiles::from_tiles;
+use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
+use crate::frame::filter::eroded;
+use crate::labelling::regions::description::price_on;
+use crate::labelling::{BACKGROUND, mask_of};
+use crate::motion::AffineMotion;
+use crate::view::brightness::Photometric;
+use crate::view::level::Level;
+
+impl Settings {
+    /// What pays for a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
+    fn price(&self, level: &Level) -> f64 {
+        if self.least > 1 { 1.0 } else { price_on(level) }
+    }
+
+    /// How motions are added on a level.
+    fn deflation(&self, level: &Level) -> Deflation {
+        Deflation {
+            price: self.price(level),
+            most: self.most,
+            tries: self.tries,
+            window: self.model.window,
+            convergence: self.refinement,
+        }
+    }
+
+    /// Refines motions on a level, each on its own pixels.
+    fn refit(&self, level: &Level, selected: &mut [ScoredMotion]) {
+        refit(level, selected, self.model.rounds, self.refinement);
+    }
+
+    /// Takes motions away that do not pay for themselves, unless their number is given.
+    fn prune(&self, level: &Level, selected: &mut Vec<ScoredMotion>) {
+        if self.least == 1 {
+            prune(selected, self.price(level));
+        }
+    }
+}
+
+/// The motions selected beside the dominant one, and the best proposal that was rejected.
+pub(super) fn select(
+    pair: &Pair,
+    dominant: AffineMotion,
+    others: &[AffineMotion],
+    settings: &Settings,
+    observer: &mut dyn Observer,
+) -> (Vec<ScoredMotion>, Option<AffineMotion>) {
+    let level = &pair.levels[pair.base];
+    observer.stage_begins("measurements");
+    let flow = local_flow(&pair.levels, &dominant, pair.base);
+    observer.dominant_found(pair, dominant, &flow, settings);
+    observer.stage_begins("algebra");
+    let mut proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
+    proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
+    proposals.extend(others);
+    observer.stage_begins("selection");
+    let level = &pair.levels[pair.selection];
+    let mut selected = vec![ScoredMotion::new(level, dominant)];
+    observer.proposed(pair, &selected[0], &proposals, settings.deflation(level));
+    let rejected = add_motions(level, &mut selected, &proposals, settings.deflation(level));
+    observer.selected(pair, &selected);
+    settings.refit(level, &mut selected);
+    (selected, rejected)
+}
+
+/// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels. Returns the best
+/// proposal of these that was rejected.
+pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
+    let level = &pair.levels[pair.selection];
+    settings.refit(level, selected);
+    settings.prune(level, selected);
+    let mut rejected = None;
+    for level in pair.levels[..pair.selection].iter().rev() {
+        let level = &level.thinned();
+        *selected = selected.iter().map(|one| ScoredMotion::new(level, one.motion)).collect();
+        let how = Deflation { tries: settings.model.tries_fast, ..settings.deflation(level) };
+        let proposals = fine_proposals(level, selected, settings.tiles);
+        rejected = add_motions(level, selected, &proposals, how).or(rejected);
+        settings.refit(level, selected);
+    }
+    rejected
+}
+
+/// Motions with their costs on the selection level.
+pub(super) fn scored(pair: &Pair, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
+    motions.iter().map(|&motion| ScoredMotion::new(&pair.levels[pair.selection], motion)).collect()
+}
+
+/// The cost of the pixels, each under the motion that fits it best.
+pub(super) fn cost(scored: &[ScoredMotion]) -> f64 {
+    smallest_cost(scored).total()
+}
+
+/// The motions with which labels go on, each refined on the pixels that it is expected to have; those that have become needless are left
+/// out, together with their pixels.
+pub(super) fn follow(
+    pair: &Pair,
+    dominant: AffineMotion,
+    objects: &[AffineMotion],
+    labels: &mut [u8],
+    settings: &Settings,
+) -> Vec<ScoredMotion> {
+    let level = &pair.levels[pair.selection];
+    let (width, height, model) = (level.width(), level.height(), level.model);
+    let mut selected = vec![ScoredMotion::new(level, dominant)];
+    for (label, motion) in (BACKGROUND + 1..).zip(objects) {
+        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)));
+        let how = Alignment::of_region(model.iterations, ridge_of_label(label, model), model);
+        let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
+        selected.push(ScoredMotion::new(level, motion));
+    }
+    settings.refit(level, &mut selected);
+    let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
+    settings.prune(level, &mut selected);
+    let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
+    let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
+    labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
+    selected
+}
+
+/// Whether a motion from a single window would pay for itself beside the others.
+pub(super) fn is_missing(pair: &Pair, selected: &[ScoredMotion], settings: &Settings) -> bool {
+    let (base, level) = (&pair.levels[pair.base], &pair.levels[pair.selection]);
+    let dominant = &selected[BACKGROUND].motion;
+    let flow = local_flow(&pair.levels, dominant, pair.base);
+    let proposals = from_tiles(base, dominant, &flow, settings.tiles);
+    let (known, how) = (selected.len(), settings.deflation(level));
+    let mut selected = selected.to_vec();
+    add_motions(level, &mut selected, &proposals, Deflation { most: how.most.min(known + 1), ..how });
+    selected.len() > known
+}
