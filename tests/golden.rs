@@ -4,6 +4,7 @@
 
 use std::fs;
 
+use crate::support::hash::fnv;
 use serde_json::{Value, json};
 use veronese::clip::{Annotations, ClipFrame, ClipOptions, ClipSegmenter, Painted, Spread, StreamSegmenter};
 use veronese::codecs::decode_image;
@@ -12,22 +13,13 @@ use veronese::{
     fit_motions, relabel, segment_pair,
 };
 
-/// FNV-1a, 64 bits.
-struct Hash(u64);
-
-impl Hash {
-    fn bytes(&mut self, bytes: impl IntoIterator<Item = u8>) {
-        bytes.into_iter().for_each(|byte| self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-    }
-
-    /// All numbers, entries in the order of their names.
-    fn numbers(&mut self, answer: &Value) {
-        match answer {
-            Value::Number(number) => self.bytes(number.as_f64().unwrap().to_le_bytes()),
-            Value::Array(values) => values.iter().for_each(|value| self.numbers(value)),
-            Value::Object(entries) => entries.values().for_each(|value| self.numbers(value)),
-            Value::Null | Value::Bool(_) | Value::String(_) => {}
-        }
+/// The bytes of all numbers of an answer, entries in the order of their names.
+fn numbers(answer: &Value) -> Vec<u8> {
+    match answer {
+        Value::Number(number) => number.as_f64().unwrap().to_le_bytes().to_vec(),
+        Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        Value::Object(entries) => entries.values().flat_map(numbers).collect(),
+        Value::Null | Value::Bool(_) | Value::String(_) => Vec::new(),
     }
 }
 
@@ -138,17 +130,14 @@ fn answers_have_the_bits_of_the_golden_hashes() {
     let mut wrong = String::new();
     for asked in golden["answers"].as_array().unwrap() {
         let (of, options) = (&asked["of"], &asked["options"]);
-        let (bytes, numbers) = match asked["call"].as_str().unwrap() {
+        let (bytes, others) = match asked["call"].as_str().unwrap() {
             "segmentPair" => pair(&frames(&golden, of), &pair_options(options)),
             "relabel" => relabelled(&frames(&golden, of), &pair_options(options), &asked["stroke"]),
             "segmentClip" => clip(&frames(&golden, of), asked),
             "fitMotions" => fit(&measurements(&golden["measurements"][of.as_str().unwrap()]), options),
             call => panic!("there is no call {call}"),
         };
-        let mut hash = Hash(0xcbf2_9ce4_8422_2325);
-        hash.bytes(bytes);
-        hash.numbers(&numbers);
-        let found = format!("{:016x}", hash.0);
+        let found = format!("{:016x}", fnv(bytes.into_iter().chain(numbers(&others))));
         if asked["hash"] != found.as_str() {
             wrong += &format!("{} of {of}, {options}: {found}\n", asked["call"].as_str().unwrap());
         }

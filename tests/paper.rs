@@ -2,7 +2,8 @@
 //! that differentiation solves.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-use crate::synthetic::{CONFIGURATIONS, Protocol, random_motions, worst_error};
+use crate::support::hash::fnv_of;
+use crate::synthetic::{CONFIGURATIONS, measurements, random_motions, worst_error};
 use veronese::embedding::monomials::{count, kept_pairs, structural_zeros, unknowns};
 use veronese::embedding::rank::{KAPPA, number_of_motions, numerical_rank};
 use veronese::embedding::{EmbeddedData, MultibodyMotion, embedded_matrix, taubin_motion};
@@ -21,7 +22,7 @@ fn fit(data: &Measurements, method: Method, motions: MotionCount) -> Result<Moti
 fn pixel_data(n: usize, random: &mut Random) -> (Vec<AffineMotion>, Measurements) {
     let (centre, scale) = ([160.0, 120.0], 160.0);
     let truth = random_motions(n, random);
-    let data = Protocol::B1.measurements(&truth, 200 * n.max(3), 0.0, random);
+    let data = measurements(&truth, 200 * n.max(3), 0.0, random);
     let positions = data.positions().iter().map(|p| [centre[0] + scale * p[0], centre[1] + scale * p[1]]).collect();
     let derivatives = data.derivatives().iter().map(|y| y.map(|d| 40.0 * d)).collect();
     let truth = truth.iter().map(|a| a.from_normalised(centre, scale)).collect();
@@ -116,7 +117,7 @@ fn equation_9_the_motions_are_in_the_null_space_of_the_embedded_data() {
     let mut random = Random::from_seed(4);
     for n in 1..=3 {
         let truth = random_motions(n, &mut random);
-        let data = Protocol::B1.measurements(&truth, 100, 0.0, &mut random);
+        let data = measurements(&truth, 100, 0.0, &mut random);
         let coefficients = MultibodyMotion::from_motions(&truth).coefficients();
         let product = embedded_matrix(&data, n) * nalgebra::DVector::from_vec(coefficients);
         assert_eq!(product.len(), 100);
@@ -128,7 +129,7 @@ fn equation_9_the_motions_are_in_the_null_space_of_the_embedded_data() {
 fn the_triangle_has_the_singular_values_of_the_embedded_matrix() {
     let mut random = Random::from_seed(5);
     let truth = random_motions(2, &mut random);
-    let data = Protocol::B1.measurements(&truth, 301, 0.02, &mut random);
+    let data = measurements(&truth, 301, 0.02, &mut random);
     let found = EmbeddedData::new(&data, 3).singular_values().unwrap();
     let expected = embedded_matrix(&data, 3).singular_values();
     assert_eq!(found.len(), 65);
@@ -144,7 +145,7 @@ fn theorem_1_the_ranks_below_at_and_above_the_number_of_motions() {
     let mut random = Random::from_seed(6);
     for n in 1..=3 {
         let truth = random_motions(n, &mut random);
-        let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
+        let data = measurements(&truth, 600, 0.0, &mut random);
         for i in 1..=4 {
             let values = EmbeddedData::new(&data, i).scaled_singular_values().unwrap();
             let rank = numerical_rank(&values, ROUNDING);
@@ -159,7 +160,7 @@ fn equation_12_the_rank_rule_finds_one_and_two_motions() {
         for seed in 0..10 {
             let mut random = Random::from_seed(seed);
             let truth = random_motions(n, &mut random);
-            let data = Protocol::B1.measurements(&truth, 600, noise, &mut random);
+            let data = measurements(&truth, 600, noise, &mut random);
             let rule = number_of_motions(&data, 4).unwrap();
             assert_eq!((rule.motions, rule.fired), (n, true), "noise {noise}, seed {seed}");
             let last = rule.candidates.last().unwrap();
@@ -174,7 +175,7 @@ fn the_rank_rule_says_when_it_did_not_fire() {
     // 30 % noise: no null vector at one motion, and too few measurements for two.
     let mut random = Random::from_seed(7);
     let truth = random_motions(2, &mut random);
-    let data = Protocol::B1.measurements(&truth, 20, 0.3, &mut random);
+    let data = measurements(&truth, 20, 0.3, &mut random);
     let rule = number_of_motions(&data, 6).unwrap();
     assert_eq!((rule.motions, rule.fired, rule.candidates.len()), (1, false, 1));
     let stages = fit(&data, Method::Paper, MotionCount::Auto).unwrap().stages.unwrap();
@@ -187,7 +188,7 @@ fn generic_motions_are_recovered_without_noise() {
         for seed in 0..5 {
             let mut random = Random::from_seed(100 * n as u64 + seed);
             let truth = random_motions(n, &mut random);
-            let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
+            let data = measurements(&truth, 600, 0.0, &mut random);
             let multibody = MultibodyMotion::estimate(&data, n).unwrap();
             let expected = MultibodyMotion::from_motions(&truth);
             assert!((multibody.matrix() - expected.matrix()).amax() < 1e-10 * expected.matrix().amax());
@@ -247,7 +248,7 @@ fn labels_are_numbered_by_decreasing_count() {
     let truth = random_motions(3, &mut random);
     // Motion 2 three times as often as motion 0, motion 1 twice.
     let chances = [truth[0], truth[1], truth[1], truth[2], truth[2], truth[2]];
-    let data = Protocol::B1.measurements(&chances, 600, 0.0, &mut random);
+    let data = measurements(&chances, 600, 0.0, &mut random);
     for method in [Method::Paper, Method::Best] {
         let found = fit(&data, method, MotionCount::Given(3)).unwrap();
         for (k, expected) in [truth[2], truth[1], truth[0]].iter().enumerate() {
@@ -265,7 +266,7 @@ fn failures(special: fn(&mut [AffineMotion]), n: usize, noise: f64, limit: f64, 
         let mut random = Random::from_seed(7000 + seed);
         let mut truth = random_motions(n, &mut random);
         special(&mut truth);
-        let data = Protocol::B1.measurements(&truth, 600, noise, &mut random);
+        let data = measurements(&truth, 600, noise, &mut random);
         worst_error(&truth, &by(&data, n, &mut random)) > limit
     };
     (0..20).filter(|&seed| failed(seed)).count()
@@ -312,7 +313,7 @@ fn the_true_motions_are_among_those_of_a_number_that_is_too_large() {
     for seed in 0..10 {
         let mut random = Random::from_seed(8000 + seed);
         let truth = random_motions(2, &mut random);
-        let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
+        let data = measurements(&truth, 600, 0.0, &mut random);
         for by in [by_differentiation as Solver, by_taubin] {
             let found = by(&data, 3, &mut random);
             for motion in &truth {
@@ -353,7 +354,7 @@ fn equation_19_the_refinement_lowers_the_error_and_says_how_it_ended() {
     for n in 1..=4 {
         let mut random = Random::from_seed(40 + n as u64);
         let truth = random_motions(n, &mut random);
-        let data = Protocol::B1.measurements(&truth, 600, 0.01, &mut random);
+        let data = measurements(&truth, 600, 0.01, &mut random);
         let (refined, report) = product::refine(&truth, &data);
         assert_eq!(report.initial_cost, product::cost(&truth, &data));
         assert_eq!(report.final_cost, product::cost(&refined, &data));
@@ -377,7 +378,7 @@ fn equation_19_the_refinement_lowers_the_error_and_says_how_it_ended() {
 fn equation_19_for_one_motion_is_linear_least_squares() {
     let mut random = Random::from_seed(50);
     let truth = random_motions(1, &mut random);
-    let data = Protocol::B1.measurements(&truth, 100, 0.05, &mut random);
+    let data = measurements(&truth, 100, 0.05, &mut random);
     let features = nalgebra::DMatrix::from_fn(100, 6, |j, k| {
         let ([x, y], [ix, iy, _]) = (data.positions()[j], data.derivatives()[j]);
         [ix * x, ix * y, ix, iy * x, iy * y, iy][k]
@@ -395,7 +396,7 @@ fn equation_19_for_one_motion_is_linear_least_squares() {
 fn the_order_of_the_rows_and_the_intensity_scale_do_not_matter() {
     let mut random = Random::from_seed(60);
     let truth = random_motions(2, &mut random);
-    let data = Protocol::B1.measurements(&truth, 300, 0.01, &mut random);
+    let data = measurements(&truth, 300, 0.01, &mut random);
     let order = random.choose(300, 300);
     let shuffled = data.subset(&order);
     let brighter = |factor: f64| {
@@ -413,42 +414,22 @@ fn the_order_of_the_rows_and_the_intensity_scale_do_not_matter() {
     assert!(order.iter().enumerate().all(|(j, &old)| found.labels[j] == reference.labels[old]));
 }
 
-#[test]
-fn the_same_seed_gives_the_same_bits() {
-    let mut random = Random::from_seed(61);
-    let truth = random_motions(3, &mut random);
-    let data = Protocol::B1.measurements(&truth, 300, 0.02, &mut random);
-    for method in [Method::Paper, Method::Best] {
-        let [a, b] = [0, 1].map(|_| fit(&data, method, MotionCount::Given(3)).unwrap());
-        assert_eq!(a.labels, b.labels);
-        for (p, q) in a.motions.iter().zip(&b.motions) {
-            assert_eq!(p.matrix.matrix.map(f64::to_bits), q.matrix.matrix.map(f64::to_bits));
-        }
-    }
-}
-
-/// FNV-1a over the bits of all numbers.
-fn fingerprint(values: impl Iterator<Item = f64>) -> u64 {
-    let bytes = values.flat_map(|value| value.to_bits().to_le_bytes());
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
-
 /// See CONTRIBUTING.md, "Golden hashes".
 #[test]
 fn the_results_have_the_same_bits_everywhere() {
     let mut random = Random::from_seed(62);
     let truth = random_motions(3, &mut random);
-    let data = Protocol::B1.measurements(&truth, 400, 0.02, &mut random);
+    let data = measurements(&truth, 400, 0.02, &mut random);
     let found = fit(&data, Method::Paper, MotionCount::Given(3)).unwrap();
     let stages = found.stages.unwrap();
     let start = algebraic_start(&data, 3, &mut random, POINTS).unwrap();
     assert!(start.len() > 2 * POINTS);
     let [factorised, refined, start] =
-        [stages.factorisation, stages.refined, start].map(|motions| fingerprint(motions.iter().flat_map(|a| a.matrix)));
+        [stages.factorisation, stages.refined, start].map(|motions| fnv_of(motions.iter().flat_map(|a| a.matrix)));
     assert_eq!(factorised, 0xd5b9_3d6c_57c4_315c, "factorisation: {factorised:#x}");
     assert_eq!(refined, 0x6ab4_f96e_1af5_56e3, "refinement: {refined:#x}");
     assert_eq!(start, 0xc4a5_c5ad_9905_19ad, "differentiation: {start:#x}");
-    let values = fingerprint(found.evidence.singular_values.into_iter());
+    let values = fnv_of(found.evidence.singular_values);
     assert_eq!(values, 0x6bb8_c1cf_8944_92a1, "singular values: {values:#x}");
 }
 
@@ -457,7 +438,7 @@ fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
     let mut random = Random::from_seed(70);
     let truth = random_motions(2, &mut random);
     for (n, needed) in [(1, 6), (2, 24), (3, 64), (10, 2430)] {
-        let data = Protocol::B1.measurements(&truth, needed - 1, 0.0, &mut random);
+        let data = measurements(&truth, needed - 1, 0.0, &mut random);
         let expected = Error::TooFewMeasurements { motions: n, needed, found: needed - 1 };
         assert_eq!(fit(&data, Method::Paper, MotionCount::Given(n)).unwrap_err(), expected);
         assert_eq!(MultibodyMotion::estimate(&data, n).unwrap_err(), expected);
@@ -466,7 +447,7 @@ fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
     let empty = Measurements::new(Vec::new(), Vec::new()).unwrap();
     let expected = Error::TooFewMeasurements { motions: 1, needed: 6, found: 0 };
     assert_eq!(fit(&empty, Method::Paper, MotionCount::Auto).unwrap_err(), expected);
-    let exactly = Protocol::B1.measurements(&truth, 24, 0.0, &mut random);
+    let exactly = measurements(&truth, 24, 0.0, &mut random);
     assert!(fit(&exactly, Method::Paper, MotionCount::Given(2)).is_ok());
 }
 

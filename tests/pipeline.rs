@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use crate::support::hash::fnv;
 use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::{
     AffineMotion, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation, SegmentedMotion,
@@ -447,17 +448,10 @@ fn stages_are_reported_in_order() {
     assert!(seen.iter().all(|s| s.index < s.of));
 }
 
-/// FNV-1a over all bits of the labels and motions.
+/// Hash of all bits of the labels and motions.
 fn fingerprint(result: &Segmentation) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    let mut take = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    result.labels.iter().for_each(|&l| take(l));
-    for motion in &result.motions {
-        for a in motion.matrix.matrix {
-            a.to_bits().to_le_bytes().into_iter().for_each(&mut take);
-        }
-    }
-    hash
+    let numbers = result.motions.iter().flat_map(|motion| motion.matrix.matrix);
+    fnv(result.labels.iter().copied().chain(numbers.flat_map(f64::to_le_bytes)))
 }
 
 /// See CONTRIBUTING.md, "Golden hashes".

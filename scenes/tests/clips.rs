@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use crate::hash;
 use scenes::{ClipScene, ClipSceneOptions, Event, generate_clip};
 
 const WIDTH: usize = 160;
@@ -132,11 +133,6 @@ fn options_out_of_range_and_frames_that_do_not_exist_are_refused() {
     let tiny =
         generate_clip(&ClipSceneOptions { width: 16, height: 16, events: Event::ALL[..6].to_vec(), ..ok }).unwrap();
     assert_eq!((tiny.objects(), tiny.labels(29).unwrap().len()), (8, 256));
-}
-
-/// FNV-1a, 64 bits.
-fn hash(bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn hash_of(events: &[Event], frames: usize) -> String {

@@ -1,6 +1,7 @@
 //! Generated scenes: the ground truth agrees with the frames, and the same options give the same bytes on every platform.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
+use crate::hash;
 use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Plane};
 
@@ -128,11 +129,6 @@ fn options_out_of_range_are_rejected() {
     assert_eq!(code(SceneOptions { blur: -0.1, ..ok }), "invalid-option");
     assert!(scenes::generate(&SceneOptions { width: 16, height: 16, objects: 8, ..ok }).is_ok());
     assert!(scenes::generate(&SceneOptions { objects: 0, ..ok }).unwrap().labels.iter().all(|&l| l == 0));
-}
-
-/// FNV-1a, 64 bits.
-fn hash(bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn hash_of(scene: &Scene) -> u64 {

@@ -1,44 +1,30 @@
-//! Measurements of known motions: protocol B1, after Figure 1 of the paper.
+//! Measurements of known motions, after Figure 1 of the paper.
 #![allow(dead_code, clippy::unwrap_used, reason = "each test file uses its part; test code may panic")]
 
 use veronese::factorisation::assignment::assign;
 use veronese::{AffineMotion, Measurements, Random};
-
-/// How measurements are drawn.
-pub(crate) enum Protocol {
-    /// Positions uniform in [−1, 1]², motions in turn, y uniform on the unit circle orthogonal to A x, plus uniform noise on every
-    /// component.
-    B1,
-}
 
 /// Motions whose six entries are uniform in [−1, 1].
 pub(crate) fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
     (0..n).map(|_| AffineMotion::new(std::array::from_fn(|_| random.uniform(-1.0, 1.0)))).collect()
 }
 
-impl Protocol {
-    /// `count` measurements of the motions; measurement j belongs to motion j mod n.
-    pub(crate) fn measurements(
-        &self,
-        motions: &[AffineMotion],
-        count: usize,
-        noise: f64,
-        random: &mut Random,
-    ) -> Measurements {
-        let mut positions = Vec::with_capacity(count);
-        let mut derivatives = Vec::with_capacity(count);
-        for j in 0..count {
-            let [x, y] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
-            let [u, v] = motions[j % motions.len()].flow(x, y);
-            let g: [f64; 3] = std::array::from_fn(|_| random.normal());
-            let share = (g[0] * u + g[1] * v + g[2]) / (u * u + v * v + 1.0);
-            let across = [g[0] - share * u, g[1] - share * v, g[2] - share];
-            let length = across.iter().map(|c| c * c).sum::<f64>().sqrt();
-            positions.push([x, y]);
-            derivatives.push(across.map(|c| c / length + random.uniform(-noise, noise)));
-        }
-        Measurements::new(positions, derivatives).unwrap()
+/// `count` measurements of the motions; measurement j belongs to motion j mod n. Positions are uniform in [−1, 1]², y is uniform on the unit
+/// circle orthogonal to A x, plus uniform noise on every component.
+pub(crate) fn measurements(motions: &[AffineMotion], count: usize, noise: f64, random: &mut Random) -> Measurements {
+    let mut positions = Vec::with_capacity(count);
+    let mut derivatives = Vec::with_capacity(count);
+    for j in 0..count {
+        let [x, y] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+        let [u, v] = motions[j % motions.len()].flow(x, y);
+        let g: [f64; 3] = std::array::from_fn(|_| random.normal());
+        let share = (g[0] * u + g[1] * v + g[2]) / (u * u + v * v + 1.0);
+        let across = [g[0] - share * u, g[1] - share * v, g[2] - share];
+        let length = across.iter().map(|c| c * c).sum::<f64>().sqrt();
+        positions.push([x, y]);
+        derivatives.push(across.map(|c| c / length + random.uniform(-noise, noise)));
     }
+    Measurements::new(positions, derivatives).unwrap()
 }
 
 /// Relative errors (eq. 20) of the true motions under the best assignment.
