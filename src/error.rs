@@ -72,7 +72,7 @@ pub enum Error {
     InvalidOption {
         /// The option's name.
         name: &'static str,
-        /// What is wrong, and which values are valid.
+        /// Why it is wrong, and which values are valid.
         reason: String,
     },
     /// A frame of a clip is read again and has other pixels.
@@ -81,7 +81,7 @@ pub enum Error {
         /// Index of the frame, from 0.
         index: usize,
     },
-    /// Something is said of an object that is locked.
+    /// An object that is locked would change.
     #[error("object {object} is locked: unlock it to change it")]
     ObjectLocked {
         /// Its number.
@@ -90,7 +90,7 @@ pub enum Error {
     /// A file is not an image in a supported format, or is damaged.
     #[error("the image cannot be read: {reason}")]
     UnreadableImage {
-        /// What the decoder said.
+        /// The decoder's own words.
         reason: String,
     },
 }

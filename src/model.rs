@@ -90,7 +90,7 @@ model! {
     window: f32 = 1.75;
     /// Fewest pixels of a region, or on both sides of a border, that anything is estimated from: five for each entry of a motion.
     fewest: usize = 30;
-    /// What is a small share of a whole.
+    /// A small share of a whole.
     few: f64 = 0.1;
     /// A weight, probability or cost that does not count.
     negligible: f32 = 1e-3;

@@ -1,4 +1,4 @@
-//! What lies between the steps of the method, for figures and for study. Feature `stages`.
+//! The steps of the method one by one, for figures and for study. Feature `stages`.
 //!
 //! **Stability.** This module may change in any version: it shows the inside of the others and changes with them.
 //!

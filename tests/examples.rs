@@ -12,7 +12,7 @@ fn print(line: Arguments<'_>) {
     PRINTED.with_borrow_mut(|printed| *printed += &format!("{line}\n"));
 }
 
-/// What the examples below print with is kept.
+/// Keeps the lines that the examples below print.
 macro_rules! println {
     ($($line:tt)*) => {
         crate::examples::print(format_args!($($line)*))
@@ -28,7 +28,7 @@ mod two_motions;
 #[path = "../examples/1_union_of_lines.rs"]
 mod union_of_lines;
 
-/// What an example prints.
+/// The lines that an example prints.
 fn output(example: fn()) -> String {
     PRINTED.take();
     example();

@@ -1,4 +1,4 @@
-//! What must hold of real frames: the scenes of `tests/expectations`, whose README.md says what their fields mean.
+//! Expectations of real frames: the scenes of `tests/expectations`, whose README.md says what their fields mean.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -284,7 +284,7 @@ fn passing_cars_are_two_objects_from_coming_to_leaving() {
     check_clip(Quality::Fast);
 }
 
-/// What a first visitor of the page sees.
+/// The clip that a first visitor of the page sees.
 #[test]
 fn passing_cars_are_two_objects_in_the_best_quality() {
     check_clip(Quality::Best);

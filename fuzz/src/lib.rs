@@ -1,4 +1,4 @@
-//! What several targets need: small frames with something that moves, options, and clips of three frames.
+//! Inputs of several targets: small frames with something that moves, options, and clips of three frames.
 
 use std::sync::OnceLock;
 

@@ -27,7 +27,7 @@ pub const MIN_CLIP_FRAMES: usize = 30;
 /// Largest number of frames of a clip.
 pub const MAX_CLIP_FRAMES: usize = 120;
 
-/// What may happen in a clip. Speeds are in pixels per frame relative to the background; in frames smaller than 320 × 240 all but
+/// Events of a clip. Speeds are in pixels per frame relative to the background; in frames smaller than 320 × 240 all but
 /// [`Event::Slow`] are slower in proportion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
@@ -94,7 +94,7 @@ impl Event {
     }
 }
 
-/// What a clip shows and how it is recorded.
+/// Contents of a clip and properties of its camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClipSceneOptions {
     /// Width in pixels; default 320.
@@ -105,7 +105,7 @@ pub struct ClipSceneOptions {
     pub frames: usize,
     /// Least number of objects of a shot, 0 to [`MAX_OBJECTS`]; default 1. Those without an event move at 1 to 5 pixels per frame.
     pub objects: usize,
-    /// What happens; default nothing. Objects of their own take part in each, at most [`MAX_OBJECTS`] in all.
+    /// Events, by default none. Objects of their own take part in each, at most [`MAX_OBJECTS`] in all.
     pub events: Vec<Event>,
     /// Standard deviation of the noise at grey level 128, in grey levels, 0 to 50; default 2. It grows with √I.
     pub noise: f64,
@@ -115,7 +115,7 @@ pub struct ClipSceneOptions {
     pub colour: bool,
     /// Whether the objects of a shot are cut from one cloth, so that colours do not tell them apart; default false.
     pub alike: bool,
-    /// What else there is in the clip follows from this number; default 1.
+    /// Seed of everything else in the clip; default 1.
     pub seed: u64,
 }
 
@@ -139,7 +139,7 @@ impl Default for ClipSceneOptions {
 /// When an event of a clip happens, and to whom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Occurrence {
-    /// What happens.
+    /// The event.
     pub event: Event,
     /// The objects that take part: of two that meet, the one that is hidden first.
     pub objects: Vec<u8>,
@@ -149,7 +149,7 @@ pub struct Occurrence {
     pub frames: Range<usize>,
 }
 
-/// What a frame of a clip shows.
+/// The moment and the shot that a frame of a clip shows.
 #[derive(Clone, Copy, Debug)]
 struct Shown {
     /// Index of the shot.
@@ -172,9 +172,10 @@ struct Shot {
 
 /// A generated clip and the truth about it. In its labels 0 is the background, and an object has the same number in all frames.
 pub struct ClipScene {
-    /// What was asked for.
+    /// The options of the clip.
     pub options: ClipSceneOptions,
-    /// What happens when, in the order of [`ClipSceneOptions::events`]. An event that found no place, as may be in tiny frames, is missing.
+    /// The events and when they happen, in the order of [`ClipSceneOptions::events`]. An event that found no place, as may be in tiny frames,
+    /// is missing.
     pub occurrences: Vec<Occurrence>,
     shots: Vec<Shot>,
     timeline: Vec<Shown>,

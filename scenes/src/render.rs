@@ -30,7 +30,7 @@ pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Rand
     Ok(Scene { frames: [frame(0)?, frame(1)?, frame(2)?], rgba, labels: truth, motions, occluded, options: *options })
 }
 
-/// From frame t (0, 1, 2 for before, first, second) to `first`, as a thing with this motion sees it.
+/// From frame t (0, 1, 2 for before, first, second) to `first`, as an object with this motion sees it.
 fn origin(motion: &AffineMotion, t: usize) -> Warp {
     match t {
         0 => Warp::of(motion),

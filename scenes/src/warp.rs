@@ -1,4 +1,4 @@
-//! Affine maps of the plane: where a thing is at one time, as seen from another.
+//! Affine maps of the plane: where an object is at one time, as seen from another.
 
 use veronese::AffineMotion;
 

@@ -69,7 +69,7 @@ fn labels_carried_by_the_true_motion_land_on_the_labels_of_the_next_frame() {
                 let articulated =
                     clip.occurrences.iter().any(|o| o.event == Event::Articulated && o.objects == [object]);
                 assert!(rigid || articulated, "seed {seed}, object {object}, frame {t}");
-                // What is covered in the next frame is covered by something in front; rounding moves a pixel by half its width.
+                // Pixels that are covered in the next frame are covered by something in front; rounding moves a pixel by half its width.
                 let lands: Vec<usize> = own.iter().filter_map(|&p| landing(&flow, p)).collect();
                 let right = lands.iter().filter(|&&q| {
                     let around = [

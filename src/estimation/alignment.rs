@@ -22,7 +22,7 @@ pub(crate) enum Freedom {
     Affine,
 }
 
-/// What has to stand still before the iterations end.
+/// The entries that have to stand still before the iterations end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Convergence {
     /// The translation. The prior slows the linear terms down, so that they may still be on their way.

@@ -11,7 +11,7 @@ use crate::view::level::Level;
 pub(crate) struct DominantSearch {
     /// Whether a change of brightness is estimated.
     pub(crate) brightness: bool,
-    /// What has to converge.
+    /// The entries that have to converge.
     pub(crate) convergence: Convergence,
 }
 

@@ -71,7 +71,7 @@ pub(crate) struct FramePyramid {
     appearance: OnceCell<Rc<Appearance>>,
 }
 
-/// What labels follow in the first frame of a pair.
+/// Pictures and colours of the first frame of a pair, which labels follow.
 #[derive(Clone, Debug)]
 pub(crate) struct Appearance {
     /// The frame without blur, from the working size down.

@@ -111,8 +111,8 @@ mod tests {
 
     const SIZE: [usize; 2] = [120, 80];
 
-    /// A textured thing of one colour moves 3 pixels to the right over a textured ground of another, under a light that changes below it.
-    /// All of it is labelled as the thing.
+    /// A textured object of one colour moves 3 pixels to the right over a textured ground of another, under a light that changes below it.
+    /// All of it is labelled as the object.
     fn scene(shadow_colour: [f32; 3]) -> (Level, Palette, Vec<u8>) {
         let [width, height] = SIZE;
         let texture = |x: f32, y: f32| 20.0 * libm::sinf(0.9 * x + 0.4 * y) * libm::cosf(0.7 * y - 0.3 * x);

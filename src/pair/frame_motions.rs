@@ -25,7 +25,7 @@ pub(crate) struct FrameMotions {
     pub(crate) probabilities: Vec<Plane>,
     /// The group of every motion, named by its smallest label: motions of one rigid background share one.
     pub(crate) groups: Vec<usize>,
-    /// What a fast stream expects of the next pair.
+    /// Expected of the next pair by a fast stream.
     prior: Option<Prior>,
     /// Mean of the smallest cost of any motion, as a share of the largest cost there is.
     unexplained: f32,
@@ -37,7 +37,7 @@ impl FrameMotions {
         self.unexplained > 0.5
     }
 
-    /// What a fast stream expects of the next pair.
+    /// Expected of the next pair by a fast stream.
     pub(crate) fn prior(&self) -> Option<Prior> {
         self.prior.clone()
     }
@@ -48,7 +48,7 @@ impl FrameMotions {
     }
 }
 
-/// What a fast stream expects of a pair: that everything keeps its motion.
+/// A fast stream expects of the next pair that everything keeps its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
@@ -66,7 +66,7 @@ impl Prior {
     }
 }
 
-/// What is known before a pair is solved.
+/// Knowledge about a pair before it is solved.
 pub(crate) enum Expected<'a> {
     Nothing,
     /// Objects may have these motions.

@@ -19,7 +19,7 @@ pub(crate) struct Pair {
     pub(crate) selection: usize,
     /// Index of the level on which the draft labels are solved.
     pub(crate) draft: usize,
-    /// What the labels follow, at the sizes of the levels down to the base or the draft level.
+    /// Pictures and colours that the labels follow, at the sizes of the levels down to the base or the draft level.
     pub(super) appearance: Rc<Appearance>,
     /// Full-size pixels per working pixel.
     pub(crate) reduction: f64,

@@ -235,7 +235,7 @@ mod tests {
         );
     }
 
-    /// Likelihood that a thing (1) on the ground (0) is of one piece with it, where the thing moves by `jump` and another (2) by 5.
+    /// Likelihood that an object (1) on the ground (0) is of one piece with it, where the object moves by `jump` and another (2) by 5.
     fn likelihood(ground: f64, jump: f64, thing: [std::ops::Range<usize>; 2]) -> Option<f64> {
         let (width, height) = (90, 60);
         let labels: Vec<u8> = (0..width * height)

@@ -16,7 +16,7 @@ use crate::view::brightness::Photometric;
 use crate::view::level::Level;
 
 impl Settings {
-    /// What pays for a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
+    /// The price of a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
     fn price(&self, level: &Level) -> f64 {
         if self.least > 1 { 1.0 } else { price_on(level) }
     }

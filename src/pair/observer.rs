@@ -7,7 +7,8 @@ use crate::estimation::selection::{Deflation, ScoredMotion};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 
-/// Listens to the stages of a pair, in the order of the methods. Motions are in pixels of the working size; the first is that of the background.
+/// Listens to the stages of a pair, in the order of the methods. Motions are in pixels of the working size; the first is that of the
+/// background.
 pub(crate) trait Observer {
     /// The frames are prepared in one of several rounds, each with a finer working size.
     fn round_begins(&mut self, _round: usize, _rounds: usize) {}

@@ -25,7 +25,7 @@ use crate::options::SegmentOptions;
 use crate::order::descending;
 use crate::view::cost::{CostModel, costs};
 
-/// What [`segment_pair`](crate::segment_pair) found.
+/// The result of [`segment_pair`](crate::segment_pair).
 #[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]

@@ -1,4 +1,4 @@
-//! What depends on the quality, an option or the size of the frames. The numbers themselves are those of the [`Model`].
+//! Settings of a pair that depend on the quality, an option or the size of the frames. The numbers themselves are those of the [`Model`].
 
 use crate::estimation::alignment::Convergence;
 use crate::frame::pyramid::FramePyramid;
@@ -28,7 +28,7 @@ pub(crate) struct Settings {
     pub(crate) tiles: usize,
     /// Proposals tried in earnest per round of the selection.
     pub(crate) tries: usize,
-    /// What has to converge when the dominant motion is found …
+    /// The entries that have to converge when the dominant motion is found …
     pub(crate) dominant: Convergence,
     /// … and when motions are refined on their pixels during selection.
     pub(crate) refinement: Convergence,

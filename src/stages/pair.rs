@@ -34,7 +34,7 @@ pub struct PairStages {
     pub working: Labelling,
     /// Labels of the result by groups.
     pub groups: Vec<Vec<u8>>,
-    /// What [`segment_pair`](crate::segment_pair) returns.
+    /// The result of [`segment_pair`](crate::segment_pair).
     pub result: Segmentation,
 }
 
@@ -71,7 +71,7 @@ pub struct Background {
     pub measured: Option<MeasuredPixels>,
     /// The candidates, in the order in which they were proposed.
     pub candidates: Vec<CandidateMotion>,
-    /// What a motion has to gain to be selected.
+    /// The gain that a motion needs to be selected.
     pub price: f64,
     /// The motions after greedy selection; the first is the dominant one.
     pub selected: Vec<SelectedMotion>,
@@ -121,7 +121,7 @@ pub struct CandidateMotion {
     pub matrix: AffineMotion,
     /// Where it comes from.
     pub source: CandidateSource,
-    /// What it would save beside the dominant motion alone before it is refined, in the unit of [`Background::price`].
+    /// How much it would save beside the dominant motion alone before it is refined, in the unit of [`Background::price`].
     pub gain: f64,
     /// Share of the pixels, 0…1, that it explains better than the dominant motion does.
     pub support: f64,

@@ -36,7 +36,7 @@ struct Sight {
     border: usize,
 }
 
-/// What is in sight in a shot.
+/// The objects that are in sight in a shot.
 pub(super) struct Watch<'a> {
     script: &'a Script,
     size: [usize; 2],
@@ -78,7 +78,7 @@ impl Watch<'_> {
             }
             _ => Some(0..count).filter(|_| mostly)?,
         };
-        // What lasts from the first moment or to the last began before the shot or is not over when it ends.
+        // An event that lasts from the first moment or to the last began before the shot or is not over when it ends.
         let whole = matches!(event, Event::Articulated | Event::Slow | Event::Fast);
         let inside = whole || (frames.start > 0 && frames.end < count && !frames.is_empty());
         inside.then(|| Occurrence { event, objects: objects.to_vec(), frames })

@@ -6,7 +6,7 @@ pub(super) struct Path {
     pub(super) anchor: [f64; 2],
     /// Pixels per unit of the way.
     pub(super) velocity: [f64; 2],
-    /// What the sine and one minus the cosine of the angle are multiplied by, pixels.
+    /// Factors of the sine and of one minus the cosine of the angle, pixels.
     pub(super) bow: [[f64; 2]; 2],
     /// Angle per unit of the way, radians.
     pub(super) rate: f64,

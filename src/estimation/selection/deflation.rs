@@ -24,7 +24,7 @@ pub(crate) struct Deflation {
     pub(crate) tries: usize,
     /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
-    /// What has to converge when a proposal is refined.
+    /// The entries that have to converge when a proposal is refined.
     pub(crate) convergence: Convergence,
 }
 

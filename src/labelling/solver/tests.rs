@@ -23,7 +23,7 @@ fn random_grid(random: &mut Random, width: usize, height: usize, labels: usize) 
     Grid { costs: (0..labels).map(|_| plane(2.0)).collect(), horizontal: plane(1.0), vertical: plane(1.0) }
 }
 
-/// What the pipeline's costs look like: a background and discs, each true label cheap (a saturated squared residual), the
+/// Costs like those of the pipeline: a background and discs, each true label cheap (a saturated squared residual), the
 /// others between cheap (no texture: any motion explains the pixel) and 2; weights 6, weaker across image edges.
 fn scene_like(seed: u64, width: usize, height: usize, labels: usize) -> Grid {
     let mut random = Random::from_seed(seed);

@@ -42,7 +42,7 @@ mod tests {
 
     const WIDTH: usize = 60;
 
-    /// Ground (0), a thing with a part on its right that moves a little less (1, 2), and a thing apart (3).
+    /// Ground (0), an object with a part on its right that moves a little less (1, 2), and an object apart (3).
     fn found(order: &[usize]) -> Vec<Junction> {
         let labels: Vec<u8> = (0..WIDTH * 40)
             .map(|p| match (p % WIDTH, p / WIDTH) {
