@@ -54,7 +54,7 @@ fn sum(a: Exponents, b: Exponents) -> Exponents {
 }
 
 /// A symmetric matrix over the kept pairs of monomials, column-major; `entry` gives the entry of two pairs `(y, x)`.
-fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Vec<f64> {
+fn symmetric(degree: usize, entry: impl Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Vec<f64> {
     let all = exponents(degree);
     let pairs: Vec<[Exponents; 2]> =
         kept_pairs(degree).into_iter().map(|(row, column)| [all[row], all[column]]).collect();
@@ -95,7 +95,7 @@ pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Vec<f
     let of_y = Monomials::new(2 * (degree - 1), measurements.derivatives());
     let of_x = Monomials::new(2 * degree, &homogeneous(measurements.positions()));
     let moments = Moments::new([&of_y, &of_x], &vec![1.0; measurements.len()]);
-    symmetric(degree, &|[a, i], [b, k]| {
+    symmetric(degree, |[a, i], [b, k]| {
         let both = sum(a, b);
         let by = |v: usize| {
             let mut lowered = both;
@@ -134,7 +134,7 @@ impl Refitting {
     /// The multibody motion that minimises `Σ_j w_j p(x_j, y_j)²`.
     pub(crate) fn fit(&self, weights: &[f64]) -> MultibodyMotion {
         let moments = Moments::new([&self.of_y[1], &self.of_x], weights);
-        let gram = symmetric(self.degree, &|[a, i], [b, k]| moments.at(sum(a, b), sum(i, k)));
+        let gram = symmetric(self.degree, |[a, i], [b, k]| moments.at(sum(a, b), sum(i, k)));
         MultibodyMotion::from_triangle(self.degree, Triangle::of_gram(unknowns(self.degree), gram, RIDGE))
     }
 
@@ -201,7 +201,7 @@ mod tests {
             let expected = rows.transpose() * weighted;
             let fitting = Refitting::new(&data, degree);
             let moments = Moments::new([&fitting.of_y[1], &fitting.of_x], &weights);
-            let gram = symmetric(degree, &|[a, i], [b, k]| moments.at(sum(a, b), sum(i, k)));
+            let gram = symmetric(degree, |[a, i], [b, k]| moments.at(sum(a, b), sum(i, k)));
             for (found, expected) in gram.iter().zip(expected.iter()) {
                 assert!((found - expected).abs() < 1e-10, "degree {degree}: {found} for {expected}");
             }

@@ -29,7 +29,7 @@ pub(crate) fn is_background(label: u8) -> bool {
 }
 
 /// Calls `pair` for every pair of 4-connected neighbours, in rows of `width`, that have different labels.
-pub(crate) fn across_borders(labels: &[u8], width: usize, pair: &mut dyn FnMut(usize, usize)) {
+pub(crate) fn across_borders(labels: &[u8], width: usize, mut pair: impl FnMut(usize, usize)) {
     /// Pixels compared together; for speed.
     const PART: usize = 16;
     let rows = labels.chunks_exact(width).zip(labels[width..].chunks_exact(width).map(Some).chain([None]));
@@ -85,7 +85,7 @@ mod tests {
                     );
                 }
                 let mut found = Vec::new();
-                across_borders(&labels, width, &mut |p, q| found.push((p, q)));
+                across_borders(&labels, width, |p, q| found.push((p, q)));
                 assert_eq!(found, expected, "{width} × {height}");
             }
         }

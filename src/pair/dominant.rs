@@ -31,7 +31,7 @@ impl Objects<'_> {
     fn brightness_at_rest(&self, level: &Level) -> Photometric {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
         let step = level.stride << level.index;
-        Photometric::along_labels(level, &motions, &|x, y| usize::from(self.labels[y * step * self.width + x * step]))
+        Photometric::along_labels(level, &motions, |x, y| usize::from(self.labels[y * step * self.width + x * step]))
     }
 }
 

@@ -59,7 +59,7 @@ impl<'a> Regions<'a> {
         let mut regions = vec![Region::default(); n];
         let mut jumps: Vec<Vec<f64>> = vec![Vec::new(); n * n];
         sides_on_frame(labels, n, width).into_iter().zip(&mut regions).for_each(|(outer, region)| region.outer = outer);
-        across_borders(labels, width, &mut |p, q| {
+        across_borders(labels, width, |p, q| {
             let (i, j) = (usize::from(labels[p]), usize::from(labels[q]));
             [i, j].into_iter().for_each(|k| regions[k].inner += 1);
             let (x, y) = ((p % width) as f64, (p / width) as f64);

@@ -40,14 +40,14 @@ impl Photometric {
 
     /// The change along a motion of the working frame.
     pub(crate) fn along(level: &Level, motion: &AffineMotion) -> Photometric {
-        Photometric::along_labels(level, &[*motion], &|_, _| 0)
+        Photometric::along_labels(level, &[*motion], |_, _| 0)
     }
 
     /// The change where each pixel has one of several motions, the one of its `label`.
     pub(crate) fn along_labels(
         level: &Level,
         motions: &[AffineMotion],
-        label: &dyn Fn(usize, usize) -> usize,
+        label: impl Fn(usize, usize) -> usize,
     ) -> Photometric {
         let second = &level.second;
         let scaled: Vec<AffineMotion> = motions.iter().map(|motion| level.scaled(motion)).collect();

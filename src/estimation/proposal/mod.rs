@@ -26,7 +26,7 @@ pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion 
 
 /// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its place; keeps at most `most`.
 pub(crate) fn distinct(
-    proposals: &mut dyn Iterator<Item = Proposal>,
+    proposals: impl Iterator<Item = Proposal>,
     tolerance: f64,
     [width, height]: [f64; 2],
     most: usize,

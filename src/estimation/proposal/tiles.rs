@@ -24,11 +24,11 @@ pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlo
     }
     let order = descending(certainties.iter().map(|&c| f64::from(c)));
     let pixel = level.pixel();
-    let mut proposals =
+    let proposals =
         order.iter().map(|&k| (places[k] % level.width(), places[k] / level.width())).map(|(x, y)| Proposal {
             motion: translated(dominant, f64::from(flow.u.at(x, y)) * pixel, f64::from(flow.v.at(x, y)) * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         });
     let size = [level.width() as f64 * pixel, level.height() as f64 * pixel];
-    distinct(&mut proposals, 2.0 * f64::from(model.position_sigma) * pixel, size, most, model)
+    distinct(proposals, 2.0 * f64::from(model.position_sigma) * pixel, size, most, model)
 }

@@ -33,7 +33,7 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usi
     }
     let order = descending(gains.iter().map(|&gain| f64::from(gain)));
     let pixel = level.pixel();
-    let mut proposals = order.iter().filter_map(|&k| {
+    let proposals = order.iter().filter_map(|&k| {
         let [u, v] = steps[k].map(f64::from);
         let length = (u * u + v * v).sqrt();
         let (x, y) = (places[k] % width, places[k] / width);
@@ -43,7 +43,7 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usi
         })
     });
     distinct(
-        &mut proposals,
+        proposals,
         2.0 * f64::from(model.position_sigma) * pixel,
         [width as f64 * pixel, height as f64 * pixel],
         most,

@@ -94,7 +94,7 @@ pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
 /// Length of the border between each two labels, indexed with the smaller label first.
 pub(super) fn between(labels: &[u8], of: usize, width: usize) -> Vec<Vec<usize>> {
     let mut between = vec![vec![0; of]; of];
-    across_borders(labels, width, &mut |p, q| {
+    across_borders(labels, width, |p, q| {
         let (a, b) = (labels[p], labels[q]);
         between[usize::from(a.min(b))][usize::from(a.max(b))] += 1;
     });
@@ -124,7 +124,7 @@ pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
 /// Number of neighbouring pairs of which exactly one has the label.
 pub(crate) fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     let mut lengths = vec![0; of];
-    across_borders(labels, width, &mut |p, q| {
+    across_borders(labels, width, |p, q| {
         lengths[usize::from(labels[p])] += 1;
         lengths[usize::from(labels[q])] += 1;
     });

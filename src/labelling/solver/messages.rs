@@ -145,18 +145,18 @@ impl Grid {
         for l in 0..labels {
             let costs = &mut grid.costs[l..];
             match problem.costs.get(l) {
-                Some(plane) => stagger(&|y| &plane.row(y)[..width], size, FORBIDDEN, costs, labels),
+                Some(plane) => stagger(|y| &plane.row(y)[..width], size, FORBIDDEN, costs, labels),
                 // Padding labels keep their price.
                 None => {
                     let padding = vec![PADDING; width];
-                    stagger(&|_| &padding, size, PADDING, costs, labels);
+                    stagger(|_| &padding, size, PADDING, costs, labels);
                 }
             }
         }
         let (horizontal, vertical) = (problem.horizontal, problem.vertical);
         let connected = [width - 1, height - 1];
-        stagger(&|y| &horizontal.row(y)[..connected[0]], size, PADDING, &mut grid.to_right, 1);
-        stagger(&|y| vertical.row(y), [width, connected[1]], PADDING, &mut grid.to_below, 1);
+        stagger(|y| &horizontal.row(y)[..connected[0]], size, PADDING, &mut grid.to_right, 1);
+        stagger(|y| vertical.row(y), [width, connected[1]], PADDING, &mut grid.to_below, 1);
         grid
     }
 
@@ -401,7 +401,7 @@ impl Grid {
 /// Writes a grid's rows, each as long as there are values, to every `stride`-th of `steps`; values are cut to ±`most`.
 #[inline(never)]
 fn stagger<'a>(
-    row: &dyn Fn(usize) -> &'a [f32],
+    row: impl Fn(usize) -> &'a [f32],
     [width, height]: [usize; 2],
     most: f32,
     steps: &mut [Step],
