@@ -1,7 +1,7 @@
 //! [`Method::Best`](crate::Method::Best): the maximum likelihood mixture of motions.
 
 use crate::answer::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::factorisation::algebraic_start;
 use crate::measurements::{Measurements, Normalisation};
 use crate::motion::AffineMotion;
@@ -26,17 +26,14 @@ const ESTIMATED_FROM: usize = 1000;
 /// The maximum likelihood fit: motions, their number unless it is given, outliers, labels and covariances.
 ///
 /// # Errors
-/// [`Error::TooFewMeasurements`] for fewer than six measurements per motion.
+/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) for fewer than six measurements per motion.
 pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
     let mut stages = Stages::new(STAGES, progress);
     let (least, largest) = match options.motions {
         MotionCount::Given(n) => (n, n),
         MotionCount::Auto => (1, MAX_MOTIONS.min(measurements.len() / PER_MOTION)),
     };
-    let (needed, found) = (PER_MOTION * least, measurements.len());
-    if found < needed {
-        return Err(Error::TooFewMeasurements { motions: least, needed, found });
-    }
+    measurements.check_number(least, PER_MOTION * least)?;
     stages.begin("search");
     let (normalised, normalisation) = measurements.normalised();
     let samples = Samples::new(&normalised);

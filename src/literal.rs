@@ -86,18 +86,14 @@ pub fn literal_pair(
     motions: MotionCount,
 ) -> Result<LiteralSegmentation> {
     motions.validate()?;
-    let size = (first.width(), first.height());
-    for other in [Some(second), before].into_iter().flatten() {
-        if (other.width(), other.height()) != size {
-            return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
-        }
-    }
+    first.check_size_of(second)?;
+    before.map_or(Ok(()), |before| first.check_size_of(before))?;
     let y = derivatives(first, second, before);
     let kept = kept_pixels(y.t.values(), threshold)?;
     if kept.len() < 6 {
         return Err(Error::TooFewMeasurements { motions: 1, needed: 6, found: kept.len() });
     }
-    let (width, height) = size;
+    let (width, height) = (first.width(), first.height());
     let positions = kept.iter().map(|&p| [(p % width) as f64, (p / width) as f64]).collect();
     let at = |p: usize| [y.x.values()[p], y.y.values()[p], y.t.values()[p]].map(f64::from);
     let measurements = Measurements::new(positions, kept.iter().map(|&p| at(p)).collect())?;

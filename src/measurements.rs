@@ -66,6 +66,12 @@ impl Measurements {
         Ok(Measurements { positions, derivatives })
     }
 
+    /// Rejects fewer measurements than a number of motions needs.
+    pub(crate) fn check_number(&self, motions: usize, needed: usize) -> Result<()> {
+        let found = self.len();
+        if found < needed { Err(Error::TooFewMeasurements { motions, needed, found }) } else { Ok(()) }
+    }
+
     /// Number of measurements, N.
     pub fn len(&self) -> usize {
         self.positions.len()

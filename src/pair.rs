@@ -25,7 +25,7 @@ use crate::frame::Frame;
 use crate::model::Model;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
-use frames::{Pair, check_sizes};
+use frames::Pair;
 use observer::Observer;
 use settings::Settings;
 
@@ -36,7 +36,7 @@ const STAGES: &[&str] =
 /// Segments two frames: how many things move, how each one moves and which pixels belong to it.
 ///
 /// # Errors
-/// [`Error::InvalidOption`], [`Error::FrameSizeMismatch`].
+/// [`Error::InvalidOption`](crate::Error::InvalidOption), [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch).
 pub fn segment_pair(
     first: &Frame,
     second: &Frame,
@@ -69,7 +69,7 @@ pub(crate) fn segment_observed(
     observer: &mut dyn Observer,
 ) -> Result<Segmentation> {
     options.motions.validate()?;
-    check_sizes(first, second)?;
+    first.check_size_of(second)?;
     let size = [first.width(), first.height()];
     let settings = Settings::new(options, size, model);
     let detail = settings.of_detail(options, size);

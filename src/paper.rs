@@ -5,7 +5,7 @@
 
 use crate::embedding::rank::{MAX_TRIED, RankCandidate, RankRule, number_of_motions};
 use crate::embedding::{EmbeddedData, MultibodyMotion, monomials};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::factorisation::five_steps;
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
@@ -70,8 +70,8 @@ pub struct PaperFit {
 /// ```
 ///
 /// # Errors
-/// [`Error::InvalidOption`] for a number of motions outside 1 to 10; [`Error::TooFewMeasurements`] if N < M_n² − Z_n − 1, or N < 6 if
-/// the number is not given.
+/// [`Error::InvalidOption`](crate::Error::InvalidOption) for a number of motions outside 1 to 10;
+/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) if N < M_n² − Z_n − 1, or N < 6 if the number is not given.
 pub fn paper_fit(measurements: &Measurements, motions: MotionCount, progress: Progress<'_>) -> Result<PaperFit> {
     motions.validate()?;
     let mut stages = Stages::new(STAGES, progress);
@@ -103,10 +103,7 @@ pub fn paper_fit(measurements: &Measurements, motions: MotionCount, progress: Pr
 
 /// The embedded data for a given number of motions, in place of the rank rule.
 fn given(measurements: &Measurements, motions: usize) -> Result<RankRule> {
-    let needed = monomials::unknowns(motions) - 1;
-    if measurements.len() < needed {
-        return Err(Error::TooFewMeasurements { motions, needed, found: measurements.len() });
-    }
+    measurements.check_number(motions, monomials::unknowns(motions) - 1)?;
     let data = EmbeddedData::new(measurements, motions);
     let singular_values = data.scaled_singular_values().unwrap_or_default();
     Ok(RankRule { motions, fired: false, candidates: Vec::new(), singular_values, data })

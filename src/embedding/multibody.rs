@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::embedded::EmbeddedData;
-use super::monomials::{Exponents, count, exponents, index, kept_pairs, structural_zeros};
+use super::monomials::{Exponents, count, exponents, index, kept_pairs, unknowns};
 use super::veronese::{embed, jacobian};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linear::{NullVector, Triangle};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
@@ -75,12 +75,9 @@ impl MultibodyMotion {
     /// on noisy data.
     ///
     /// # Errors
-    /// [`Error::TooFewMeasurements`] if N < M_n² − Z_n − 1.
+    /// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) if N < M_n² − Z_n − 1.
     pub fn estimate(measurements: &Measurements, degree: usize) -> Result<Self> {
-        let needed = measurements_needed(degree);
-        if measurements.len() < needed {
-            return Err(Error::TooFewMeasurements { motions: degree, needed, found: measurements.len() });
-        }
+        measurements.check_number(degree, measurements_needed(degree))?;
         Ok(Self::from_embedded(&EmbeddedData::new(measurements, degree)))
     }
 
@@ -154,7 +151,7 @@ impl MultibodyMotion {
 
 /// M_n² − Z_n − 1, the number of measurements that n motions need (Theorem 1).
 pub(crate) const fn measurements_needed(degree: usize) -> usize {
-    count(degree) * count(degree) - structural_zeros(degree) - 1
+    unknowns(degree) - 1
 }
 
 /// The matrix of the product of a polynomial of degree `degree`, given by its matrix, and a factor yᵀA x.

@@ -3,7 +3,7 @@
 use super::embedded::EmbeddedData;
 use super::moments::gradient_gram;
 use super::multibody::{MultibodyMotion, measurements_needed};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::linear::Triangle;
 use crate::linear::kernels::{dot, normalise, squared_sine};
 use crate::measurements::Measurements;
@@ -58,12 +58,9 @@ const SMALLEST_PIVOT: f64 = 1e-15;
 /// ```
 ///
 /// # Errors
-/// [`Error::TooFewMeasurements`] if N < M_n² − Z_n − 1.
+/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) if N < M_n² − Z_n − 1.
 pub fn taubin_motion(measurements: &Measurements, degree: usize) -> Result<MultibodyMotion> {
-    let needed = measurements_needed(degree);
-    if measurements.len() < needed {
-        return Err(Error::TooFewMeasurements { motions: degree, needed, found: measurements.len() });
-    }
+    measurements.check_number(degree, measurements_needed(degree))?;
     let data = EmbeddedData::new(measurements, degree);
     let start = MultibodyMotion::from_embedded(&data).coefficients();
     let gradients = gradient_gram(measurements, degree);

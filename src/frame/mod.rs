@@ -58,6 +58,12 @@ impl Frame {
         Ok(Frame { luminance: Plane::from_vec(width, height, luminance), rgba })
     }
 
+    /// Rejects a frame of another size.
+    pub(crate) fn check_size_of(&self, other: &Frame) -> Result<()> {
+        let [first, second] = [self, other].map(|frame| (frame.width(), frame.height()));
+        if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
+    }
+
     /// Width in pixels.
     pub fn width(&self) -> usize {
         self.luminance.width()

@@ -3,7 +3,6 @@
 use std::rc::Rc;
 
 use super::settings::Settings;
-use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::view::level::{Level, levels};
@@ -46,9 +45,4 @@ impl Pair {
     pub(crate) fn finest(&self) -> &Level {
         &self.levels[0]
     }
-}
-
-pub(crate) fn check_sizes(first: &Frame, second: &Frame) -> Result<()> {
-    let [first, second] = [first, second].map(|frame| (frame.width(), frame.height()));
-    if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
 }

@@ -43,7 +43,7 @@ pub struct MultibodyFlow {
 /// [`Error::NotFinite`].
 pub fn multibody_flow(derivatives: &[[f64; 3]], motions: usize) -> Result<MultibodyFlow> {
     within("motions", motions, [1, MOST_MOTIONS])?;
-    let (found, needed, columns) = (derivatives.len(), count(motions) - 1, count(motions));
+    let (found, columns) = (derivatives.len(), count(motions));
     if found > MOST {
         return Err(Error::InvalidOption {
             name: "derivatives",
@@ -51,9 +51,7 @@ pub fn multibody_flow(derivatives: &[[f64; 3]], motions: usize) -> Result<Multib
         });
     }
     let measurements = Measurements::new(vec![[0.0; 2]; found], derivatives.to_vec())?;
-    if found < needed {
-        return Err(Error::TooFewMeasurements { motions, needed, found });
-    }
+    measurements.check_number(motions, columns - 1)?;
     let embedded = embed_columns(motions, derivatives);
     let triangle = triangle_of(found, columns, |k| &embedded[k * found..][..found]);
     let mut coefficients = NullVector::of(&triangle).vector;

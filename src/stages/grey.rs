@@ -1,17 +1,14 @@
 //! Image derivatives in grey levels.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::{Derivatives, Frame, derivatives};
 
 /// [`derivatives`] of two frames in grey levels from 0 to 255, per pixel and per frame, half-way between the frames.
 ///
 /// # Errors
-/// [`Error::FrameSizeMismatch`].
+/// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch).
 pub fn grey_derivatives(first: &Frame, second: &Frame) -> Result<Derivatives> {
-    let [one, other] = [first, second].map(|frame| (frame.width(), frame.height()));
-    if one != other {
-        return Err(Error::FrameSizeMismatch { first: one, second: other });
-    }
+    first.check_size_of(second)?;
     let mut planes = derivatives(first, second, None);
     for plane in [&mut planes.x, &mut planes.y, &mut planes.t] {
         plane.values_mut().iter_mut().for_each(|value| *value *= 255.0);

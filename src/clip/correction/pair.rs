@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::dominant::Dominant;
-use crate::pair::frames::{Pair, check_sizes};
+use crate::pair::frames::Pair;
 use crate::pair::labels::visible_costs;
 use crate::pair::report::{SegmentedMotion, describe};
 use crate::pair::settings::Settings;
@@ -69,7 +69,7 @@ pub fn relabel(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Relabelling> {
-    check_sizes(first, second)?;
+    first.check_size_of(second)?;
     correction.check(first.width() * first.height())?;
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
     let settings =
