@@ -5,7 +5,7 @@ use crate::estimation::proposal::algebraic::{from_algebra, unexplained};
 use crate::estimation::proposal::local_flow::{LocalFlow, samples};
 use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::deflation::RoughCosts;
-use crate::estimation::selection::{Deflation, ScoredMotion};
+use crate::estimation::selection::{Deflation, ScoredMotion, winners};
 use crate::frame::{Derivatives, Frame, Plane};
 use crate::labelling::regions::description::counts;
 use crate::lanes::each_with;
@@ -209,9 +209,7 @@ fn shares(labels: &[u8], of: usize) -> Vec<f64> {
     counts(labels, of).into_iter().map(|count| count as f64 / labels.len().max(1) as f64).collect()
 }
 
-/// The index of the motion that is cheapest at each pixel; ties go to the first.
+/// The label of the motion that is cheapest at each pixel.
 fn cheapest(scored: &[ScoredMotion]) -> Vec<u8> {
-    let cost = |k: u8, p: usize| scored[usize::from(k)].cost.values()[p];
-    let least = |p| (1..scored.len() as u8).fold(0, |least, k| if cost(k, p) < cost(least, p) { k } else { least });
-    (0..scored[0].cost.values().len()).map(least).collect()
+    winners(scored).into_iter().map(|k| k as u8).collect()
 }

@@ -1,7 +1,7 @@
 //! Proposals at a finer level: one step of local flow (the constraint with n = 1 in a window) from the cheapest motion of each pixel.
 //! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
 
-use super::ScoredMotion;
+use super::{ScoredMotion, winners};
 use crate::estimation::proposal::{Proposal, distinct, translated};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
@@ -49,19 +49,6 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usi
         most,
         model,
     )
-}
-
-/// Index of the cheapest motion at every pixel.
-fn winners(selected: &[ScoredMotion]) -> Vec<usize> {
-    let mut winners = vec![0; selected[0].cost.values().len()];
-    for (p, winner) in winners.iter_mut().enumerate() {
-        for k in 1..selected.len() {
-            if selected[k].cost.values()[p] < selected[*winner].cost.values()[p] {
-                *winner = k;
-            }
-        }
-    }
-    winners
 }
 
 /// Products of gradients and residual along each pixel's cheapest motion, divided by the variance and averaged over windows.

@@ -49,3 +49,16 @@ pub(crate) fn smallest_cost(selected: &[ScoredMotion]) -> Plane {
     selected[1..].iter().for_each(|scored| scored.lower(&mut smallest));
     smallest
 }
+
+/// Index of the cheapest motion at every pixel; ties go to the first.
+pub(crate) fn winners(selected: &[ScoredMotion]) -> Vec<usize> {
+    let mut winners = vec![0; selected[0].cost.values().len()];
+    for (p, winner) in winners.iter_mut().enumerate() {
+        for k in 1..selected.len() {
+            if selected[k].cost.values()[p] < selected[*winner].cost.values()[p] {
+                *winner = k;
+            }
+        }
+    }
+    winners
+}
