@@ -6,6 +6,8 @@
 //! 4. [`labels`]: the motion of every working pixel;
 //! 5. [`groups`]: motions that are parts of one thing;
 //! 6. [`report`]: masks at full size, and what is known of them.
+//!
+//! [`frame_motions`] is the path of the pairs of clips, [`settings`] depend on options and size, and an [`observer`] may look on.
 
 pub(crate) mod dominant;
 pub(crate) mod frame_motions;
