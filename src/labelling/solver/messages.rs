@@ -39,8 +39,6 @@ const STALLED: f64 = 2e-6;
 const COARSE_ITERATIONS: usize = 3;
 /// Rows of a band.
 const ROWS: usize = 4;
-/// Messages of up to this many labels are computed where they are sent, larger ones in a function of their own. For the module's size.
-const INLINED: usize = 4;
 /// Steps that the last row of a band is behind the first.
 const BEHIND: usize = ROWS - 1;
 
@@ -447,26 +445,6 @@ fn lowest<const L: usize>(values: &[f32x4; L]) -> f32x4 {
 /// entry zero.
 #[inline(always)]
 fn message<const L: usize>(total: &[f32x4; L], shares: f32x4, old: &[f32x4; L], weights: f32x4) -> ([f32x4; L], f32x4) {
-    if L <= INLINED { computed(total, shares, old, weights) } else { computed_apart(total, shares, old, weights) }
-}
-
-#[inline(never)]
-fn computed_apart<const L: usize>(
-    total: &[f32x4; L],
-    shares: f32x4,
-    old: &[f32x4; L],
-    weights: f32x4,
-) -> ([f32x4; L], f32x4) {
-    computed(total, shares, old, weights)
-}
-
-#[inline(always)]
-fn computed<const L: usize>(
-    total: &[f32x4; L],
-    shares: f32x4,
-    old: &[f32x4; L],
-    weights: f32x4,
-) -> ([f32x4; L], f32x4) {
     let source: [f32x4; L] = std::array::from_fn(|l| shares * total[l] - old[l]);
     let low = lowest(&source);
     (source.map(|value| (value - low).fast_min(weights)), low)
