@@ -29,16 +29,8 @@ pub(crate) fn power_of_two(t: f64) -> f64 {
     let t = if t < LOWEST { LOWEST } else { t };
     let shifted = t + ROUNDER;
     let f = t - (shifted - ROUNDER);
-    let mut p = POLYNOMIAL[0];
-    p = p * f + POLYNOMIAL[1];
-    p = p * f + POLYNOMIAL[2];
-    p = p * f + POLYNOMIAL[3];
-    p = p * f + POLYNOMIAL[4];
-    p = p * f + POLYNOMIAL[5];
-    p = p * f + POLYNOMIAL[6];
-    p = p * f + POLYNOMIAL[7];
-    p = p * f + POLYNOMIAL[8];
-    p = p * f + 1.0;
+    let [first, others @ ..] = POLYNOMIAL;
+    let p = others.into_iter().fold(first, |p, coefficient| p * f + coefficient) * f + 1.0;
     // The low bits of `shifted` are k in two's complement. Added to the exponent, they multiply by 2ᵏ.
     f64::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 52))
 }
@@ -60,14 +52,8 @@ pub(crate) fn power_of_two_f32(t: f32) -> f32 {
     let t = if t < RANGE.1 { t } else { RANGE.1 };
     let shifted = t + ROUNDER_F32;
     let f = t - (shifted - ROUNDER_F32);
-    let mut p = POLYNOMIAL_F32[0];
-    p = p * f + POLYNOMIAL_F32[1];
-    p = p * f + POLYNOMIAL_F32[2];
-    p = p * f + POLYNOMIAL_F32[3];
-    p = p * f + POLYNOMIAL_F32[4];
-    p = p * f + POLYNOMIAL_F32[5];
-    p = p * f + POLYNOMIAL_F32[6];
-    p = p * f + 1.0;
+    let [first, others @ ..] = POLYNOMIAL_F32;
+    let p = others.into_iter().fold(first, |p, coefficient| p * f + coefficient) * f + 1.0;
     f32::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 23))
 }
 
