@@ -69,7 +69,8 @@ pub(super) fn label(
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> LabelledPair {
-    let mut energy = LabelEnergy { rejected, ..LabelEnergy::new(&pair, selected, settings) };
+    let mut energy = LabelEnergy::new(&pair, selected, settings);
+    energy.rejected = rejected;
     energy.solve();
     energy.prune();
     energy.try_static_background();
@@ -88,7 +89,8 @@ pub(super) fn label(
 
 /// Labels that go on from those expected at the working size: unless regions are merged or split, they are solved once.
 pub(super) fn label_on(pair: Pair, selected: &[ScoredMotion], expected: Vec<u8>, settings: &Settings) -> LabelledPair {
-    let mut energy = LabelEnergy { labels: expected, ..LabelEnergy::new(&pair, selected, settings) };
+    let mut energy = LabelEnergy::new(&pair, selected, settings);
+    energy.labels = expected;
     energy.prune();
     energy.try_static_background();
     if energy.motions.len() > 1 {
