@@ -3,7 +3,6 @@
 
 use image::ImageFormat;
 
-use super::unreadable;
 use crate::error::{Error, Result};
 use crate::frame::MAX_SIDE;
 
@@ -126,7 +125,7 @@ impl WebpChunk<'_> {
     fn check(&self) -> Result<()> {
         // The decoder allocates this length before it reads.
         if self.kind == *b"EXIF" && self.length > self.content.len() {
-            return Err(unreadable("its Exif data end after the file"));
+            return Err(Error::UnreadableImage { reason: "its Exif data end after the file".into() });
         }
         self.sides().map_or(Ok(()), supported)
     }

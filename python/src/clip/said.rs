@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use pyo3::prelude::*;
-use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, Spread};
 use veronese::MAX_SIDE;
+use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, Spread};
 
 use crate::errors::Failure;
 use crate::frames::image;
