@@ -215,9 +215,15 @@ model! {
     certain: f32 = 4.0;
     /// Probability of either side that nothing excludes.
     doubt: f32 = 0.01;
-    /// Odds of a first guess, nats: the cut of the first round, what was found where a person begins, the middle of a box or of a disc,
-    /// votes, and at most those of labels found automatically. 1.5 costs .004 J where a mask is given, .03 where a click is. Real.
-    guess: f32 = 2.0;
+    /// Odds of the first round's cut in the second one, nats. Real.
+    first_cut: f32 = 2.0;
+    /// Odds of the labels found automatically where a person first annotates an object, nats. 1.5 costs .004 J where a mask is given. Real.
+    found: f32 = 2.0;
+    /// Largest log-likelihood ratio of a label found automatically, nats. Real.
+    labels: f32 = 2.0;
+    /// Odds with which the fit of a prompt begins, nats: of the middle of a box or a disc, of a region, of votes. 1.5 costs .03 J where a click
+    /// is given. Real.
+    beginning: f32 = 2.0;
     /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .006 J after the second
     /// round of strokes, and rounds lose in five clips of twelve instead of one; 2 costs .004 after the first. Real.
     seen: f32 = 1.0;
@@ -259,21 +265,69 @@ model! {
     /// Coarse pixels are so many of the working size. Speed.
     coarse: usize = 4;
 
-    /// Ground around an object that is looked at, and how far it is searched, pixels of the working size.
+    /// Ground around an object that is looked at, pixels of the working size.
     margin: usize = 48;
-    /// Pixels that it takes to know colours or a place.
+    /// How far an object is searched around the place that is expected, pixels of the working size.
+    reach: usize = 48;
+    /// Least pixels from which colours, a place or a region are known.
     pixels: usize = 100;
-    /// Distance of places that are the same, pixels of the working size or cells of the memory: around a click, a shift, a border.
-    near: f32 = 3.0;
+    /// Pixels of a template that are compared. Speed.
+    samples: usize = 100;
+    /// Pixels below which a change leaves no separate part behind.
+    speck: usize = 100;
+    /// Radius of a click, pixels of the working size.
+    click: f32 = 3.0;
+    /// Largest step of the fine search for a shift, pixels of the working size. Speed.
+    fine: usize = 3;
+    /// Standard deviation within which a border may be off, pixels of the working size.
+    border: f32 = 3.0;
+    /// Cells of the memory around an object, on each side.
+    cells_around: usize = 3;
     /// Difference of displacements that are the same, and how well a place is known after a frame, pixels of the working size.
     motion: f32 = 1.0;
+    /// The same, as a share of the displacement.
+    relative_motion: f32 = 0.2;
     /// Distance within which parts of an object are looked for, and which parts it, in roots of its size.
     search: f64 = 1.0;
-    /// A smaller share of a thing is nothing: what grazes it, what is not expected; more than the rest is all of it. Also the weight as ground
-    /// of a pixel of which nothing is said.
-    few: f32 = 0.1;
-    /// A larger share of a thing is a part of it, and a larger relative difference is one; more than the rest is most of it.
-    part: f32 = 0.2;
+    /// Share by which that distance grows in each frame in which the object is hidden.
+    search_growth: f32 = 0.1;
+
+    /// Least share of an object that is carried onto a part of the next frame to be there.
+    carried: f32 = 0.1;
+    /// Least likeness of an object that comes back.
+    likeness: f32 = 0.2;
+    /// Share of an object below which a part of it is a fragment, and no object of its own.
+    fragment: f32 = 0.2;
+    /// Share of an object below which a part that its division leaves goes to the other side.
+    sliver: f32 = 0.1;
+    /// Share of an object that is out of sight from which it is partly hidden.
+    hidden: f32 = 0.1;
+    /// Share of a partly hidden object that may look different; from there on it has changed instead.
+    altered: f32 = 0.2;
+    /// Mean truncated difference below which a template is found close to the expected place.
+    same_template: f32 = 0.2;
+    /// What a pixel of a template that is out of sight is below the largest difference; beyond that nothing is seen again.
+    unseen: f32 = 0.2;
+    /// How much better than usual a shift must be at which a hidden object is seen again, mean truncated difference.
+    distinct: f32 = 0.1;
+    /// Least probability from which an object is expected at a pixel.
+    expected: f32 = 0.1;
+    /// Least probability from which a pixel counts for the centre of an object.
+    central: f32 = 0.2;
+    /// Weight, as ground, of a pixel without a seed where a person first annotates an object that was not found.
+    unannotated: f32 = 0.1;
+    /// Share of `back_off` with which the colours of all places count.
+    places: f32 = 0.1;
+    /// Odds from which motions contradict a label of a pair, nats.
+    contradiction: f32 = 0.2;
+    /// Rim of a disc or a box that need not be its object, as a share of the radius.
+    rim: f32 = 0.2;
+    /// Share of the votes of a click's masks from which a pixel is the object's.
+    votes: f32 = 0.2;
+    /// Share of an object below which a separate piece goes with any stroke that takes away from it.
+    piece: f32 = 0.2;
+    /// Share of a separate piece's length that a stroke through it may leave.
+    uncrossed: f32 = 0.2;
     /// What is left of an object's full size in a frame in which less is in sight: objects also become smaller by moving away.
     shrinking: f32 = 0.97;
     /// Frames in a row in which two must move together to be one, or apart to be two. Generated.

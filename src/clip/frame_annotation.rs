@@ -193,8 +193,8 @@ impl FrameAnnotation {
                     return false;
                 }
                 // A dab in a large piece may be about part of it; a stroke through it is not.
-                let is_through = length(drawn) as f32 > (1.0 - model().part) * length(bounds) as f32;
-                (size as f32) < model().part * all as f32 || is_through && 2 * size < all
+                let is_through = length(drawn) as f32 > (1.0 - model().uncrossed) * length(bounds) as f32;
+                (size as f32) < model().piece * all as f32 || is_through && 2 * size < all
             };
             let goes: Vec<bool> = (0..parts.list.len()).map(goes).collect();
             let mut piece: Vec<u8> =

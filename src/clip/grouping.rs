@@ -143,7 +143,7 @@ impl Census {
 impl Meeting {
     fn is_of_one_object(&self) -> bool {
         self.frames >= model().together
-            && self.difference <= f64::from(model().part) * self.displacement
+            && self.difference <= f64::from(model().relative_motion) * self.displacement
             && self.distance <= model().search
     }
 }

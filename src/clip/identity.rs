@@ -158,7 +158,7 @@ impl Identities {
         let size = pixels.len() as f64;
         let claims = |object: &&Object| {
             let count = counts[usize::from(object.number)] as f64;
-            count >= f64::from(model().few) * size || (count > 0.0 && emerged.contains(&object.number))
+            count >= f64::from(model().carried) * size || (count > 0.0 && emerged.contains(&object.number))
         };
         let mut numbers: Vec<u8> = self.objects.iter().filter(claims).map(|object| object.number).collect();
         sort_few(&mut numbers, u8::cmp);
@@ -173,7 +173,7 @@ impl Identities {
 
     /// The object near a place whose colours are most alike among those that may be there, if they are more alike than `least`.
     fn most_alike(&self, sight: &Sight, least: f64, may_be: impl Fn(&Object) -> bool) -> Option<u8> {
-        let mut best = (least.max(f64::from(model().part)), None);
+        let mut best = (least.max(f64::from(model().likeness)), None);
         for object in &self.objects {
             let alike = object.whole.alike(sight);
             if may_be(object) && object.is_near(sight.centre) && alike > best.0 {
@@ -201,7 +201,7 @@ impl Identities {
             let number = self.objects[k].number;
             let pieces: Vec<usize> = order.iter().copied().filter(|&c| found.list[c].label == number).collect();
             let whole: usize = pieces.iter().map(|&c| found.list[c].size).sum();
-            let large = |c: &&usize| found.list[**c].size as f64 >= f64::from(model().part) * whole as f64;
+            let large = |c: &&usize| found.list[**c].size as f64 >= f64::from(model().fragment) * whole as f64;
             let second = pieces.iter().skip(1).find(large).copied();
             let Some(second) = second else {
                 self.objects[k].apart = Apart::default();

@@ -21,7 +21,7 @@ pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &Flow, from: u8, n
     if (found as f64) < 0.5 * expected as f64 {
         return false;
     }
-    absorb_small(&mut carried, width, (f64::from(model().few) * found as f64) as usize);
+    absorb_small(&mut carried, width, (f64::from(model().sliver) * found as f64) as usize);
     labels
         .iter_mut()
         .zip(&carried)

@@ -252,7 +252,7 @@ impl Tracker {
         }
         let Foreground { record, own: mut odds, mask, .. } = first;
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
-            let cut = if object > 0 { model().guess } else { -model().guess };
+            let cut = if object > 0 { model().first_cut } else { -model().first_cut };
             *odds = model().trust * *odds + cut;
         }
         let foreground = self.rounds[1].push(record, odds)?;

@@ -53,7 +53,7 @@ impl AppearanceModel {
 
     /// Nothing yet, of an object within an area.
     pub(super) fn new(area: &Area, cell: f32) -> AppearanceModel {
-        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().near as usize;
+        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().cells_around;
         let size = [cells(area.width()), cells(area.height())];
         AppearanceModel {
             size,
@@ -221,8 +221,8 @@ impl AppearanceModel {
                 };
                 let (near, wider) = (sample(&planes), sample(&wide));
                 let back_off = model().back_off;
-                let of_wider =
-                    (wider[0] + model().few * back_off * shares[k]) / (wider[0] + wider[1] + model().few * back_off);
+                let of_wider = (wider[0] + model().places * back_off * shares[k])
+                    / (wider[0] + wider[1] + model().places * back_off);
                 probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
             }
         }

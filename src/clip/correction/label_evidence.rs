@@ -62,8 +62,8 @@ impl LabelEvidence {
             (count + model().doubt * total + 1.0) / ((1.0 + 2.0 * model().doubt) * total + 2.0)
         };
         for (ratio, [object, ground]) in self.ratios.iter_mut().zip(&self.counts) {
-            *ratio =
-                libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-model().guess, model().guess);
+            *ratio = libm::logf(share(*object, totals[0]) / share(*ground, totals[1]))
+                .clamp(-model().labels, model().labels);
         }
     }
 }

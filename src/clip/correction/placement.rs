@@ -68,11 +68,11 @@ impl Whole {
         let has_changed = || {
             let alike = self.template.alike(features, shift, &[]);
             let same = mask.values().iter().zip(alike.values()).filter(|(mask, alike)| **mask > 0.5 && **alike > 0.5);
-            pixels > 0.5 * expected && (same.count() as f32) < (1.0 - model().part) * pixels
+            pixels > 0.5 * expected && (same.count() as f32) < (1.0 - model().altered) * pixels
         };
-        let is_hidden = self.known && pixels < (1.0 - model().few) * expected && !has_changed();
+        let is_hidden = self.known && pixels < (1.0 - model().hidden) * expected && !has_changed();
         let is_partly =
-            self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().few) * expected;
+            self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().hidden) * expected;
         if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().shrinking * self.pixels {
             // What it is off by came in all the frames since.
             let share = match self.velocity {
@@ -129,7 +129,7 @@ impl Whole {
         });
         let [(by_flow, one), (by_velocity, other)] =
             [along, onward].map(|expected| self.template.close(features, expected));
-        if self.frames > 0 || one.min(other) < model().part {
+        if self.frames > 0 || one.min(other) < model().same_template {
             return placed(if other < one { by_velocity } else { by_flow });
         }
         placed(self.template.nearest(features, along))

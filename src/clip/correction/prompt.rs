@@ -74,7 +74,7 @@ pub(super) fn outline(
     for (at, inside) in &clicks {
         let centre = view.place(features.pixel(*at, width));
         for p in 0..features.pixels() {
-            if view.square(p, centre, [model().near; 2]) < 1.0 {
+            if view.square(p, centre, [model().click; 2]) < 1.0 {
                 view.sure[p] = u8::from(!inside);
             }
         }
@@ -145,7 +145,7 @@ impl View<'_> {
     fn clicked(&self, click: usize) -> Vec<u8> {
         let (pixels, [width, height]) = (self.features.pixels(), self.features.size);
         let centre = self.place(click);
-        let whole = 1.0 - model().part;
+        let whole = 1.0 - model().rim;
         let disc = |radius: f32| {
             let area = self.around(&Area::of(&[click], width).grown(radius as usize, width, height));
             self.ellipse(area, centre, [radius; 2], [whole, 1.0 / whole])
@@ -169,13 +169,13 @@ impl View<'_> {
         votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
         let agreed: Vec<usize> = (0..pixels)
             .filter(|&p| match self.sure[p] {
-                2 => votes[p] > model().part,
+                2 => votes[p] > model().votes,
                 sure => sure == 0,
             })
             .collect();
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
-        let odds = votes.iter().map(|votes| 2.0 * model().guess * (votes - model().part)).collect();
+        let odds = votes.iter().map(|votes| 2.0 * model().beginning * (votes - model().votes)).collect();
         let area = self.around(&Area::of(&agreed, self.features.size[0]));
         self.part_of(click, self.fitted(Beginning { area, odds, sides }))
     }
@@ -183,13 +183,13 @@ impl View<'_> {
     /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
     /// middle with the squared distance, to none at `even`.
     fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
-        let object = 1.0 - model().part;
+        let object = 1.0 - model().rim;
         let squares: Vec<f32> = (0..self.features.pixels()).map(|p| self.square(p, centre, radii)).collect();
         let mut sides = vec![1; squares.len()];
         for p in area.pixels(self.features.size[0]).filter(|&p| squares[p] < ground * ground) {
             sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
-        Beginning { area, sides, odds: squares.iter().map(|square| model().guess * (even - square)).collect() }
+        Beginning { area, sides, odds: squares.iter().map(|square| model().beginning * (even - square)).collect() }
     }
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
@@ -206,10 +206,10 @@ impl View<'_> {
         Some(Beginning {
             area: self.around(&Area { columns: left..right + 1, rows: top..bottom + 1 }),
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
-            odds: gaussian(&self.features.plane(&inside), model().near)
+            odds: gaussian(&self.features.plane(&inside), model().border)
                 .values()
                 .iter()
-                .map(|share| model().guess * (2.0 * share - 1.0))
+                .map(|share| model().beginning * (2.0 * share - 1.0))
                 .collect(),
         })
     }

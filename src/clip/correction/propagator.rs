@@ -129,8 +129,8 @@ impl Propagator {
         let features = of.features;
         let is_found = of.found.contains(&object);
         let unannotated = |p: usize| match is_found {
-            true if of.found[p] == object => model().guess,
-            true => -model().guess,
+            true if of.found[p] == object => model().found,
+            true => -model().found,
             false => -2.0 * model().certain,
         };
         let mut odds: Vec<f32> = (0..features.pixels()).map(unannotated).collect();
@@ -148,7 +148,7 @@ impl Propagator {
                 // Most pixels without a seed are ground.
                 let has_seed = |p: usize| of.seeds.is_some_and(|seeds| seeds[p] != Seed::Nothing);
                 let ground = |p: usize| if has_seed(p) { 2 } else { 1 };
-                appearance.learn(features, centre, Source::Recent, model().few, &ground);
+                appearance.learn(features, centre, Source::Recent, model().unannotated, &ground);
             }
             let remembered = appearance.read(features, &area, centre);
             for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(appearance.trusts(features)) {
@@ -211,13 +211,14 @@ impl Propagator {
             awaited = Some(features.plane_of(&|p| alike.values()[p] + around.values()[p]));
         }
         let weight = if hidden.is_some() { 1.0 } else { model().trust };
-        let is_near =
-            |p: &usize| both[*p][0] > model().few || both[*p][1] > model().few || soft.values()[*p] > model().few;
+        let is_near = |p: &usize| {
+            both[*p][0] > model().expected || both[*p][1] > model().expected || soft.values()[*p] > model().expected
+        };
         let area = Area::of(&(0..width * height).filter(is_near).collect::<Vec<usize>>(), width);
         let area = if area.width() == 0 { features.area() } else { area.grown(model().margin, width, height) };
         let carried = features.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
         let central =
-            features.plane_of(&|p| if carried.values()[p] > model().part { carried.values()[p] } else { 0.0 });
+            features.plane_of(&|p| if carried.values()[p] > model().central { carried.values()[p] } else { 0.0 });
         let centre =
             reached.whole.expected_centre(placement.as_ref()).or_else(|| centre_of(&central)).unwrap_or(reached.centre);
         let learns = of.is_anchor && of.spreads && !self.knows(of);
@@ -234,7 +235,7 @@ impl Propagator {
                 + model().memory * memory
                 + evidence;
             // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
-            let most = if hidden.is_some() && carried.values()[p] < model().few {
+            let most = if hidden.is_some() && carried.values()[p] < model().expected {
                 -model().undecided
             } else {
                 model().certain

@@ -43,7 +43,7 @@ impl Still {
         let mut appearance = AppearanceModel::of(&shown);
         appearance.learn_seeds(features, centre, Some(said));
         // Where the motions clearly contradict what was found, what is said decides between them.
-        let smooth = gaussian(motion, model().near);
+        let smooth = gaussian(motion, model().border);
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
         let trust = trust(said, found, &is_doubted);
         let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
@@ -56,7 +56,7 @@ impl Still {
         let remembered = appearance.read(features, &features.area(), centre);
         let odds =
             remembered.iter().zip(appearance.trusts(features)).enumerate().map(|(p, (remembered, of_colour))| {
-                let presumed = if presumed(p) { of_colour[0] * model().guess } else { -of_colour[1] * model().guess };
+                let presumed = if presumed(p) { of_colour[0] * model().found } else { -of_colour[1] * model().found };
                 let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
                 weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
             });
@@ -79,7 +79,7 @@ fn trust(said: &[Seed], found: &[bool], is_doubted: &[bool]) -> f32 {
 
 /// Whether the motions at a pixel clearly contradict what was found there.
 fn contradicts(found: bool, motion: f32) -> bool {
-    if found { motion < -model().part } else { motion > model().part }
+    if found { motion < -model().contradiction } else { motion > model().contradiction }
 }
 
 #[cfg(test)]

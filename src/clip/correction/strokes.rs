@@ -113,7 +113,7 @@ fn smooth(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize) {
     }
     for (p, inside) in mask.iter_mut().enumerate() {
         let part = parts.of[p] as usize;
-        if parts.list[part].size < model().pixels && is_new[part] && !is_said[part] {
+        if parts.list[part].size < model().speck && is_new[part] && !is_said[part] {
             *inside = 1 - *inside;
         }
     }

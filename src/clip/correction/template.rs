@@ -62,7 +62,7 @@ impl Template {
             fine: at(&features.fine, p),
             coarse: at(&features.coarse, p / width / model().coarse * coarse_width + p % width / model().coarse),
         };
-        let samples = corners.iter().step_by((corners.len() / model().pixels).max(1)).map(sample).collect();
+        let samples = corners.iter().step_by((corners.len() / model().samples).max(1)).map(sample).collect();
         Template { mask: mask.clone(), area, colours, samples }
     }
 
@@ -77,18 +77,18 @@ impl Template {
                     shift.map(|shift| shift / model().coarse as f32),
                     size,
                 );
-                to.map_or(1.0 - model().part, |q| difference(sample.coarse, at(&features.coarse, q)))
+                to.map_or(1.0 - model().unseen, |q| difference(sample.coarse, at(&features.coarse, q)))
             };
             self.mean(of_sample)
         };
-        let reach = (model().margin / model().coarse) as isize;
+        let reach = (model().reach / model().coarse) as isize;
         let coarse = best_of(reach, model().coarse as f32, middle, middle, &mut cost).0;
-        best_of(model().near as isize, 1.0, coarse, expected, &mut |shift| self.cost(features, shift, &[])).0
+        best_of(model().fine as isize, 1.0, coarse, expected, &mut |shift| self.cost(features, shift, &[])).0
     }
 
     /// The best shift close to the one expected, and what it costs.
     pub(super) fn close(&self, features: &FrameFeatures, expected: Shift) -> (Shift, f32) {
-        best_of(model().near as isize, 1.0, expected, expected, &mut |shift| self.cost(features, shift, &[]))
+        best_of(model().fine as isize, 1.0, expected, expected, &mut |shift| self.cost(features, shift, &[]))
     }
 
     /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
@@ -100,21 +100,21 @@ impl Template {
         frames: usize,
         covered: &[bool],
     ) -> Option<Shift> {
-        let reach =
-            ((model().near + model().motion * frames as f32) as isize).min((model().margin / model().coarse) as isize);
+        let reach = ((model().fine as f32 + model().motion * frames as f32) as isize)
+            .min((model().reach / model().coarse) as isize);
         let mut costs = Vec::new();
         let (best, least) = best_of(reach, 1.0, expected, expected, &mut |shift| {
             costs.push(self.cost(features, shift, covered));
             costs[costs.len() - 1]
         });
         let usual = median(&costs).unwrap_or(0.0);
-        (least < 1.0 - model().part && usual - least > model().few).then_some(best)
+        (least < 1.0 - model().unseen && usual - least > model().distinct).then_some(best)
     }
 
     fn cost(&self, features: &FrameFeatures, shift: Shift, covered: &[bool]) -> f32 {
         self.mean(|sample| match shifted(sample.at, shift, features.size) {
             Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&features.fine, q)),
-            _ => 1.0 - model().part,
+            _ => 1.0 - model().unseen,
         })
     }
 

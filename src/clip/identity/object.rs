@@ -44,7 +44,7 @@ impl Apart {
             let ([u, v], [r, s]) = (motion.flow(x, y), mean_motion(along, other));
             let [a, b] = along.motions[BACKGROUND].flow(x, y);
             let (difference, own) = (libm::hypot(u - r, v - s), libm::hypot(r - a, s - b));
-            difference > f64::from(model().motion) && difference > f64::from(model().part) * own
+            difference > f64::from(model().motion) && difference > f64::from(model().relative_motion) * own
         };
         self.frames = if differs((one, other)) && differs((other, one)) { self.frames + 1 } else { 0 };
     }
@@ -88,7 +88,7 @@ impl Object {
 
     /// Whether less of it was in sight than there is.
     pub(crate) fn is_covered(&self) -> bool {
-        self.in_sight < (1.0 - f64::from(model().few)) * self.whole.size
+        self.in_sight < (1.0 - f64::from(model().hidden)) * self.whole.size
     }
 
     /// Whether it may come back.
@@ -103,7 +103,8 @@ impl Object {
     /// Whether a place is near where it is expected.
     pub(crate) fn is_near(&self, [x, y]: [f64; 2]) -> bool {
         let [a, b] = self.whole.centre;
-        let reach = model().search * self.whole.size.sqrt() * (1.0 + f64::from(model().few) * self.hidden as f64);
+        let reach =
+            model().search * self.whole.size.sqrt() * (1.0 + f64::from(model().search_growth) * self.hidden as f64);
         ((x - a) * (x - a) + (y - b) * (y - b)).sqrt() < reach
     }
 }
@@ -119,5 +120,5 @@ fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
 /// Whether one displacement is like another.
 fn same([u, v]: [f64; 2], [r, s]: [f64; 2]) -> bool {
     ((u - r) * (u - r) + (v - s) * (v - s)).sqrt()
-        < f64::from(model().motion) + f64::from(model().part) * (r * r + s * s).sqrt()
+        < f64::from(model().motion) + f64::from(model().relative_motion) * (r * r + s * s).sqrt()
 }
