@@ -306,7 +306,7 @@ model! {
     altered: f32 = 0.2;
     /// Mean truncated difference below which a template is found close to the expected place.
     same_template: f32 = 0.2;
-    /// What a pixel of a template that is out of sight is below the largest difference; beyond that nothing is seen again.
+    /// Difference of a template's pixel that is out of sight, below the largest one; beyond that nothing is seen again.
     unseen: f32 = 0.2;
     /// How much better than usual a shift must be at which a hidden object is seen again, mean truncated difference.
     distinct: f32 = 0.1;
@@ -328,7 +328,7 @@ model! {
     piece: f32 = 0.2;
     /// Share of a separate piece's length that a stroke through it may leave.
     uncrossed: f32 = 0.2;
-    /// What is left of an object's full size in a frame in which less is in sight: objects also become smaller by moving away.
+    /// Share of an object's full size that is left in a frame in which less is in sight: objects also become smaller by moving away.
     shrinking: f32 = 0.97;
     /// Frames in a row in which two must move together to be one, or apart to be two. Generated.
     together: usize = 5;

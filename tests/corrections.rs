@@ -34,7 +34,7 @@ fn prompt(frame: usize, point: Point, object: u8) -> Prompt {
     Prompt { frame, object, clicks, within, spread: Spread::Both }
 }
 
-/// What is said of a frame.
+/// A label map of a frame.
 type Said = (usize, Vec<u8>, Spread);
 
 impl Shot {
@@ -52,7 +52,7 @@ impl Shot {
         correct_some(&mut self.clip, &self.frames, *index, labels, *spread)
     }
 
-    /// What is certain where a thing and the ground are seen, and nothing of other things.
+    /// A label map that is certain of a thing and the ground, and leaves other things open.
     fn mask(&self, index: usize, thing: usize, number: u8) -> Vec<u8> {
         mask(&self.truths[index], &[(0, 0), (thing, number)])
     }
@@ -325,7 +325,7 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
     let said = |shot: &Shot| shot.stroke(200, [46, 24, 40, 14]);
     shot.correct(4, &said(&shot));
     for (before, after) in found.iter().zip(shot.labels()) {
-        // What is left of an object of which the other one has most is none any more.
+        // The rest of an object of which the other one has most is none any more.
         let mut sizes = [[0; 2]; 256];
         for (&b, &a) in before.iter().zip(&after) {
             sizes[usize::from(b)][0] += 1;
@@ -343,7 +343,7 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
             assert!(before.iter().zip(&after).all(|(b, a)| *b == 0 || a == b));
         }
     }
-    // What was said holds where nothing locked is.
+    // The annotation holds where nothing locked is.
     shot.correct(4, &vec![200; 128 * 96]);
     assert!(found[4].iter().zip(&shot.labels()[4]).all(|(b, a)| *b != 0 || *a == 200));
     // Unlocked, it can be taken.

@@ -1,4 +1,4 @@
-//! What a person may rely on while saying something of a clip, whatever it is and in whatever order: what was named, painted, given,
+//! Promises to a person who annotates a clip, in whatever order: what was named, painted, given,
 //! prompted, accepted or locked stays as it is while something is said of another object.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
@@ -113,7 +113,7 @@ impl Session<'_> {
         let Some(&somewhere) = inside.get(self.below(inside.len().max(1))) else { return };
         let at = |p: usize| [p % SIZE[0], p / SIZE[0]];
         let mut said = Annotations::default();
-        match self.below(10) {
+        match self.below(12) {
             0 | 1 => {
                 let (x, y) = (inside.iter().map(|&p| at(p)[0]), inside.iter().map(|&p| at(p)[1]));
                 let [left, top] = [x.clone().min().unwrap(), y.clone().min().unwrap()];
@@ -192,6 +192,37 @@ impl Session<'_> {
                 said.accepted = Some(self.accepted.iter().map(|&frame| Accepted { frame, labels: None }).collect());
                 annotate(&mut self.clip, &self.scene.frames, said);
                 assert!(self.shown() == self.labels, "to accept a frame changes nothing");
+            }
+            9 => {
+                // Two that are seen become one.
+                let seen: BTreeSet<u8> = self.labels[frame].iter().copied().filter(|k| *k > 0).collect();
+                let seen: Vec<u8> = seen.into_iter().collect();
+                let pick = [self.below(seen.len().max(1)), self.below(seen.len().max(1))];
+                let [Some(&from), Some(&into)] = pick.map(|at| seen.get(at)) else { return };
+                if from == into {
+                    return;
+                }
+                said.numbers = vec![[from, into]];
+                if self.locked.contains(&from) || self.locked.contains(&into) {
+                    assert!(matches!(self.clip.annotate(said), Err(Error::ObjectLocked { .. })));
+                    return;
+                }
+                annotate(&mut self.clip, &self.scene.frames, said);
+                self.labels.iter_mut().flatten().filter(|label| **label == from).for_each(|label| *label = into);
+                assert!(self.shown() == self.labels, "to merge {from} into {into} changes their number alone");
+                self.spoken.insert(into);
+                self.named.remove(&from);
+            }
+            10 => {
+                // One that is found automatically is deleted.
+                let seen: Vec<u8> = self.labels[frame].iter().copied().filter(|k| *k > 0).collect();
+                let Some(&one) = seen.get(self.below(seen.len().max(1))).filter(|k| !self.kept().contains(k)) else {
+                    return;
+                };
+                said.numbers = vec![[one, 0]];
+                annotate(&mut self.clip, &self.scene.frames, said);
+                self.labels.iter_mut().flatten().filter(|label| **label == one).for_each(|label| *label = 0);
+                assert!(self.shown() == self.labels, "to delete {one} changes nothing else");
             }
             _ => {
                 let bytes = self.clip.to_bytes();

@@ -353,7 +353,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   edits?: ClipEdits | undefined;
   /**
    * Numbers of objects of which nothing changes a pixel, but annotations of themselves in the same call. New annotations of an object that the
-   * `state` has locked are the error `object-locked`, and so it is to delete it or to merge others into it. Where this or that of the edits is
+   * `state` has locked are the error `object-locked`, and so it is to delete it or to merge it. Where this or that of the edits is
    * given, it replaces what a `state` has locked.
    */
   locked?: readonly number[] | undefined;

@@ -116,7 +116,7 @@ pub struct Annotations {
     pub numbers: Vec<[u8; 2]>,
 }
 
-/// What is known of a pixel about one object.
+/// The annotation of a pixel about one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seed {
     Nothing,

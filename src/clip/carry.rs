@@ -6,7 +6,7 @@ use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::labelling::BACKGROUND;
 
-/// What a plane of another frame says about each pixel of this one: its value where the pixel's motion leads, or at the nearest place
+/// A plane of another frame at each pixel of this one: its value where the pixel's motion leads, or at the nearest place
 /// inside the frame.
 pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
     let (width, height) = (plane.width(), plane.height());
@@ -84,7 +84,7 @@ mod tests {
         let motions = vec![AffineMotion::STATIC, AffineMotion::translation(-3.0, 0.0)];
         let flow = |left| Flow { width, labels: square(left), motions: motions.clone(), measured: true };
         assert_eq!(continued_labels(&flow(5))[..], square(8)[..]);
-        // What leaves the frame is gone.
+        // Pixels that leave the frame are gone.
         assert_eq!(continued_labels(&flow(14))[..], square(17)[..]);
     }
 }

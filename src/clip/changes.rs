@@ -1,4 +1,4 @@
-//! What annotations change: in which frames, and of which objects how many pixels.
+//! Changes by annotations: in which frames, and of which objects how many pixels.
 
 use super::runs::Runs;
 

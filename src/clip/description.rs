@@ -95,7 +95,7 @@ impl WorkingFrame<'_> {
         }
     }
 
-    /// What these labels of full size say of the objects.
+    /// The objects of full-size labels.
     fn describe(&self, labels: Vec<u8>, width: usize) -> ClipFrame {
         let scale = |motion: &AffineMotion| motion.scaled(self.reduction(width) as f64);
         let background = self.onward.map(|onward| scale(&onward.motions[BACKGROUND]));

@@ -1,4 +1,4 @@
-//! What a pair tells about the pixels of its first frame: the odds that each belongs to an object, and where each goes. And how this is
+//! The evidence of a pair about the pixels of its first frame: the odds that each belongs to an object, and where each goes. And how this is
 //! kept.
 
 use super::runs::Runs;
@@ -128,14 +128,14 @@ impl KeptOdds {
     }
 }
 
-/// What solving the pairs of one more frame has told.
+/// The solved pairs of one more frame.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptPairs {
     /// From the frame before to this one.
     onward: Option<(KeptOdds, KeptFlow)>,
     /// From this frame to the one before.
     back: Option<(KeptOdds, KeptFlow)>,
-    /// What is expected of the next pair.
+    /// The expectation for the next pair.
     prior: Option<Prior>,
 }
 

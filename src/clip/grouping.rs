@@ -1,4 +1,4 @@
-//! What only the whole clip tells of its objects: which of them are parts of one, which are none, and their final numbers.
+//! Objects by the whole clip: which of them are parts of one, which are none, and their final numbers.
 //!
 //! Parts that move together while they are seen together are one object (the Gestalt law of common fate). An object of a few frames in a
 //! longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,

@@ -109,9 +109,9 @@ impl Identities {
         }
     }
 
-    /// What comes out from behind an object touches it, and the motions of one pair lead it there. It moves by itself, as something did
-    /// that is hidden, and has more of its colours than of those of the object in front. Such pieces are counted as carried from what was
-    /// hidden, whose numbers are returned.
+    /// A piece that comes out from behind an object touches it, and the motions of one pair lead it there. It moves by itself, as a hidden
+    /// object did, and has more of its colours than of those of the object in front. Such pieces count as carried from hidden objects, whose
+    /// numbers are returned.
     fn emerge(&self, record: &Record, mask: &[u8], smallest: usize, carried: &mut [u8]) -> Vec<u8> {
         let Some(along) = telling(record) else { return Vec::new() };
         let moving: Vec<u8> =

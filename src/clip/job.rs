@@ -88,8 +88,9 @@ impl ClipJob {
         }
         for (set, now) in [(&mut clip.locked, locked), (&mut clip.named, named)] {
             if let Some(objects) = now {
-                set.fill(false);
-                objects.iter().for_each(|&object| set[usize::from(object)] = true);
+                // An object is locked or named with those that were merged into it.
+                let is_of = |k: usize| objects.contains(&(k as u8)) || objects.contains(&clip.numbers[k]);
+                (0..set.len()).for_each(|k| set[k] = is_of(k));
             }
         }
         job.locks.iter().for_each(|&object| clip.locked[usize::from(object)] = false);
@@ -100,7 +101,7 @@ impl ClipJob {
             let is_new = |of: &Accepted| !clip.frames[of.frame].accepted || of.labels.is_some();
             let accept: Vec<Step> = accepted.into_iter().filter(is_new).map(Step::Accept).collect();
             if !accept.is_empty() {
-                // What is accepted is seen after the masks.
+                // A frame is accepted as it is seen after the masks.
                 job.steps.extend(painted(&masks, &[]));
                 job.steps.extend(accept);
                 masks.retain(|mask| corrections.iter().any(|painted| painted.frame == mask.frame));
@@ -126,7 +127,7 @@ impl ClipJob {
         self.changes.frames()
     }
 
-    /// What objects gained and lost so far, by frame, then by object; without what [`Annotations::numbers`] change.
+    /// Pixels that objects gained and lost so far, by frame, then by object; [`Annotations::numbers`] are not counted.
     pub fn changes(&self) -> Vec<Changed> {
         self.changes.list()
     }
@@ -216,14 +217,18 @@ fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8>
     };
     let prompted =
         |prompt: &&Prompt| is_locked(&prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt);
-    // An object cannot be deleted and locked at once, and a locked one does not grow.
-    let edited = |[object, number]: &&[u8; 2]| {
-        let is_kept = if *number == 0 { stays_locked(object) } else { number != object && is_locked(number) };
-        is_kept && !clip.frames_with(*object).is_empty()
+    // An object cannot be deleted and locked at once, and a locked one is not merged.
+    let edited = |[object, number]: &[u8; 2]| {
+        let kept = match number {
+            0 => stays_locked(object).then_some(*object),
+            number if number == object => None,
+            _ => [*object, *number].into_iter().find(is_locked),
+        };
+        kept.filter(|_| !clip.frames_with(*object).is_empty())
     };
     corrections
         .iter()
         .find_map(painted)
         .or_else(|| prompts.iter().find(prompted).map(|prompt| prompt.object))
-        .or_else(|| numbers.iter().find(edited).map(|[object, number]| if *number == 0 { *object } else { *number }))
+        .or_else(|| numbers.iter().find_map(edited))
 }

@@ -1,4 +1,4 @@
-//! What is known of one frame of a clip.
+//! A frame of a clip, and its motions to the frames beside it.
 
 use std::rc::Rc;
 

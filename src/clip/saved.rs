@@ -1,4 +1,4 @@
-//! What is kept of a clip, as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
+//! Values of a clip as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
 //! then a hash of all that. ObjectSet are little-endian.
 
 use crate::error::{Error, Result};
@@ -14,9 +14,9 @@ pub(super) trait Saved: Sized {
     fn read(bytes: &mut &[u8]) -> Option<Self>;
 }
 
-/// What bytes are of.
+/// The kind of some bytes.
 pub(super) struct Format {
-    /// What to call them in errors.
+    /// Their name in errors.
     pub(super) name: &'static str,
     /// Their beginning, which no other version has.
     pub(super) mark: &'static str,

@@ -101,11 +101,15 @@ impl SegmentedClip {
         objects
     }
 
-    /// The objects that only annotations of themselves change: a person locked or named them, or accepted them in some frame.
+    /// The objects that only annotations of themselves change: a person locked, named or merged them, or accepted them in some frame.
     pub(super) fn protected(&self) -> ObjectSet {
         let mut protected: ObjectSet = std::array::from_fn(|k| self.locked[k] || self.named[k]);
         for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
             layer.labels.each().for_each(|(label, _)| protected[usize::from(label)] = true);
+        }
+        let is_merged = |(k, number): &(usize, &u8)| **number != 0 && usize::from(**number) != *k;
+        for (k, &number) in self.numbers.iter().enumerate().filter(is_merged) {
+            (protected[k], protected[usize::from(number)]) = (true, true);
         }
         protected[0] = false;
         protected

@@ -85,7 +85,7 @@ impl ClipSegmenter {
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
         let tracker = Tracker::new(options, false)?;
-        // What decides how pairs are solved.
+        // The options that decide how pairs are solved.
         let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
         let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);

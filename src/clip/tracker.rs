@@ -28,7 +28,7 @@ pub(crate) struct Tracker {
     last: Option<Newest>,
     /// Whether the newest frame waits for its pair with the next one.
     waits: bool,
-    /// What a fast stream expects of the next pair.
+    /// The expectation of a fast stream for the next pair.
     prior: Option<Prior>,
     rounds: [Round; 2],
     identities: Identities,
@@ -285,7 +285,7 @@ fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
     Pairs { onward, back, prior: None }
 }
 
-/// What the first of two frames shows when it is compared with the second.
+/// The motions of the first of two frames to the second.
 fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> FrameMotions {
     frame_motions(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
 }

@@ -136,7 +136,7 @@ pub fn moving_and_resting_clip() -> SegmentedClip {
     MADE.clone()
 }
 
-/// What is said of a frame: a number for some things, 255 elsewhere.
+/// A label map of a frame: a number for some things, 255 elsewhere.
 pub fn mask(truth: &[usize], numbers: &[(usize, u8)]) -> Vec<u8> {
     truth.iter().map(|t| numbers.iter().find(|(thing, _)| thing == t).map_or(255, |(_, number)| *number)).collect()
 }

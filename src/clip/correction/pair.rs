@@ -135,7 +135,7 @@ impl Correction<'_> {
         self.labels.iter().zip(self.allowed).any(|(&label, &set)| !self.is_obeyed(label, set))
     }
 
-    /// What strokes tell apart. Those that agree with the labels under them tell nothing.
+    /// The divisions that strokes make. Strokes that agree with the labels under them make none.
     fn divisions(&self) -> Vec<Division> {
         let mut taken = vec![0u16; 1 << self.motions.len()];
         for (&set, &label) in self.allowed.iter().zip(self.labels) {

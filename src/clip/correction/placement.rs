@@ -74,7 +74,7 @@ impl Whole {
         let is_partly =
             self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().hidden) * expected;
         if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().shrinking * self.pixels {
-            // What it is off by came in all the frames since.
+            // The deviation came about in all the frames since.
             let share = match self.velocity {
                 None => 1.0,
                 Some(_) if found && self.frames > 0 => 1.0 / (self.frames as f32 + 2.0),
@@ -212,7 +212,7 @@ mod tests {
             assert!(!whole.now);
             assert_eq!(whole.expected_centre(placed.as_ref()), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
         }
-        // What it looked like is kept until it comes out again.
+        // Its looks are kept until it comes out again.
         assert_eq!(whole.template.mask, mask(&seen, [24, 24]));
         let corner = [24 + 32, 24 + 16];
         let out = features(corner);

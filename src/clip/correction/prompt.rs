@@ -9,7 +9,7 @@
 //!   is in; the masks that come of them vote, each by how well it agrees with the others. What enough votes say begins the last fit.
 //!
 //! Clicks that are the object's are in the mask, and those that are not are outside, with the piece around them if it is a separate one.
-//! What is said of the clip makes no difference to the mask: the same prompt always points to the same object, and takes nothing from what
+//! Other annotations make no difference to the mask: the same prompt always points to the same object, and takes nothing from what
 //! others have.
 
 use std::ops::Range;
@@ -30,16 +30,16 @@ use crate::frame::filter::gaussian;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 
-/// What is seen of a frame.
+/// A frame, and the evidence for a prompt.
 struct View<'a> {
     features: &'a FrameFeatures,
     /// Labels found automatically, and those of the motions to the next frame and the one before.
     found: Vec<Vec<u8>>,
-    /// What clicks say of each pixel: 0 for the object, 1 for ground, 2 for nothing.
+    /// Seeds of the clicks: 0 for the object, 1 for ground, 2 for nothing.
     sure: Vec<u8>,
 }
 
-/// What a fit begins with.
+/// The beginning of a fit.
 struct Beginning {
     /// Where the object may be.
     area: Area,
@@ -49,7 +49,7 @@ struct Beginning {
     sides: Vec<u8>,
 }
 
-/// What is said of a frame when an object is where a prompt points to: its number at its pixels, 0 elsewhere, 255 where an object is that
+/// The outline of the object that a prompt points to: its number at its pixels, 0 elsewhere, 255 where an object is that
 /// keeps what it has. `shown` are the labels of the frame.
 #[inline(never)]
 pub(super) fn outline(

@@ -66,7 +66,7 @@ impl Object {
         *centre = [centre[0] + velocity[0], centre[1] + velocity[1]];
     }
 
-    /// What the next frame shows of it.
+    /// Takes its pixels in the next frame.
     pub(crate) fn see(&mut self, record: &Record, pixels: &[usize]) {
         self.in_sight = pixels.len() as f64;
         self.hidden = if pixels.is_empty() { self.hidden + 1 } else { 0 };

@@ -1,4 +1,4 @@
-//! What is seen of a thing in one frame: a set of pixels, in figures.
+//! A set of pixels of one frame, in figures.
 
 use crate::clip::evidence::Flow;
 use crate::clip::record::Record;
