@@ -5,7 +5,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, cancelWhen, clipFrames, clipInNode, clipPhase, differences, done, drag, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, reopen, segmentClip, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, done, drag, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, reopen, segmentClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -174,58 +174,6 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is open. Now open its frames');
   await upload(page, files);
   await isContinued(page, files);
-});
-
-test('a project whose state is of an older version is segmented again and corrected as before; cancelled, it keeps its masks', async ({ page }) => {
-  const files = await smallFrames(4);
-  await correctedClip(page, files);
-  await goTo(page, 2);
-  await page.getByRole('button', { name: 'New object' }).click();
-  await page.locator('#tools [name=radius]').fill('4');
-  await drag(page, [0.22, 0.34], [0.32, 0.44]); // over the disc
-  await expect.poll(async () => (await numbersOnCanvas(page)).includes(3)).toBe(true); // the status is that of the deletion still
-  await clipPhase(page, 'done');
-  const corrected = await numbersOnCanvas(page);
-  expect(new Set(corrected)).toContain(3);
-  const project = await savedProject(page);
-  const unpacked = gunzipSync(project.buffer).toString('latin1');
-  const [now] = /VERCLIP\d/.exec(unpacked)!;
-  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll(now, `VERCLIP${Number(now.at(-1)) - 1}`), 'latin1')) };
-  const again = '2 objects in 4 frames, corrected as before.';
-
-  // Over the open clip, cancelled: it takes corrections when the segmentation is done.
-  await cancelWhen(page);
-  await upload(page, [old]);
-  await clipPhase(page, 'cancelled');
-  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
-  await page.locator('#objects > li').nth(1).locator('summary').click();
-  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
-  await page.getByRole('button', { name: 'Continue' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(again);
-  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
-  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeEnabled();
-
-  // With its frames, where nothing is left of it.
-  await kept(page);
-  await forgetAll(page);
-  await reloadEmpty(page);
-  await upload(page, [old, ...files]);
-  await expect(page.locator('#caption')).toHaveText('Frame 2');
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0); // at once, and when it is segmented
-  await expect(page.locator('#clip-status')).toHaveText(again);
-  await expect(page.locator('#notice')).toBeHidden();
-  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  await expect.poll(() => leaves(page)).toBe(true);
-
-  // Corrections go on from there, and what is kept now is of this version.
-  await page.locator('#objects > li').nth(1).locator('summary').click();
-  await page.getByRole('button', { name: 'Delete Box' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 3]));
-  await kept(page);
-  expect(await fileInBrowser(page)).not.toContain('VERCLIP3');
 });
 
 test('strokes and names of a pair are there after a reload', async ({ page }) => {

@@ -114,7 +114,7 @@ const isReport = objectOf({
   width: isSide,
   height: isSide,
   motions: listOf(objectOf({ label: isFrom(0, 15), matrix: isMatrix, pixels: isIndex, share: isNumber, residual: isNumber, bbox: isBox, group: isFrom(0, 255) })),
-  junctions: optional(listOf(isJunction)),
+  junctions: listOf(isJunction),
   evidence: objectOf({ candidates: listOf(objectOf({ motions: isSide, score: isNumber })) }),
   unlabelled: isIndex,
   milliseconds: mapOf(isNumber),

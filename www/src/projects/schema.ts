@@ -23,7 +23,7 @@ export function orNull<T>(check: Check<T>): Check<T | null> {
   return either(check, isOne(null));
 }
 
-/** What files of earlier versions may not have. */
+/** A value that may be missing. */
 export function optional<T>(check: Check<T>): Check<T | undefined> {
   return (value): value is T | undefined => value === undefined || check(value);
 }

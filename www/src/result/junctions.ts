@@ -16,8 +16,7 @@ export interface Suggestion {
 
 type Junction = Segmentation['junctions'][number];
 type Grouped = Pick<Segmentation, 'motions'>;
-/** Projects of earlier versions have no junctions. */
-type Found = Grouped & Partial<Pick<Segmentation, 'junctions'>>;
+type Found = Pick<Segmentation, 'motions' | 'junctions'>;
 
 /** Motions in different groups that are at least this likely to be one thing are asked about … */
 const MAY_BE_ONE = 0.35;
@@ -28,9 +27,8 @@ const MOST = 2;
 
 /** Suggestions about the groups as they are now, the one that is most likely right first. The groups that were found say what is in doubt. */
 export function suggestionsOf(found: Found, now: Grouped, dismissed: ReadonlySet<string>): Suggestion[] {
-  const { junctions = [] } = found;
   const suggestions = new Map<string, Suggestion>();
-  for (const junction of junctions.toSorted((a, b) => certainty(found, b) - certainty(found, a))) {
+  for (const junction of found.junctions.toSorted((a, b) => certainty(found, b) - certainty(found, a))) {
     const advice = adviceOn(found, junction);
     const groups = groupsOf(now, junction);
     if (advice === null || isApart(groups) !== (advice === 'join') || dismissed.has(keyOfJunction(junction))) continue;

@@ -174,7 +174,6 @@ export class Frames {
   #continue({ at, hidden }: ProjectClip): void {
     this.#parts.shown.kind('objects');
     if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
-    void this.#parts.clip.renew();
     void this.goTo(at);
   }
 

@@ -3,7 +3,6 @@
 
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
-import { codeOf } from '../../common/errors.js';
 import type { Settings } from '../../state/settings.js';
 import { exactly } from '../../state/exact.js';
 import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
@@ -60,13 +59,12 @@ export class ClipSegmenting {
 
   /**
    * Segments the open clip from its in point to its out point, or continues with it. Masks that there are stay until all new ones are
-   * there; what is outside stays, and corrections are applied again. `part`: other frames than those.
+   * there; what is outside stays, and corrections are applied again.
    */
-  async segment(part?: Range): Promise<void> {
+  async segment(): Promise<void> {
     const { tracked, settings: own, motionsElsewhere } = this.#store.get();
     if (tracked === null) return;
-    const { clip, range: chosen } = tracked;
-    const range = part ?? chosen;
+    const { clip, range } = tracked;
     // The number of motions of a single pair is not that of the clip.
     const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
     const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
@@ -114,35 +112,6 @@ export class ClipSegmenting {
       await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
     });
     this.#shown.pairIfAlone();
-  }
-
-  /**
-   * Segments the open clip again if what the package knows of it is of another version. Its masks stay until then, but take no corrections.
-   */
-  async renew(): Promise<void> {
-    const { tracked } = this.#store.get();
-    if (tracked === null || (await this.#areReadable(tracked))) return;
-    if (this.#store.get().tracked?.clip !== tracked.clip) return;
-    this.#runs.stop();
-    this.solvedPairs.delete(tracked.clip.fingerprint);
-    this.#store.clip({ spans: [] });
-    for (const { range } of tracked.spans) {
-      await this.segment(range);
-      const { tracked: now } = this.#store.get();
-      if (now?.clip !== tracked.clip || now.run.phase !== 'done') return;
-    }
-  }
-
-  /** Whether the package reads what it knows of these frames: another version of it may not. */
-  async #areReadable({ clip, longestSide, spans: [span] }: Tracked): Promise<boolean> {
-    if (span === undefined) return true; // all are of one version
-    const frames = new ClipFrames(clip, longestSide, span.range);
-    try {
-      await this.#runs.segmenter.segmentClip(frames, { state: await bytesOf(span.state), changesOnly: true }).next();
-      return true;
-    } catch (error) {
-      return codeOf(error) !== 'invalid-option';
-    }
   }
 
   /** Cancels the run on the clip. A correction under way is taken back. */
