@@ -74,23 +74,21 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   expect(html).not.toMatch(/<script(?![^>]*\ssrc=)|\sstyle=|\son\w+=|<style/);
   await done(page);
   expect(await page.evaluate(() => crossOriginIsolated)).toBe(false); // it needs no isolation
-  expect([...asked].filter((name) => /^(exact|approximate|reader|video-file|browser)-/.test(name))).toEqual([]);
+  expect([...asked].filter((name) => /^(exact|reader|video-file|browser)-/.test(name))).toEqual([]);
   expect([...asked].flatMap((name) => /^([a-z_]+_bg).*\.wasm$/.exec(name)?.[1] ?? [])).toEqual(['veronese_bg']);
-  // Tests unfold what a visitor does not.
-  for (const name of asked) if (name.startsWith('inspect-')) asked.delete(name);
   // The host page has scripts of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
   const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
-  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(72 * 1024);
+  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(79 * 1024);
   // What is loaded when it is used; what reads masks of annotation tools is needed by few, what reads masks given to calls by none here.
   const later = files.filter((name) => !asked.has(name));
   const reading = later.filter((name) => /^(importing|annotations|given-masks)-/.test(name));
   expect(reading).toHaveLength(3);
   expect(sizeOf(reading)).toBeLessThanOrEqual(15 * 1024);
-  expect(sizeOf(later.filter((name) => !reading.includes(name)))).toBeLessThanOrEqual(54 * 1024);
+  expect(sizeOf(later.filter((name) => !reading.includes(name)))).toBeLessThanOrEqual(45 * 1024);
 });
 
-test('a first visit loads at most 500 KB, compressed, until it shows masks', async ({ page }) => {
+test('a first visit loads at most 550 KB, compressed, until it shows masks', async ({ page }) => {
   // As a web server sends it: text and the module with gzip, pictures as they are.
   const sizes = new Map<string, number>();
   await page.route('**', async (route) => {
@@ -111,7 +109,7 @@ test('a first visit loads at most 500 KB, compressed, until it shows masks', asy
   const clip = [...sizes].filter(([path]) => path.includes('/frames/')).map(([, size]) => size);
   expect(clip).toHaveLength(51);
   expect(clip.reduce((sum, size) => sum + size, 0)).toBeLessThanOrEqual(250 * 1024);
-  expect(total).toBeLessThanOrEqual(500 * 1024);
+  expect(total).toBeLessThanOrEqual(550 * 1024);
   // Other workers may still be loading their scripts.
   await page.unrouteAll({ behavior: 'ignoreErrors' });
 });

@@ -5,6 +5,7 @@ import { startMedia } from '../common/media.js';
 import { quoted } from '../common/shell.js';
 import { strings } from '../common/strings.js';
 import { fingerprintOfVideo } from '../frames/fingerprints.js';
+import { openApproximate } from './approximate.js';
 import type { Clip } from './clip.js';
 
 /**
@@ -21,7 +22,6 @@ export async function openClip(file: File): Promise<Clip> {
     const clip = await openExact(file, fingerprint);
     if (clip !== null) return clip;
   }
-  const { openApproximate } = await import('./approximate.js');
   const clip = await openApproximate(file, fingerprint);
   if (clip !== null) return clip;
   const { undecodable } = await import('./exact.js');

@@ -1,16 +1,16 @@
-//! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them. Static
-//! text is in `index.html`.
+//! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them, and those
+//! of keys. Static text is in `index.html`.
 
 import type { MotionParts } from '../result/describe.js';
 import type { Kind } from '../result/masks.js';
 
 const decimals = (digits: number): Intl.NumberFormat => new Intl.NumberFormat('en', { maximumFractionDigits: digits });
-export const tenths = decimals(1);
+const tenths = decimals(1);
 const hundredths = decimals(2);
-export const whole = decimals(0);
+const whole = decimals(0);
 
 /** Keeps a number and its unit on one line. */
-export const NBSP = '\u00a0';
+const NBSP = '\u00a0';
 
 /** Two decimals below one, one decimal above. */
 function amount(value: number): string {
@@ -60,7 +60,7 @@ function displacement(parts: MotionParts): string {
   return `${length < 10 ? amount(length) : whole.format(length)}${NBSP}px ${DIRECTIONS[(eighth + 8) % 8]}`;
 }
 
-export const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
+const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
 const images = (count: number): string => (count === 1 ? 'one image' : `${whole.format(count)} images`);
 
@@ -79,7 +79,23 @@ const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
 const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
-export const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
+const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
+
+const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+const day = new Intl.DateTimeFormat('en-GB', { day: 'numeric', month: 'short' });
+const time = new Intl.DateTimeFormat('en-GB', { timeStyle: 'short' });
+
+/** "10:31" of today, "26 Nov" of another day. */
+function when(at: Date): string {
+  return at.toDateString() === new Date().toDateString() ? time.format(at) : day.format(at).replaceAll(' ', NBSP);
+}
+
+function fileSize(bytes: number): string {
+  if (bytes < 1000) return `${bytes}${NBSP}B`;
+  return bytes < 1e6 ? `${tenths.format(bytes / 1e3)}${NBSP}kB` : `${tenths.format(bytes / 1e6)}${NBSP}MB`;
+}
+
+const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
 
 const TOOLS = {
   brush: (thing: string) => `Paint what belongs to the selected ${thing}.`,
@@ -144,6 +160,33 @@ export const strings = {
     elsewhere: (name: string): string =>
       `“${name}” is open in another tab, whose work is kept. What you do here is not: save the project before you leave, or close the other tab and reload this one.`,
     otherFrames: (name: string, saved: number, now: number): string => `The project of “${name}” has ${frames(saved)}, but this browser finds ${frames(now)}.`,
+    keeping: ({ is, without = false }: { readonly is: 'nothing' | 'kept' | 'refused'; readonly without?: boolean }): string => {
+      if (is === 'nothing') return 'What you do is kept in this browser, with a copy of the frames if there is room.';
+      if (is === 'refused') return 'Your work is not kept in this browser. Save the project before you leave.';
+      return without ? 'Your work is kept in this browser. Open the same frames again to continue.' : 'Your work is kept in this browser, with its frames.';
+    },
+    nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
+    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
+    saved: (name: string): string => `Saved as ${name}.`,
+    damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
+    newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
+    savedHere: (at: number, without: boolean): readonly string[] => ['Saved', without ? ' without its frames' : ' in this browser', `, ${time.format(at)}`],
+    notSaved: {
+      'storage-full': ['Not saved', ': no room is left', ''],
+      'storage-refused': ['Not saved', ': the browser refused', ''],
+      'open-elsewhere': ['Not saved', ': open in another tab', ''],
+    },
+    firstSaved: 'Your work is saved in this browser.',
+    welcome: 'Find everything that moves.',
+    continue: 'Continue your work',
+    left: (count: number, saved: Date, hasFrames: boolean): string => `${frames(count)}, ${when(saved)}${hasFrames ? '' : ': choose the frames'}`,
+    more: (count: number): string => `${count} more`,
+    summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
+    facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved).replaceAll(' ', NBSP)}`,
+    damagedFile: 'Damaged project',
+    forget: 'Forget',
+    forgetOf: (name: string): string => `Forget the project of ${name}`,
+    forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
   },
   sameFrames: 'Both frames are the same, pixel by pixel: nothing moves.',
   frameHas: (count: number): string => `${objects(count)} in this frame.`,
@@ -241,6 +284,33 @@ export const strings = {
     failed: 'The segmentation failed.',
     failedBefore: 'The segmentation failed. The masks are from the last result.',
     failedStrokes: 'The update failed. Your strokes are kept, but not all are applied yet.',
+  },
+
+  selected: (count: number): string => `${whole.format(count)} selected`,
+  classOf: (name: string): string => `Class of ${name}`,
+
+  exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
+  exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
+  preview: {
+    files: (count: number): string => `, ${whole.format(count)}${NBSP}files`,
+    noMasks: 'There are no masks of this frame.',
+    ofFrame: (name: string, bytes: number): string => `${name}: ${fileSize(bytes)}`,
+    ofAll: (name: string, index: number, bytes: number): string => `${name} with frame ${index} alone: ${fileSize(bytes)}`,
+    picture: (index: number): string => `Masks of frame ${index} as they are saved`,
+  },
+
+  /** `longer`: the length of the description above the shortest; `null` if there is none. */
+  forceNumber: (count: number, longer: number | null): string =>
+    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
+  descriptionOf,
+  /** Why the number found has not the shortest description. */
+  otherThanShortest: (found: number, shortest: number): string =>
+    `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
+
+  timings: {
+    decode: (name: string): string => `Decoding ${name}`,
+    total: 'All stages',
+    waited: 'Including transfers',
   },
 
   notices: {

@@ -2,7 +2,7 @@
 //! offered depend on it.
 
 import { PageError } from '../common/errors.js';
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import type { ClipExport, ClipFormat } from './clip-export.js';
 import { type Ground, drawn } from './cut-out.js';
 import { H264, VP9, encodes } from './video-codecs.js';
@@ -26,7 +26,7 @@ export async function videoFormats(): Promise<ClipFormat[]> {
       make: async (exported) => ({ [nameOf(exported)]: await (await import('./video-file.js')).videoOf(exported, ground, codec) }),
       picture: async (exported) => {
         for await (const frame of exported.frames()) return (await drawn(exported, frame, ground)).convertToBlob();
-        throw new PageError('no-masks', panels.preview.noMasks);
+        throw new PageError('no-masks', strings.preview.noMasks);
       },
     };
   });

@@ -1,7 +1,7 @@
 //! Projects as files: written, and read with every value checked. docs/formats.md describes the format.
 
 import { PageError } from '../common/errors.js';
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import type { Kept } from '../state/kept.js';
@@ -128,7 +128,7 @@ async function guarded<T>(name: string, read: () => Promise<T>): Promise<T> {
     return await read();
   } catch (error) {
     if (error instanceof PageError) throw error;
-    throw new PageError('damaged-project', panels.projects.damaged(name));
+    throw new PageError('damaged-project', strings.projects.damaged(name));
   }
 }
 
@@ -154,7 +154,7 @@ const isBytesPlace = check.objectOf<BytesPlace>({ bytes: check.isFrom(0) });
 function headerIn(line: string, name: string): Header {
   const header: unknown = JSON.parse(line);
   if (check.objectOf({ format: check.isOne(FORMAT), version: check.isFrom(VERSION + 1) })(header)) {
-    throw new PageError('newer-project', panels.projects.newer(name));
+    throw new PageError('newer-project', strings.projects.newer(name));
   }
   assert(isHeader(header));
   return header;

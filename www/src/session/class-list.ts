@@ -1,4 +1,4 @@
-//! The list of classes: read from files, and kept in this browser for the next clip. Loaded with what shows it, with its texts.
+//! The list of classes: read from files, and kept in this browser for the next clip.
 
 import { PageError } from '../common/errors.js';
 import type { Store } from '../state/state.js';
@@ -82,7 +82,6 @@ export function keepClasses(store: Store): void {
       // The list is in the project still.
     }
   };
-  keep(); // what was listed before this was loaded
   store.subscribe(({ classList }, before) => {
     if (classList !== before.classList) keep();
   });

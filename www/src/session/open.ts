@@ -2,6 +2,7 @@
 //! are, and reads them; it keeps nothing.
 
 import type { Clip } from '../clips/clip.js';
+import { openFolder } from '../clips/folder.js';
 import { openClip } from '../clips/open.js';
 import { PageError } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
@@ -16,6 +17,7 @@ import type { Store } from '../state/state.js';
 import { isTracked } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
+import { importClasses } from './class-list.js';
 import { report } from './failures.js';
 import { FRAMES_APART, type Frames } from './frames.js';
 import type { Opening } from './opening.js';
@@ -64,7 +66,7 @@ export class Open {
     try {
       const given = [...(await files)];
       const maybeList = slot === null && given.every(({ name }) => /\.(json|txt)$/i.test(name));
-      const added = maybeList ? await (await loaded(import('./class-list.js'))).importClasses(given, this.#store) : null;
+      const added = maybeList ? await importClasses(given, this.#store) : null;
       if (added !== null) return this.#store.say(added);
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
@@ -104,10 +106,7 @@ export class Open {
         if (images === null) return [];
         if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
         if (images.length > 1) source = images;
-        if (images.length > 2) {
-          const { openFolder } = await loaded(import('../clips/folder.js'));
-          return this.#startOf((folder = await openFolder(images)));
-        }
+        if (images.length > 2) return this.#startOf((folder = await openFolder(images)));
         if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
@@ -177,7 +176,7 @@ function importing(): Promise<typeof import('./clip/importing.js')> {
 
 /** Opens a sample as the folder that it is. */
 async function openFolderOf(sample: SampleClip): Promise<Clip> {
-  const [{ openFolder }, images] = await Promise.all([loaded(import('../clips/folder.js')), Promise.all(sample.frames.map(fetchImage))]);
+  const images = await Promise.all(sample.frames.map(fetchImage));
   return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
 }
 

@@ -1,6 +1,5 @@
 //! What the page does, in parts: views call them, and read the state. Here they are put together; each says in its file what it owns.
 
-import { loaded } from '../common/loaded.js';
 import { Projects } from '../projects/projects.js';
 import type { Store } from '../state/state.js';
 import { Camera } from './camera/camera.js';
@@ -8,6 +7,7 @@ import { Carrying } from './clip/carrying.js';
 import { Objects } from './clip/objects.js';
 import { ClipRuns } from './clip/runs.js';
 import { ClipSegmenting } from './clip/segmenting.js';
+import { Spans } from './clip/spans.js';
 import { Frames } from './frames.js';
 import { Open } from './open.js';
 import { Opening } from './opening.js';
@@ -46,7 +46,7 @@ export function sessionOf(store: Store): Session {
   const masks = new Masks(store, solving);
   const shown = new Shown(store, pair, solving, masks);
   const runs = new ClipRuns(store);
-  const spans = async () => new (await loaded(import('./clip/spans.js'))).Spans(store, runs.segmenter);
+  const spans = new Spans(store, runs.segmenter);
   const clip = new ClipSegmenting(store, runs, spans, shown);
   const objects = new Objects(store, new Carrying(store, runs, spans, shown));
   const projects = new Projects(store, clip.solvedPairs);

@@ -1,8 +1,8 @@
-//! Classes of objects: the field in each row, what it offers, and the dialogue with the list. Loaded with the first list of objects.
+//! Classes of objects: the field in each row, what it offers, and the dialogue with the list.
 
 import { sentenceOf } from '../common/errors.js';
 import { nameOf } from '../common/naming.js';
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { keyOf } from '../result/masks.js';
 import { importClasses, keepClasses, namesIn } from '../session/class-list.js';
 import type { Session } from '../session/session.js';
@@ -29,7 +29,7 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
       const field = find(row, '.class', HTMLInputElement);
       if (!connected.has(field)) onClass(field, (name) => session.objects.setClass([id], name));
       connected.add(field);
-      field.setAttribute('aria-label', panels.classOf(nameOf(look, id)));
+      field.setAttribute('aria-label', strings.classOf(nameOf(look, id)));
       if (document.activeElement !== field) field.value = tracked?.classes[keyOf('objects', id)] ?? '';
     }
   };

@@ -1,7 +1,6 @@
 //! Taking the masks of a whole clip away, with the objects that are ticked. Loaded with the panel.
 
 import { strings } from '../common/strings.js';
-import { panels } from '../common/strings-of-panels.js';
 import { type ClipFormat, exportOfClip } from '../export/clip-export.js';
 import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
@@ -27,11 +26,11 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     if (tracked === null) return;
     button.disabled = true;
     try {
-      const exported = exportOfClip(tracked, store.get(), (done, of) => (told.textContent = panels.exporting(done, of)));
+      const exported = exportOfClip(tracked, store.get(), (done, of) => (told.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
       clipExported(store, tracked);
-      told.textContent = panels.exported(exported.objects.length, exported.count);
+      told.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
       told.textContent = '';
       session.say(strings.errors.notExported(format.title, error instanceof Error ? error.message : ''), 'not-written');

@@ -2,7 +2,6 @@
 
 import { sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
-import { panels } from '../common/strings-of-panels.js';
 import type { ClipFormat } from '../export/clip-export.js';
 import { type Folder, type Preview, previewOf } from '../export/clip-preview.js';
 import type { Store } from '../state/state.js';
@@ -42,7 +41,7 @@ export function mountClipPreview(panel: HTMLElement, store: Store, formats: read
       const format = formats[select.selectedIndex];
       if (format === undefined || tracked === null || look.kind !== 'objects' || !panel.matches(':popover-open')) break;
       const index = timeline?.first ?? 0;
-      picture.alt = panels.preview.picture(index);
+      picture.alt = strings.preview.picture(index);
       try {
         const made = await previewOf(format, tracked, store.get(), index);
         if (!outdated) show(made, captionOf(made, index));
@@ -64,14 +63,14 @@ export function mountClipPreview(panel: HTMLElement, store: Store, formats: read
 function captionOf(preview: Preview | null, index: number): string {
   if (preview === null) return strings.notices.nothingTicked;
   const { file, shown } = preview;
-  if (shown === null) return panels.preview.noMasks;
+  if (shown === null) return strings.preview.noMasks;
   if (file === null) return strings.frameNumber(index);
-  return file.ofFrame ? panels.preview.ofFrame(file.name, file.bytes) : panels.preview.ofAll(file.name, index, file.bytes);
+  return file.ofFrame ? strings.preview.ofFrame(file.name, file.bytes) : strings.preview.ofAll(file.name, index, file.bytes);
 }
 
 function rowOf({ path, files }: Folder): HTMLElement {
   const row = element('li');
   row.append(element('code', `${path}${files[0]!}`));
-  if (files.length > 1) row.append(' … ', element('code', files.at(-1)), element('span', panels.preview.files(files.length), 'faint'));
+  if (files.length > 1) row.append(' … ', element('code', files.at(-1)), element('span', strings.preview.files(files.length), 'faint'));
   return row;
 }

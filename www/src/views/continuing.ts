@@ -1,6 +1,6 @@
 //! Work that the browser keeps, to go on with: the newest in the place of the first words, the others behind it.
 
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { sampleCalled } from '../frames/samples.js';
 import { type Listed, framesOf, list, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
@@ -23,11 +23,11 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
     const listed = await list().catch((): Listed[] => []);
     const rows = listed.filter((one): one is Whole => one.header !== null && one.header.of !== open()).map((one) => rowOf(one, session));
     const nothing = rows.length === 0;
-    title.textContent = nothing ? panels.projects.welcome : panels.projects.continue;
+    title.textContent = nothing ? strings.projects.welcome : strings.projects.continue;
     words.hidden = !nothing;
     section.hidden = nothing;
     more.hidden = rows.length < 2;
-    find(more, 'summary', HTMLElement).textContent = panels.projects.more(rows.length - 1);
+    find(more, 'summary', HTMLElement).textContent = strings.projects.more(rows.length - 1);
     showRows([[newest!, rows.slice(0, 1)], [others!, rows.slice(1)]]);
   };
   let updated: Promise<void> = Promise.resolve();
@@ -45,7 +45,7 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
 
 function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFrames }: Whole, session: Session): HTMLElement {
   const known = sample && sampleCalled(sample.id);
-  const facts = panels.projects.left(frames, new Date(saved), Boolean(known) || hasFrames);
+  const facts = strings.projects.left(frames, new Date(saved), Boolean(known) || hasFrames);
   const button = element('button', '', 'work');
   button.type = 'button';
   button.title = name;

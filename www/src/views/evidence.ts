@@ -1,7 +1,7 @@
 //! The number of motions: how long the description of both frames is with each number, and a button to use it for this pair. The number found
 //! need not be that with the shortest: then a sentence says so.
 
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, isAwaited } from '../state/state.js';
 import { drawn, element, find } from './markup.js';
@@ -34,7 +34,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
     const [shortest] = scored.toSorted((one, other) => one.score - other.score);
     const differs = found.settings.motions === 'auto' && shortest !== undefined && shortest.motions !== found.count;
     choice.hidden = !differs;
-    choice.textContent = differs ? panels.otherThanShortest(found.count, shortest.motions) : '';
+    choice.textContent = differs ? strings.otherThanShortest(found.count, shortest.motions) : '';
     const offered = Math.max(OFFERED, found.count, typeof settings.motions === 'number' ? settings.motions : 0, ...scored.map(({ motions }) => motions));
     automatic.setAttribute('aria-pressed', String(settings.motions === 'auto'));
     const focused = buttons.contains(document.activeElement) ? document.activeElement?.textContent : null;
@@ -47,8 +47,8 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         button.type = 'button';
         button.setAttribute('aria-pressed', String(settings.motions === motions));
         button.classList.toggle('found', motions === found.count);
-        button.setAttribute('aria-label', panels.forceNumber(motions, longer));
-        if (longer !== null) button.title = panels.descriptionOf(longer);
+        button.setAttribute('aria-label', strings.forceNumber(motions, longer));
+        if (longer !== null) button.title = strings.descriptionOf(longer);
         button.addEventListener('click', () => session.pair.forceMotions(motions));
         return button;
       }),

@@ -21,7 +21,6 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
   const list = find(root, '#objects', HTMLOListElement);
   const foot = find(root, '#list-foot', HTMLElement);
   const add = find(foot, '#add-object', HTMLButtonElement);
-  let begun = false;
   const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
     if (session.objects.addObject()) chooseTool(store, 'brush');
@@ -54,9 +53,6 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
       row.refresh(now, lives.find((life) => life.id === id) ?? null, ids);
     }
     if (held !== null && !rows.has(held)) focusRow(list, held, look);
-    if (begun) return;
-    begun = true;
-    void import('./list-tools.js').then(({ mountListTools }) => mountListTools(root, store, session), () => undefined);
   });
 }
 

@@ -1,4 +1,4 @@
-//! Onion skin: the outlines of a clip's objects in the frame before, dashed, and in the frame after, dotted. Loaded when it is switched on.
+//! Onion skin: the outlines of a clip's objects in the frame before, dashed, and in the frame after, dotted.
 
 import { unpacked } from '../correction/runs.js';
 import { contoursOf } from '../drawing/contours.js';

@@ -1,6 +1,6 @@
 //! The projects: whether the work is kept, saving it as a file, and the list of those that this browser keeps. Loaded with the panel.
 
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { codeOf, sentenceOf } from '../common/errors.js';
 import { type Listed, list, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
@@ -16,7 +16,7 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const summary = find(all, 'summary', HTMLElement);
   const rows = find(all, '#projects', HTMLUListElement);
 
-  const show = ({ keeping }: State): void => void (status.textContent = panels.projects.keeping(keeping));
+  const show = ({ keeping }: State): void => void (status.textContent = strings.projects.keeping(keeping));
 
   let refreshed: Promise<void> = Promise.resolve();
   const refresh = (): Promise<void> => (refreshed = refreshed.then(update));
@@ -24,14 +24,14 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const update = async (): Promise<void> => {
     const listed = await list().catch((): Listed[] => []);
     all.hidden = listed.length === 0;
-    summary.textContent = panels.projects.summary(listed.length);
+    summary.textContent = strings.projects.summary(listed.length);
     showRows([[rows, listed.map((one) => rowOf(one, () => void forget(one)))]]);
   };
 
   const forget = async (listed: Listed): Promise<void> => {
     try {
       await session.projects.forget(listed);
-      session.say(panels.projects.forgotten(listed.header?.name ?? listed.file));
+      session.say(strings.projects.forgotten(listed.header?.name ?? listed.file));
     } catch (error) {
       session.say(sentenceOf(error), codeOf(error));
     }
@@ -57,11 +57,11 @@ function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement
   row.dataset['file'] = file;
   const text = element('div');
   const name = header?.name ?? file;
-  text.append(element('strong', header === null ? panels.projects.damagedFile : name));
-  text.append(element('span', header === null ? file : panels.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
-  const button = element('button', panels.projects.forget, 'button small quiet');
+  text.append(element('strong', header === null ? strings.projects.damagedFile : name));
+  text.append(element('span', header === null ? file : strings.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
+  const button = element('button', strings.projects.forget, 'button small quiet');
   button.type = 'button';
-  button.setAttribute('aria-label', panels.projects.forgetOf(name));
+  button.setAttribute('aria-label', strings.projects.forgetOf(name));
   button.addEventListener('click', forget);
   row.append(text, button);
   return row;

@@ -1,7 +1,7 @@
 //! Saves the work on what is open as a file. Loaded with what has a button for it.
 
 import { codeOf, sentenceOf } from '../common/errors.js';
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { save } from '../export/save.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
@@ -9,12 +9,12 @@ import { isCorrecting } from '../state/tracked.js';
 
 export async function saveProject(store: Store, session: Session): Promise<void> {
   const { tracked } = store.get();
-  if (tracked !== null && isCorrecting(tracked.run)) return session.say(panels.projects.correcting);
+  if (tracked !== null && isCorrecting(tracked.run)) return session.say(strings.projects.correcting);
   try {
     const file = await session.projects.file();
-    if (file === null) return session.say(panels.projects.nothingYet);
+    if (file === null) return session.say(strings.projects.nothingYet);
     save(file.content, file.content.type, file.name);
-    session.say(panels.projects.saved(file.name));
+    session.say(strings.projects.saved(file.name));
   } catch (error) {
     session.say(sentenceOf(error), codeOf(error));
   }

@@ -1,7 +1,7 @@
 //! Whether the work on screen is saved, since when, or why not, with a button that saves it as a file. Screen readers are told once; what
 //! is refused is a notice, which they are told as well.
 
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { element, find } from './markup.js';
@@ -17,10 +17,10 @@ export function mountSaving(root: HTMLElement, store: Store, session: Session): 
     button.hidden = keeping.is === 'nothing';
     button.classList.toggle('refused', keeping.is === 'refused');
     if (keeping.is === 'nothing') return;
-    const [what, where, more] = keeping.is === 'kept' ? panels.projects.savedHere(keeping.at, keeping.without) : panels.projects.notSaved[keeping.code];
+    const [what, where, more] = keeping.is === 'kept' ? strings.projects.savedHere(keeping.at, keeping.without) : strings.projects.notSaved[keeping.code];
     sentence.replaceChildren(what!, element('span', where, 'in-full'), more!);
-    button.title = panels.projects.keeping(keeping);
-    if (keeping.is === 'kept' && told.textContent === '') told.textContent = panels.projects.firstSaved;
+    button.title = strings.projects.keeping(keeping);
+    if (keeping.is === 'kept' && told.textContent === '') told.textContent = strings.projects.firstSaved;
   };
   store.subscribe((now, before) => {
     if (now.keeping !== before.keeping) show(now);

@@ -1,7 +1,7 @@
-//! Selecting several objects of a clip, and what can be done with them together. Loaded with the first list of objects.
+//! Selecting several objects of a clip, and what can be done with them together.
 
 import { nameOf } from '../common/naming.js';
-import { panels } from '../common/strings-of-panels.js';
+import { strings } from '../common/strings.js';
 import { keyOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, selectedIn } from '../state/state.js';
@@ -151,14 +151,14 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
       box.hidden = id === 0;
       box.disabled = !all.includes(id);
       box.checked = on && among.has(id);
-      box.setAttribute('aria-label', panels.select(nameOf(look, id)));
+      box.setAttribute('aria-label', strings.selectObject(nameOf(look, id)));
       row.classList.toggle('chosen', box.checked);
     }
     if (!on) return;
     const ids = chosen();
     // Those that are gone leave the selection.
     if (ids.length < among.size) return choose(ids);
-    told.textContent = panels.selected(ids.length);
+    told.textContent = strings.selected(ids.length);
     const ready = tracked.spans.length > 0;
     merge.disabled = !ready || ids.length < 2;
     for (const control of actions) control.disabled = !ready || ids.length === 0;

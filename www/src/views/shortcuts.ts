@@ -6,7 +6,6 @@ import type { Session } from '../session/session.js';
 import { type Store, selectedIn } from '../state/state.js';
 import { livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
-import type { KeyName } from './key-list.js';
 import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
 import { accept } from './review.js';
@@ -18,8 +17,8 @@ export interface Key {
   readonly keys: readonly string[];
   /** As shown in the list. */
   readonly shown: string;
-  /** What it does, or nothing if that is what the key before it does. */
-  readonly does: KeyName | '';
+  /** Its effect in words; empty if that is the one of the key before it. */
+  readonly does: string;
   /** Takes the key that was pressed, in lower case. */
   readonly run: (name: string) => void;
   /** With Ctrl or the command key. */
@@ -38,53 +37,55 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
   const toggle = (name: 'outlines' | 'onion' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
   return [
-    { keys: ['n'], shown: 'N', does: 'blink', run: () => toggleBlinking(store) },
-    { keys: ['s'], shown: 'S', does: 'split', run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], shown: 'G', does: 'kind', run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
-    { keys: ['l'], shown: 'L', does: 'outlines', run: toggle('outlines'), shift: false },
-    { keys: ['u'], shown: 'U', does: 'onion', run: toggle('onion') },
-    { keys: ['a'], shown: 'A', does: 'arrows', run: toggle('arrows') },
-    { keys: ['r'], shown: 'R', does: 'residual', run: toggle('residual') },
-    { keys: ['+', '='], shown: '+', does: 'zoomIn', run: () => zoom.by(ZOOM_STEP) },
-    { keys: ['-', '_'], shown: '−', does: 'zoomOut', run: () => zoom.by(1 / ZOOM_STEP) },
-    { keys: ['0'], shown: '0', does: 'whole', run: () => zoom.whole() },
-    { keys: ['z'], shown: 'Z', does: 'actual', run: () => zoom.actual() },
-    { keys: ['arrowleft'], shown: '←', does: 'pan', run: pan(1, 0), arrows: true },
+    { keys: [], shown: 'B', does: 'Show the other frame while held', run: () => undefined },
+    { keys: ['n'], shown: 'N', does: 'Alternate between the frames', run: () => toggleBlinking(store) },
+    { keys: ['s'], shown: 'S', does: 'Split view', run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
+    { keys: ['g'], shown: 'G', does: 'Switch between objects and motions', run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['l'], shown: 'L', does: 'Outlines', run: toggle('outlines'), shift: false },
+    { keys: ['u'], shown: 'U', does: 'Onion skin: outlines of the objects in the frames before and after', run: toggle('onion') },
+    { keys: ['a'], shown: 'A', does: 'Flow arrows', run: toggle('arrows') },
+    { keys: ['r'], shown: 'R', does: 'Residual: what the motions do not explain', run: toggle('residual') },
+    { keys: ['+', '='], shown: '+', does: 'Zoom in', run: () => zoom.by(ZOOM_STEP) },
+    { keys: ['-', '_'], shown: '−', does: 'Zoom out', run: () => zoom.by(1 / ZOOM_STEP) },
+    { keys: ['0'], shown: '0', does: 'Fit the picture', run: () => zoom.whole() },
+    { keys: ['z'], shown: 'Z', does: 'Zoom to 100 %', run: () => zoom.actual() },
+    { keys: ['arrowleft'], shown: '←', does: 'Pan the enlarged picture', run: pan(1, 0), arrows: true },
     { keys: ['arrowright'], shown: '→', does: '', run: pan(-1, 0), arrows: true },
     { keys: ['arrowup'], shown: '↑', does: '', run: pan(0, 1), arrows: true },
     { keys: ['arrowdown'], shown: '↓', does: '', run: pan(0, -1), arrows: true },
-    { keys: [','], shown: ',', does: 'stepBack', run: () => stepOne(store, session, 'both', -1) },
-    { keys: ['.'], shown: '.', does: 'stepOn', run: () => stepOne(store, session, 'both', 1) },
-    { keys: ['k'], shown: 'K', does: 'play', run: () => void session.play.toggle() },
-    { keys: ['j'], shown: 'J', does: 'slower', run: () => session.play.change(-1), shift: false },
-    { keys: ['j'], shown: 'Shift J', does: 'faster', run: () => session.play.change(1), shift: true },
-    { keys: ['i'], shown: 'I', does: 'inPoint', run: () => setEdge(store, session, 'first') },
-    { keys: ['o'], shown: 'O', does: 'outPoint', run: () => setEdge(store, session, 'last') },
-    { keys: ['d'], shown: 'D', does: 'doubtful', run: () => session.frames.goToDoubtful(), shift: false },
-    { keys: ['d'], shown: 'Shift D', does: 'doubtfulBefore', run: () => session.frames.goToDoubtful(null, -1), shift: true },
-    { keys: ['c'], shown: 'C', does: 'corrected', run: () => session.frames.goToCorrected(1), shift: false },
-    { keys: ['c'], shown: 'Shift C', does: 'correctedBefore', run: () => session.frames.goToCorrected(-1), shift: true },
-    { keys: ['>'], shown: '>', does: 'copyOn', run: () => void copyMask(session, 1) },
-    { keys: ['<'], shown: '<', does: 'copyBack', run: () => void copyMask(session, -1) },
-    { keys: ['y'], shown: 'Y', does: 'accept', run: () => accept(session, 'shown'), shift: false },
-    { keys: ['y'], shown: 'Shift Y', does: 'acceptAll', run: () => accept(session, 'all'), shift: true },
-    { keys: NUMBERS, shown: '1 … 9', does: 'select', run: (name) => selectMask(store, session, Number(name)) },
-    { keys: ['l'], shown: 'Shift L', does: 'lock', run: () => session.objects.toggleLock(...chosen(store)), shift: true },
-    { keys: ['delete', 'backspace'], shown: 'Delete', does: 'remove', run: () => session.objects.remove(...chosen(store)) },
-    { keys: ['t'], shown: 'T', does: 'class', run: toClass },
-    { keys: ['v'], shown: 'V', does: 'look', run: () => chooseTool(store, 'look') },
-    { keys: ['p'], shown: 'P', does: 'brush', run: () => chooseTool(store, 'brush') },
-    { keys: ['e'], shown: 'E', does: 'eraser', run: () => chooseTool(store, 'eraser') },
-    { keys: ['w'], shown: 'W', does: 'polygon', run: () => chooseTool(store, 'polygon') },
-    { keys: ['q'], shown: 'Q', does: 'exact', run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
-    { keys: ['x'], shown: 'X', does: 'box', run: () => chooseBox(store) },
-    { keys: [], shown: 'Space', does: 'stroke', run: () => undefined },
-    { keys: ['['], shown: '[', does: 'thinner', run: () => changeRadius(store, 0.75) },
-    { keys: [']'], shown: ']', does: 'thicker', run: () => changeRadius(store, 4 / 3) },
-    { keys: ['z'], shown: 'Ctrl Z', does: 'undo', run: () => session.edited().undo(), command: true, shift: false },
-    { keys: ['z'], shown: 'Ctrl Shift Z', does: 'redo', run: () => session.edited().redo(), command: true, shift: true },
+    { keys: [','], shown: ',', does: 'Step back', run: () => stepOne(store, session, 'both', -1) },
+    { keys: ['.'], shown: '.', does: 'Step forward', run: () => stepOne(store, session, 'both', 1) },
+    { keys: ['k'], shown: 'K', does: 'Play the clip, or stop', run: () => void session.play.toggle() },
+    { keys: ['j'], shown: 'J', does: 'Play slower', run: () => session.play.change(-1), shift: false },
+    { keys: ['j'], shown: 'Shift J', does: 'Play faster', run: () => session.play.change(1), shift: true },
+    { keys: ['i'], shown: 'I', does: 'In point: segment the clip from this frame on', run: () => setEdge(store, session, 'first') },
+    { keys: ['o'], shown: 'O', does: 'Out point: segment the clip up to this frame', run: () => setEdge(store, session, 'last') },
+    { keys: ['d'], shown: 'D', does: 'Next frame where an object is least certain', run: () => session.frames.goToDoubtful(), shift: false },
+    { keys: ['d'], shown: 'Shift D', does: 'Previous frame where an object is least certain', run: () => session.frames.goToDoubtful(null, -1), shift: true },
+    { keys: ['c'], shown: 'C', does: 'Next corrected frame', run: () => session.frames.goToCorrected(1), shift: false },
+    { keys: ['c'], shown: 'Shift C', does: 'Previous corrected frame', run: () => session.frames.goToCorrected(-1), shift: true },
+    { keys: ['>'], shown: '>', does: 'Copy the selected mask to the next frame', run: () => void copyMask(session, 1) },
+    { keys: ['<'], shown: '<', does: 'Copy the selected mask to the frame before', run: () => void copyMask(session, -1) },
+    { keys: ['y'], shown: 'Y', does: 'Accept the masks of this frame, and go to the frame that most needs a look', run: () => accept(session, 'shown'), shift: false },
+    { keys: ['y'], shown: 'Shift Y', does: 'Accept the masks of all frames', run: () => accept(session, 'all'), shift: true },
+    { keys: NUMBERS, shown: '1 … 9', does: 'Select a mask by its place in the list', run: (name) => selectMask(store, session, Number(name)) },
+    { keys: ['l'], shown: 'Shift L', does: 'Lock the selected objects, or unlock them', run: () => session.objects.toggleLock(...chosen(store)), shift: true },
+    { keys: ['delete', 'backspace'], shown: 'Delete', does: 'Delete the selected objects', run: () => session.objects.remove(...chosen(store)) },
+    { keys: ['t'], shown: 'T', does: 'Class of the selected objects', run: toClass },
+    { keys: ['v'], shown: 'V', does: 'View: select masks, pan', run: () => chooseTool(store, 'look') },
+    { keys: ['p'], shown: 'P', does: 'Brush: add to the selected mask', run: () => chooseTool(store, 'brush') },
+    { keys: ['e'], shown: 'E', does: 'Eraser: remove from the selected mask', run: () => chooseTool(store, 'eraser') },
+    { keys: ['w'], shown: 'W', does: 'Polygon: add its inside to the selected mask; Enter closes it, with Shift to remove, Backspace takes a corner back', run: () => chooseTool(store, 'polygon') },
+    { keys: ['q'], shown: 'Q', does: 'Exact: what is drawn is kept pixel for pixel, and nothing follows', run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
+    { keys: ['x'], shown: 'X', does: 'Box: make a new object of a clip; again, add to the selected one or remove from it, as a press with Shift or Alt does', run: () => chooseBox(store) },
+    { keys: [], shown: 'Space', does: 'With the picture focused: start or end a stroke or a box, set a corner; arrow keys move the brush', run: () => undefined },
+    { keys: ['['], shown: '[', does: 'Smaller brush', run: () => changeRadius(store, 0.75) },
+    { keys: [']'], shown: ']', does: 'Larger brush', run: () => changeRadius(store, 4 / 3) },
+    { keys: ['z'], shown: 'Ctrl Z', does: 'Undo', run: () => session.edited().undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: 'Redo', run: () => session.edited().redo(), command: true, shift: true },
     { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.edited().redo(), command: true },
-    { keys: ['escape'], shown: 'Esc', does: 'cancel', run: () => session.cancel() },
+    { keys: ['escape'], shown: 'Esc', does: 'Cancel', run: () => session.cancel() },
+    { keys: [], shown: '?', does: 'Show this list', run: () => undefined },
   ];
 }
 

@@ -1,7 +1,6 @@
 //! The time of each stage.
 
 import { strings } from '../common/strings.js';
-import { panels } from '../common/strings-of-panels.js';
 import { type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { find } from './markup.js';
 
@@ -22,11 +21,11 @@ export function mountTimings(root: HTMLElement, store: Store): void {
 function linesOf({ pair, segmentation, waited }: Result): [string, number][] {
   const { total, ...stages } = segmentation.milliseconds;
   return [
-    [panels.timings.decode(pair.first.name), pair.first.decoded],
-    [panels.timings.decode(pair.second.name), pair.second.decoded],
+    [strings.timings.decode(pair.first.name), pair.first.decoded],
+    [strings.timings.decode(pair.second.name), pair.second.decoded],
     ...Object.entries(stages).map(([stage, ms]): [string, number] => [strings.stage(stage), ms]),
-    [panels.timings.total, total],
-    [panels.timings.waited, waited],
+    [strings.timings.total, total],
+    [strings.timings.waited, waited],
   ];
 }
 

@@ -1,12 +1,11 @@
-//! The camera, switched on and off. It owns the live view, which is loaded when it is used.
+//! The camera, switched on and off. It owns the live view.
 
-import { loaded } from '../../common/loaded.js';
 import type { Store } from '../../state/state.js';
 import type { ClipSegmenting } from '../clip/segmenting.js';
 import type { Opening } from '../opening.js';
 import type { Masks } from '../pair/masks.js';
 import type { PairSegmenting } from '../pair/segmenting.js';
-import type { LiveView } from './live.js';
+import { LiveView } from './live.js';
 
 export class Camera {
   readonly #store: Store;
@@ -14,7 +13,7 @@ export class Camera {
   readonly #segmenting: PairSegmenting;
   readonly #masks: Masks;
   readonly #clip: ClipSegmenting;
-  #live: LiveView | null = null;
+  readonly #live: LiveView;
 
   constructor(store: Store, opening: Opening, segmenting: PairSegmenting, masks: Masks, clip: ClipSegmenting) {
     this.#store = store;
@@ -22,6 +21,7 @@ export class Camera {
     this.#segmenting = segmenting;
     this.#masks = masks;
     this.#clip = clip;
+    this.#live = new LiveView(store);
   }
 
   /** Switches the camera on, or off: its last two frames become a pair. */
@@ -31,10 +31,7 @@ export class Camera {
       return this.#segmenting.segment();
     }
     return this.#opening.open(
-      async (signal): Promise<() => void> => {
-        const { LiveView } = await loaded(import('./live.js'));
-        this.#live ??= new LiveView(this.#store);
-        if (signal.aborted) return () => undefined;
+      (signal) => {
         signal.addEventListener('abort', () => this.stop());
         return this.#live.start();
       },
@@ -50,6 +47,6 @@ export class Camera {
 
   /** Switches the camera off; its last frames stay. */
   stop(): void {
-    this.#live?.stop();
+    this.#live.stop();
   }
 }

@@ -34,12 +34,12 @@ type DoneCause = Extract<ClipRun, { readonly phase: 'done' }>['cause'];
 export class Carrying {
   readonly #store: Store;
   readonly #runs: ClipRuns;
-  readonly #spans: () => Promise<Spans>;
+  readonly #spans: Spans;
   readonly #shown: Shown;
   /** `null` while none is under way. */
   #corrections: Corrections | null = null;
 
-  constructor(store: Store, runs: ClipRuns, spans: () => Promise<Spans>, shown: Shown) {
+  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
     this.#store = store;
     this.#runs = runs;
     this.#spans = spans;
@@ -158,7 +158,7 @@ export class Carrying {
     for (const span of before.spans) {
       const own = said.filter(({ frame }) => spanAt(before.spans, frame) === span);
       const isAbout = own.length > 0 || [...span.numbers.values()].some((id) => objects.has(id));
-      if (isAbout) after = await (await this.#spans()).corrected(after, span, own, signal, changes);
+      if (isAbout) after = await this.#spans.corrected(after, span, own, signal, changes);
     }
     return after;
   }

@@ -22,10 +22,10 @@ export class ClipSegmenting {
   readonly solvedPairs = new Map<string, SolvedPairs>();
   readonly #store: Store;
   readonly #runs: ClipRuns;
-  readonly #spans: () => Promise<Spans>;
+  readonly #spans: Spans;
   readonly #shown: Shown;
 
-  constructor(store: Store, runs: ClipRuns, spans: () => Promise<Spans>, shown: Shown) {
+  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
     this.#store = store;
     this.#runs = runs;
     this.#spans = spans;
@@ -174,7 +174,7 @@ export class ClipSegmenting {
     const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
     const corrected = said.some(({ frame }) => contains(range, frame)) || became.size > 0;
-    if (corrected || acceptedIn(before).some((index) => contains(range, index))) version = await (await this.#spans()).repeated(before, version, signal);
+    if (corrected || acceptedIn(before).some((index) => contains(range, index))) version = await this.#spans.repeated(before, version, signal);
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
     version = unchanged(now, version);

@@ -1,5 +1,4 @@
 //! What frames that were segmented together become by what is said, as the package answers: the next version of the masks. It shows nothing.
-//! Loaded when something is said.
 
 import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
