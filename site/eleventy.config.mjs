@@ -27,7 +27,7 @@ export default function configure(eleventy) {
   });
   eleventy.addTransform('letters', (content) => content.replaceAll(/<(m[in]) mathvariant="(bold|script)">(\w+)<\/\1>/g, (_, tag, style, text) => `<${tag}>${styled(text, style)}</${tag}>`));
   eleventy.addTransform('formulas', (content) => together(numbersBeside(content)));
-  // What scrolls can be reached by keys.
+  // Parts that scroll can be reached by keys.
   eleventy.addTransform('scrolling', (content) =>
     content.replaceAll(/<pre(?![^>]*tabindex)/g, '<pre tabindex="0"').replaceAll(/<table>(.*?)<\/table>/gs, '<div class="scroll" role="group" aria-label="Table" tabindex="0"><table>$1</table></div>'),
   );

@@ -41,7 +41,7 @@ for (const page of all.filter(({ name }) => ONLY?.includes(name) ?? true)) {
       assert.ok(page.blocks.length > 0, 'it shows code');
       assert.doesNotMatch(page.prose, /^# /m, 'the template prints the title');
       assert.doesNotMatch(page.body, /\{\{|\{%|\{#/, 'the template engine would read it');
-      assert.doesNotMatch(page.prose, /^(?:- )?What /m, 'a thing that has a name is called by it');
+      assert.doesNotMatch(page.prose, /^(?:- )?What /m, 'whatever has a name is called by it');
       const words = wordsOf(page.prose);
       assert.ok(words <= MOST_WORDS, `${words} words`);
     });

@@ -1,4 +1,4 @@
-// What the tests of the site share.
+// Shared by the tests of the site.
 
 import { readdirSync } from 'node:fs';
 import { sep } from 'node:path';

@@ -72,7 +72,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     await expect(preview.locator('pre')).toContainText('"videos":');
     await expect(caption).toHaveText(/^youtube-vis\.json with frame 3 alone: \d/);
 
-    // What is not ticked is not shown.
+    // Objects that are not ticked are not shown.
     await page.keyboard.press('Escape');
     await page.getByLabel('Show Object 2').uncheck();
     await openExport(page);
@@ -108,7 +108,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   const pixels = (object: number): number[] => found.map((labels) => labels.filter((label) => label === object).length);
   expect(vis.annotations.map(({ areas }) => areas)).toEqual([pixels(1), pixels(2)]);
 
-  // What is not ticked is left out.
+  // Objects that are not ticked are left out.
   await page.keyboard.press('Escape');
   await page.getByLabel('Show Object 2').uncheck();
   const cvat = (await savedAs(page, 'CVAT, tracks')).bytes.toString();

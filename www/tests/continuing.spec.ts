@@ -106,10 +106,10 @@ test('the next visit shows the work, and one click opens it with its frames', as
   await expect(page.locator('#clip-name')).toHaveText('f00-f04.png, 5 frames, 200 × 140');
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
-  // What is open is not offered.
+  // The open clip is not offered.
   await expect(page.locator('#continue')).toBeHidden();
 
-  // What is told of the clip is not told of a pair.
+  // The clip's message is not shown for a pair.
   await expect(page.locator('#saving button')).toBeVisible();
   await page.getByRole('button', { name: 'Parallax' }).click();
   await expect(page.locator('#saving button')).toBeHidden();
@@ -248,7 +248,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
   expect(gunzipSync(await readFile(await download.path())).toString('latin1')).toContain('"Disc"');
 });
 
-test('work that the browser refuses to keep is said to be not saved', async ({ page }) => {
+test('work that the browser refuses to keep is shown as not saved', async ({ page }) => {
   await withoutStorage(page);
   await openSegmented(page, await clipFrames(4, 120, 84));
   await rename(page, '#objects', 1, 'Disc');

@@ -1,4 +1,4 @@
-//! What an annotator draws by hand: exactly, as polygons, and with the outlines of the frames beside for comparison.
+//! Drawing by hand: exactly, as polygons, and with the outlines of the frames beside for comparison.
 
 import { readFile } from 'node:fs/promises';
 
@@ -81,7 +81,7 @@ async function exported(page: Page, name: string): Promise<Uint8Array> {
 const OVER_DISC = [[0.2, 0.4], [0.36, 0.4]] as const;
 const BESIDE = [[0.5, 0.15], [0.65, 0.3]] as const;
 
-test('what is drawn exactly is what is kept, exported and left alone by what is said elsewhere', async ({ page }) => {
+test('what is drawn exactly is kept, exported and left alone by corrections elsewhere', async ({ page }) => {
   const files = await clipFrames(6);
   await openSegmented(page, files);
   const [third, fifth, before] = (await masksOf(page, [3, 5, 4])) as [Uint8Array, Uint8Array, Uint8Array];
@@ -128,7 +128,7 @@ test('what is drawn exactly is what is kept, exported and left alone by what is 
   await expect(status(page)).toHaveText('Corrected: the masks of one frame have changed.');
   const boxed = await labelsOnCanvas(page);
   expect(boxed).toContain(3);
-  // What is around the box is not drawn: another box takes of it.
+  // Nothing around the box is drawn: another box takes of it.
   await drag(page, [0.05, 0.05], [0.15, 0.15]);
   await expect.poll(() => page.locator('#objects > li').count()).toBe(5); // and the background
   await done(page);
@@ -310,7 +310,7 @@ test('on the masks of a pair, too, what is drawn exactly is what is kept', async
   const pixels = drawn.filter((label) => label === 1).length;
   await expect(share).toHaveText(`${((100 * pixels) / drawn.length).toFixed(1)} %`);
 
-  // What is solved around it does not change it; what is said of it later does.
+  // Solving around it does not change it; a later annotation does.
   await exact(page).uncheck();
   await drag(page, [0.1, 0.7], [0.2, 0.75]);
   await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke/);

@@ -208,7 +208,7 @@ test('strokes that are still being applied are undone, cancelled, exported and s
   });
 });
 
-test('what is said of a pair is there when its frames are shown again', async ({ page }) => {
+test('corrections of a pair are there when its frames are shown again', async ({ page }) => {
   await openClip(page, await frames(4), { kind: 'motions' });
 
   await test.step('strokes, names, colours and undo', async () => {

@@ -73,7 +73,7 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     await goTo(page, 1);
     expect(differences(await labelsOnCanvas(page), said)).toBe(0);
 
-    // What cannot be taken says why, and changes nothing.
+    // A file that cannot be taken says why, and changes nothing.
     const notice = page.locator('#notice-sentence');
     await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
     await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 200 × 140.');

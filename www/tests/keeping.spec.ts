@@ -1,4 +1,4 @@
-//! What is right stays right: what is said of one object changes no other, locked objects and accepted frames stay, prompts are refined.
+//! Right masks stay right: a correction of one object changes no other, locked objects and accepted frames stay, prompts are refined.
 
 import { type Locator, type Page } from '@playwright/test';
 
@@ -7,7 +7,7 @@ import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo,
 const [WIDTH, HEIGHT, COUNT] = [120, 84, 6];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
 const pixelAt = (x: number, y: number): number => y * WIDTH + x;
-/** The middle of the disc of `clipFrames` in frame 4; the box of a thing that was not found, and its middle. */
+/** The middle of the disc of `clipFrames` in frame 4; the box of something that was not found, and its middle. */
 const [DISC_X, DISC_Y] = [40, 34];
 const [AROUND, INSIDE] = [[at(62, 6), at(82, 24)], at(72, 15)] as const;
 
@@ -67,7 +67,7 @@ test('a box or a press takes from automatic objects what becomes the new one; no
     }
   });
 
-  await test.step('a locked one keeps every pixel, whatever is said', async () => {
+  await test.step('a locked one keeps every pixel, whatever is corrected', async () => {
     await page.keyboard.press(String(disc));
     await page.keyboard.press('p');
     await drag(page, at(DISC_X - 3, DISC_Y - 14), at(DISC_X + 3, DISC_Y - 14));
@@ -88,7 +88,7 @@ test('a box or a press takes from automatic objects what becomes the new one; no
     const painted = await allMasks(page);
     expect(changed(painted, locked, disc)).toBe(0);
     expect(painted[COUNT - 2]![pixelAt(DISC_X + 20, DISC_Y)]).not.toBe(locked[COUNT - 2]![pixelAt(DISC_X + 20, DISC_Y)]);
-    // Nor what is said of itself: a sentence tells so.
+    // Nor does a correction of itself: a sentence tells so.
     const sentence = `Object ${disc} is locked, so nothing changes it. Unlock it first.`;
     await page.keyboard.press(String(disc));
     await page.keyboard.press('e');
@@ -109,7 +109,7 @@ test('a box or a press takes from automatic objects what becomes the new one; no
   });
 });
 
-test('accepted frames stay accepted and as they are when something is said elsewhere; a stroke in one of them changes that one', async ({ page }) => {
+test('accepted frames stay accepted and as they are when something is corrected elsewhere; a stroke in one of them changes that one', async ({ page }) => {
   await openSegmented(page, await clipFrames(COUNT, WIDTH, HEIGHT));
   await page.locator('#tools [name=radius]').fill('4');
   const reviewed = page.locator('#reviewed');

@@ -1,5 +1,5 @@
 //! A page for each test that is as good as new, in a browser context that is kept: a new one costs three times as much as all else of a start.
-//! What a test leaves behind is undone: what was stored, routes, listeners, scripts, emulation, permissions, other pages.
+//! All that a test leaves behind is undone: stored data, routes, listeners, scripts, emulation, permissions, other pages.
 
 import { type Browser, type BrowserContext, type CDPSession, type Page, test as base } from '@playwright/test';
 

@@ -1,4 +1,4 @@
-//! What is in reach: with a clip on a laptop without scrolling, and on a phone while scrolling.
+//! The controls are in reach: with a clip on a laptop without scrolling, and on a phone while scrolling.
 
 import { type Page } from '@playwright/test';
 

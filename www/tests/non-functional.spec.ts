@@ -80,7 +80,7 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
   expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(79 * 1024);
-  // What is loaded when it is used; what reads masks of annotation tools is needed by few, what reads masks given to calls by none here.
+  // The others are loaded when they are used. Few need the readers of annotation tools, nobody here those of masks given to calls.
   const later = files.filter((name) => !asked.has(name));
   const reading = later.filter((name) => /^(importing|annotations|given-masks)-/.test(name));
   expect(reading).toHaveLength(3);

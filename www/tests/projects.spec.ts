@@ -230,7 +230,7 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   expect(await leaves(page)).toBe(false);
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
-  // What was kept before is whole.
+  // The project from before is whole.
   await expect(page.locator('#project summary')).toHaveText('One project in this browser');
   const project = await savedProject(page);
   expect(await leaves(page)).toBe(true);

@@ -35,7 +35,7 @@ async function placeOfList(page: Page): Promise<number> {
   return page.evaluate(() => document.querySelector('#motions > :last-child')!.getBoundingClientRect().bottom + scrollY);
 }
 
-test('two parts of a thing are joined by a suggestion, with undo; it uses the names of masks, and is about groups', async ({ page }) => {
+test('two parts of one object are joined by a suggestion, with undo; it uses the names of masks, and is about groups', async ({ page }) => {
   const { motions, junctions } = await segmentedInNode(await parts('first.png', 0), await parts('second.png', 1));
   expect(motions.map(({ group }) => group)).toEqual([0, 1, 2]);
   expect(junctions.find(({ labels }) => labels.join() === '1,2')!.likelihood).toBeGreaterThan(0.35);

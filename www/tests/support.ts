@@ -38,7 +38,7 @@ export const test = unwatched.extend<{ page: Page }>({
       if (!own || request.method() !== 'GET') complaints.push(`request: ${request.method()} ${request.url()}`);
     });
     await page.addInitScript(() => {
-      // What a visitor unfolds, most tests look at.
+      // Most tests look at this, which a visitor unfolds.
       document.addEventListener('DOMContentLoaded', () => {
         const inspect = document.querySelector('#inspect');
         if (inspect instanceof HTMLDetailsElement) inspect.open = true;

@@ -289,7 +289,7 @@ test('objects before the camera keep their numbers when another stream takes ove
   expect(seen(2, 2, 1, 1, 0, 0)).toEqual([2, 2, 1, 1, 0, 0]);
   numbering.renew();
   expect(seen(0, 0, 0, 0, 0, 255)).toEqual([0, 0, 0, 0, 0, 255]); // nothing is found yet
-  // What covers the same pixels is the same object, whatever the new stream calls it; what is new has a number that was never used.
+  // The same pixels are the same object, whatever the new stream calls it; a new one has a number that was never used.
   expect(seen(1, 1, 2, 2, 3, 3)).toEqual([2, 2, 1, 1, 3, 3]);
   expect(numbering.numbered(cameraFrame(1, 2, 3, 0, 0, 0)).objects.map(({ id }) => id)).toEqual([2, 1, 3]);
   // Too little in common: another object.
@@ -366,7 +366,7 @@ const labels = (...values: number[]): Runs => packed(Uint8Array.from(values), 6,
 const stroke = (object: number, ...values: number[]): Painted => ({ frame: 0, object, propagate: 'both', labels: labels(...values) });
 const prompt = (object: number, clicks: Prompt['clicks'], box: Prompt['box'] = null): Prompt => ({ frame: 0, object, propagate: 'both', clicks, box });
 
-test('what is said is kept of each object, in the order in which it was said', () => {
+test('annotations are kept of each object, in the order in which they were given', () => {
   const none: ReadonlySet<number> = new Set();
   const all = [stroke(1, 1, 1, 255, 255, 255, 255), stroke(2, 255, 2, 2, 0, 255, 255), prompt(1, [[0, 0, 1]]), stroke(1, 255, 0, 255, 255, 255, 1), prompt(1, [[0, 0, 1], [3, 0, -1]])];
   const said = all.reduce<readonly Said[]>((before, now) => withStatement(before, now, none), []);
@@ -409,7 +409,7 @@ test('an eraser is about the selected object and what was merged into it; the ba
   expect(of(imported, 0).map(([object]) => object)).toEqual([1, 2]);
 });
 
-test('the package is told what is said, by its numbers', () => {
+test('the package is given annotations by its own numbers', () => {
   const numbers = new Map([[1, 3], [3, 1]]);
   const { corrections, prompts } = toldOf([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
   expect(corrections!.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
@@ -428,7 +428,7 @@ test('frames that come back with the same labels are the same', () => {
 test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
   const row = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
   const numbers = new Map([[1, 3], [3, 1]]);
-  // What no run knows gets a number that no object of the run has.
+  // An object that no run knows gets a number that no object of the run has.
   expect(Array.from(toSpan(row(0, 1, 3, 2, 255, 2), numbers))).toEqual([0, 3, 1, 2, 255, 2]);
   expect(Array.from(toSpan(row(7, 1), new Map([[7, 2]])))).toEqual([8, 1]);
   expect(Array.from(toSpan(row(9), new Map([[9, 1], [254, 2]])))).toEqual([1]);
@@ -457,7 +457,7 @@ test('masks are of the span that was segmented last', () => {
   expect([2, 3, 5, 6, 9].map((index) => spanAt([whole!, part!], index))).toEqual([whole, part, part, whole, null]);
 });
 
-test('what is drawn exactly stays where other things are said, and follows its object when that is merged or deleted', () => {
+test('what is drawn exactly stays under later annotations elsewhere, and follows its object when that is merged or deleted', () => {
   const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
   const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
   const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
@@ -475,7 +475,7 @@ test('what is drawn exactly stays where other things are said, and follows its o
   expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
   expect(shown(withSaid(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
   expect(shown(withSaid(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
-  // What the package has no number of goes along with an object that it has, in all frames.
+  // An object without a number of the package's goes along with one that has a number, in all frames.
   const later = withSaid(drawn, { said: [{ ...stroke(5, 255, 255, 255, 255, 255, 5), frame: 1 }] });
   const merged = withSaid(later, { edits: { merge: [[3, 5]] } });
   expect([shown(merged), shown(merged, 1)]).toEqual([[1, 3, 3, 2, 0, 0], [1, 1, 0, 2, 2, 3]]);

@@ -166,7 +166,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   expect(new Set(await labelsOnCanvas(page))).not.toContain(1);
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
-  // What the page has found by itself is kept, too: leaving does not ask for that.
+  // Masks that the page has found by itself are kept, too: leaving does not ask for them.
   await expect(page.locator('#saving button')).toHaveText(/^Saved/);
   await expect.poll(() => leaves(page)).toBe(true);
   await reopen(page, files);
@@ -184,7 +184,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   });
   await page.getByRole('button', { name: 'Continue' }).click();
   expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(kept);
-  // What is named meanwhile is kept at once when the page is hidden.
+  // A name given meanwhile is kept at once when the page is hidden.
   const name = page.locator('#objects .motion-name').nth(1);
   await name.fill('Early');
   await name.press('Enter');
@@ -258,7 +258,7 @@ test('only the frames from the in point to the out point are segmented and expor
   expect(new Set(frames)).toEqual(new Set([2, 3, 4]));
 });
 
-test('frames of another size and frames that are all the same are said to be so', async ({ page }) => {
+test('frames of another size and frames that are all the same are reported', async ({ page }) => {
   const files = await smallFrames(4);
   await openClip(page, [...files.slice(0, 3), await square('f03.png', 120, 90, 0, 0)]);
   // It is told at once.
@@ -301,7 +301,7 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
   await drag(page, ...OVER_DISC);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
   const corrected = await labelsOnCanvas(page);
-  // What was painted is certain.
+  // Painted pixels are certain.
   expect(corrected[IN_DISC]).toBe(3);
   await goTo(page, 4);
   expect(new Set(await labelsOnCanvas(page))).toContain(3);
@@ -402,7 +402,7 @@ test('corrections are applied again when the clip is segmented again, which leav
   expect(new Set(best)).toEqual(new Set([0, 1, 3]));
   expect(best[IN_DISC]).toBe(3);
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Disc');
-  // What was merged stays merged, and it is selected.
+  // Merged objects stay merged, and are selected.
   await rows.nth(2).locator('summary').click();
   await mergeWith(rows.nth(2), 1);
   await expect(rows).toHaveCount(2);

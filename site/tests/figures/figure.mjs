@@ -1,4 +1,4 @@
-// What the tests of figures share.
+// Shared by the tests of figures.
 
 import { expect } from '@playwright/test';
 

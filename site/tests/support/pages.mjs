@@ -29,7 +29,7 @@ function page(name) {
   return { name, file, text, data, body, blocks: withOutputs(blocks, name), prose: body.replaceAll(/^```[\s\S]*?^```$/gm, '') };
 }
 
-/** What a block prints is the block of text that comes next; it belongs to the block and is none of its own. */
+/** The output of a block is the block of text that comes next; it belongs to the block and is none of its own. */
 function withOutputs(blocks, name) {
   const found = [];
   for (const block of blocks) {

@@ -39,7 +39,7 @@ export interface OtherSize {
 /** Draws the thumbnail into the rectangle. */
 export type Picture = (context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) => void;
 
-/** What the file of a frame of a video would be called: `00012.png`. */
+/** The name that a file of a video's frame would have: `00012.png`. */
 export function fileNameOf(index: number): string {
   return `${String(index).padStart(5, '0')}.png`;
 }

@@ -64,7 +64,7 @@ class Folder implements Clip {
   }
 }
 
-/** What files from one to another are called together: "00000-00039.jpg". */
+/** One name for the files from one to another: "00000-00039.jpg". */
 function fromTo(first: string, last: string): string {
   return `${first.replace(/\.[^.]*$/, '')}-${last}`;
 }

@@ -14,7 +14,7 @@ export interface Grouping {
   readonly groups: readonly number[];
 }
 
-/** What is drawn exactly: labels of single pixels, 255 where nothing is said, and the labelling whose numbers they are. */
+/** Pixels drawn exactly: their labels, 255 for all others, and the labelling whose numbers they are. */
 export interface Exact {
   readonly of: Runs;
   readonly labels: Runs;

@@ -1,4 +1,4 @@
-//! What is drawn exactly on the masks of a pair: labels that are kept pixel for pixel, whatever is solved around them.
+//! Labels drawn exactly on the masks of a pair are kept pixel for pixel, whatever is solved around them.
 
 import type { Segmentation } from 'veronese';
 import { UNLABELLED } from '../result/masks.js';
@@ -7,7 +7,7 @@ import { continuation, labellingOf } from './parts.js';
 import { type Runs, extentsOf, packed, resized, unpacked } from './runs.js';
 import { type Path, type Stroke, allowedLabels, eachPixel } from './strokes.js';
 
-/** What a path says over these labels: the mask's pixels stay as they are, others get its first label; erased ones get the first of all others. */
+/** The labels of a path over these: the mask's pixels stay as they are, others get its first label; erased ones get the first of all others. */
 export function drawnExactly(path: Path, { tool, mask }: Pick<Stroke, 'tool' | 'mask'>, labels: Uint8Array, found: Segmentation): Exact {
   const { width, height } = found;
   const allowed = allowedLabels({ tool, mask }, found);

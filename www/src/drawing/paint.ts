@@ -5,7 +5,7 @@ import type { Segmentation } from 'veronese';
 import { UNLABELLED, type Kind, keyOf, maskTable } from '../result/masks.js';
 import { UNKNOWN_COLOUR, type Colour, colourOf, wordFromColour } from './palette.js';
 
-/** What decides how labels are painted. */
+/** The choices that decide how labels are painted. */
 export interface Painting {
   readonly kind: Kind;
   readonly hidden: ReadonlySet<number>;

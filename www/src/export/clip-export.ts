@@ -19,7 +19,7 @@ export interface ClipFile extends LabelFrame {
   readonly stem: string;
 }
 
-/** Frames in their order, and what is said of them all. */
+/** Frames in their order, and the facts about all of them. */
 interface Sequence {
   readonly meta: ClipMeta & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
   /** The frames in their order, each made when it is asked for. */
@@ -46,11 +46,11 @@ export interface ClipFormat {
   /** The names of all files that `make` gives, in their order. */
   names(exported: ClipExport): readonly string[];
   make(exported: ClipExport): Promise<Record<string, string | Uint8Array | Blob>>;
-  /** What a frame looks like, if the file itself cannot show it. */
+  /** A picture of a frame, if the file itself cannot show it. */
   picture?(exported: ClipExport): Promise<Blob>;
 }
 
-/** What is ticked, and the list of classes. */
+/** Which objects are ticked, and the list of classes. */
 type Shown = Pick<State, 'look' | 'classList'>;
 
 /** The frames that have masks. `told` is called when a frame has been made. */

@@ -17,7 +17,7 @@ function lines(texts: readonly string[]): string {
   return texts.map((text) => `${text}\n`).join('');
 }
 
-/** What the encoders of one image take. */
+/** The arguments of the encoders of one image. */
 function given({ meta: { names, classes, labels } }: ClipExport, frame: ClipFile): readonly [Uint8Array, number, number, FormatMeta] {
   return [frame.labels, frame.width, frame.height, { image: frame.image, names, ...(classes && { classes }), labels, motions: frame.motions ?? [] }];
 }

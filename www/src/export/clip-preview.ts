@@ -1,4 +1,4 @@
-//! What an export of a clip will write: the names of its files, and what it writes of one frame.
+//! A preview of a clip's export: the names of its files, and the content for one frame.
 
 import { unzipSync } from 'fflate';
 import type { State } from '../state/state.js';
@@ -19,7 +19,7 @@ export interface Preview {
    * frame has no masks, or if the format has a picture of its own.
    */
   readonly file: { readonly name: string; readonly bytes: number; readonly ofFrame: boolean } | null;
-  /** What the file shows: a picture, or the beginning of its text. */
+  /** The content: a picture, or the beginning of a text. */
   readonly shown: Blob | string | null;
 }
 

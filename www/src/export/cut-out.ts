@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { ClipExport, ClipFile } from './clip-export.js';
 
-/** What is where no object is. */
+/** The background behind the objects. */
 export type Ground = 'transparent' | 'green' | 'black';
 
 const GREEN = '#00ff00';

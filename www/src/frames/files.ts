@@ -51,7 +51,7 @@ export function foldersOf(images: readonly File[]): ImageFolder[] {
   return [...folders].map(([path, files]) => ({ path, images: files }));
 }
 
-/** What folders of masks are called, and of what is made of frames. */
+/** Names of folders with masks, and with other pictures that are made of frames. */
 const MADE = /^(annotations?|depth|flow|gt|ground[-_ ]?truth|labels?|masks?|overlays?|segmentations?)$/i;
 
 /** Those folders that may have frames: not those of masks, unless there are no others. */

@@ -1,4 +1,4 @@
-//! What a project's file says, besides its header, and the checks of it: a file may come from anywhere.
+//! The content of a project's file besides its header, and the checks of it: a file may come from anywhere.
 
 import type { Edits } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';

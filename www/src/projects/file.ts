@@ -76,7 +76,7 @@ export async function headerOf(file: Blob, name: string): Promise<Header> {
 /** Throws a {@link PageError}: `damaged-project`, or `newer-project` for a version that is not known yet. */
 export async function projectFromFile(file: Blob, name: string): Promise<Project> {
   return guarded(name, async () => {
-    // The end of the stream has a checksum, so what can be unpacked is whole.
+    // The end of the stream has a checksum, so a file that can be unpacked is whole.
     const bytes = new Uint8Array(await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
     let at = 0;
     const line = (): string => {
@@ -160,7 +160,7 @@ function headerIn(line: string, name: string): Header {
   return header;
 }
 
-/** What was last exported belongs to the tab, and the subject stands in the header. */
+/** The last export belongs to the tab, and the subject stands in the header. */
 function withoutSaved({ edits, subject: _subject, ...kept }: Kept): object {
   const { saved: _saved, ...rest } = edits;
   return { ...kept, edits: rest };

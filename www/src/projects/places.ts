@@ -74,7 +74,7 @@ const FILES = 'files';
 
 /** Files are under their names; the size of each is under a list of its name, to be read without the file. */
 class Database implements Place {
-  /** What it writes and reads is in memory. */
+  /** A file is in memory while it is written or read. */
   readonly largest = 50e6;
 
   constructor(readonly database: IDBDatabase) {}

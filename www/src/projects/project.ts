@@ -12,7 +12,7 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range'> {
   /** The frame on screen and the objects that are not ticked, when the project was written. */
   readonly at: number;
   readonly hidden: readonly number[];
-  /** What is known of the pairs while frames to segment have no masks; `null` if all have. */
+  /** The solved pairs, while frames to segment have no masks; `null` if all have. */
   readonly solved: SolvedPairs | null;
 }
 
@@ -25,7 +25,7 @@ export interface Project extends Subject, Pick<State, 'settings' | 'classList'> 
   readonly pairs: ReadonlyMap<string, Kept>;
 }
 
-/** What the state has of this subject; `null` if nothing was ever done with it. */
+/** The work on this subject; `null` if nothing was ever done with it. */
 export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<string, SolvedPairs>): Project | null {
   const { settings, motionsElsewhere, classList } = state;
   const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
@@ -47,7 +47,7 @@ function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: S
   const open = timeline?.clip === tracked.clip ? timeline : null;
   const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
-  // What is complete can be corrected without its pairs.
+  // A complete clip can be corrected without its pairs.
   return { ...versionOf(tracked), range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
 }
 

@@ -22,19 +22,19 @@ type Shelf = typeof import('./shelf.js');
 
 export class Projects {
   readonly #store: Store;
-  /** What is known of the pairs of clips, by fingerprint: it is not in the state. */
+  /** The solved pairs of clips, by fingerprint: they are not in the state. */
   readonly #pairs: Map<string, SolvedPairs>;
-  /** What has changed and is not written yet, by the fingerprint of its clip or the key of its pair. */
+  /** Subjects whose changes are not written yet, by the fingerprint of the clip or the key of the pair. */
   readonly #changed = new Set<string>();
   /** Projects of files, until their frames are opened. */
   readonly #opened = new Map<string, Project>();
-  /** What need not be looked for again. */
+  /** Subjects that need not be looked for again. */
   readonly #known = new Set<string>();
   /** The files that the frames of each were opened from. */
   readonly #files = new Map<string, readonly File[]>();
   /** Whether the work on each is kept. That on what is open is in the state. */
   readonly #keeping = new Map<string, Keeping>();
-  /** What each looked like last. */
+  /** The last picture of each. */
   readonly #thumbnails = new Map<string, string>();
   /** When the project of each was looked for, as an ISO 8601 date. What is saved later is another tab's. */
   readonly #lookedFor = new Map<string, string>();
@@ -43,7 +43,7 @@ export class Projects {
   #timer = 0;
   #due = Infinity;
   #writing = false;
-  /** What is being written, with the copies of frames. */
+  /** Ends when all is written, with the copies of frames. */
   #written: Promise<unknown> = Promise.resolve();
 
   constructor(store: Store, pairs: Map<string, SolvedPairs>) {
@@ -121,7 +121,7 @@ export class Projects {
     return { name: `${project.name.replace(/\.[^./]*$/, '').replace(/[\\/:*?"<>|#]/g, '_')}.veronese`, content };
   }
 
-  /** What the state has of this subject, as it looks now if it is on screen. */
+  /** The work on this subject, with a new picture if it is on screen. */
   async #projectOf(of: string, { projectFrom, thumbnailOf }: Shelf): Promise<Project | null> {
     const state = this.#store.get();
     const project = projectFrom(state, of, this.#pairs);
@@ -158,7 +158,7 @@ export class Projects {
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
     const listed = now.classList !== before.classList;
     if (!ticked && !listed && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
-    // What the page does by itself when it opens a sample is not kept.
+    // The page segments a sample by itself: that is not kept.
     if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
   }
 
@@ -175,7 +175,7 @@ export class Projects {
     this.#written = Promise.all([this.#written, this.#write()]);
   }
 
-  /** What can be written: not a clip between two states, whose masks do not belong together. */
+  /** The subjects that can be written: not a clip between two states, whose masks do not belong together. */
   #ready(): string[] {
     const { tracked } = this.#store.get();
     const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0));

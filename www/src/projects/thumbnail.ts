@@ -1,4 +1,4 @@
-//! What a project looks like: the frame on screen with its masks, small, as a `data:` address.
+//! The picture of a project: the frame on screen with its masks, small, as a `data:` address.
 
 import { type Painting, wordsByLabel } from '../drawing/paint.js';
 import type { Result, State } from '../state/state.js';

@@ -1,9 +1,9 @@
-//! What to ask about neighbouring motions: two frames cannot always tell whether two of them are one thing, and a person can.
+//! Questions about neighbouring motions: two frames cannot always tell whether two of them are one thing, and a person can.
 
 import type { Segmentation } from 'veronese';
 import { maskOf } from './masks.js';
 
-/** What may be done about two groups, or about one that has both motions. */
+/** Advice about two groups, or about one that has both motions. */
 export interface Suggestion {
   readonly advice: 'join' | 'separate';
   /** The two groups, the smaller number first; of one that may be two things, twice the same. */
@@ -52,7 +52,7 @@ function isApart([one, other]: readonly [number, number]): boolean {
   return one !== other;
 }
 
-/** What would change the groups that were found; `null` if the likelihood does not speak against them. */
+/** The change of the groups that were found; `null` if the likelihood does not speak against them. */
 function adviceOn(found: Grouped, junction: Junction): Suggestion['advice'] | null {
   if (isApart(groupsOf(found, junction))) return junction.likelihood >= MAY_BE_ONE ? 'join' : null;
   return junction.likelihood < MAY_BE_TWO ? 'separate' : null;

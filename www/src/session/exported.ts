@@ -1,4 +1,4 @@
-//! What exports ask for: masks with all strokes, and to record what was taken away. Loaded with the panel; all is in the state.
+//! The needs of exports: masks with all strokes, and a record of what was taken away. Loaded with the panel; all is in the state.
 
 import { asSaved } from '../correction/edits.js';
 import { type State, type Store, isPending } from '../state/state.js';

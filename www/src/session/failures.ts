@@ -1,4 +1,4 @@
-//! What fails ends as a notice in the state, and the page stays usable.
+//! A failure ends as a notice in the state, and the page stays usable.
 
 import { codeOf, sentenceOf } from '../common/errors.js';
 import type { Store } from '../state/state.js';

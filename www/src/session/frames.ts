@@ -19,7 +19,7 @@ import type { Shown } from './shown.js';
 /** Distance between the two frames when a clip is opened. */
 export const FRAMES_APART = 1;
 
-/** What else changes with the frames. */
+/** The parts that change with the frames. */
 interface Parts {
   readonly opening: Opening;
   readonly worker: PairWorker;

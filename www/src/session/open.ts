@@ -1,4 +1,4 @@
-//! What can be opened: samples, images, folders, videos, projects, masks for the frames on screen, lists of classes. It decides what files
+//! Opens samples, images, folders, videos, projects, masks for the frames on screen, lists of classes. It decides what files
 //! are, and reads them; it keeps nothing.
 
 import type { Clip } from '../clips/clip.js';
@@ -23,7 +23,7 @@ import { FRAMES_APART, type Frames } from './frames.js';
 import type { Opening } from './opening.js';
 import type { Shown } from './shown.js';
 
-/** What takes what is opened. */
+/** The parts that take what is opened. */
 interface Parts {
   readonly opening: Opening;
   readonly frames: Frames;

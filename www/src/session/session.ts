@@ -1,4 +1,4 @@
-//! What the page does, in parts: views call them, and read the state. Here they are put together; each says in its file what it owns.
+//! The actions of the page, in parts: views call them, and read the state. Here they are put together; each says in its file what it owns.
 
 import { Projects } from '../projects/projects.js';
 import type { Store } from '../state/state.js';
@@ -31,7 +31,7 @@ export interface Session {
   readonly clip: ClipSegmenting;
   readonly objects: Objects;
   readonly projects: Projects;
-  /** What undo and redo are about: the masks on screen. */
+  /** The masks on screen, which undo and redo are about. */
   edited(): Masks | Objects;
   /** Stops what is being opened, else the run on the pair, else that on the clip. What is on screen stays. */
   cancel(): void;

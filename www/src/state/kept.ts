@@ -18,7 +18,7 @@ export interface Kept {
   /** Size of the first frame. */
   readonly width: number;
   readonly height: number;
-  /** What the pair is part of. */
+  /** The clip that the pair is part of, or the pair itself. */
   readonly subject: Subject;
 }
 

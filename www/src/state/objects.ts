@@ -15,7 +15,7 @@ export function resultOf(tracked: Tracked | null, { first, second }: FramePair):
   return { segmentation: segmentationOf(found), pair: { first, second }, second: other && segmentationOf(other), waited: 0, under: null };
 }
 
-/** What the clip knows of a frame that is open. */
+/** The masks of the clip in a frame that is open. */
 export function frameOf(tracked: Tracked, { origin }: LoadedFrame): TrackedFrame | null {
   if (origin === undefined || !('clip' in origin) || origin.clip !== tracked.clip) return null;
   return shownFrames(tracked)[origin.index] ?? null;

@@ -22,7 +22,7 @@ export function keyOfPair({ first, second }: FramePair): string | null {
   return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
 }
 
-/** What work belongs to: a clip, or a pair of frames that are of none. */
+/** The subject of work: a clip, or a pair of frames that are of none. */
 export interface Subject {
   /** The fingerprint of the clip, or the key of the pair. */
   readonly of: string;
@@ -38,7 +38,7 @@ export interface OfSample {
   readonly swapped: boolean;
 }
 
-/** What the work on this pair belongs to; `null` if a frame is missing. */
+/** The subject of the work on this pair; `null` if a frame is missing. */
 export function subjectOf(pair: FramePair): Subject | null {
   const clip = timelineOf(pair)?.clip;
   if (clip !== undefined) return subjectOfClip(clip);

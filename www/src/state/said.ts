@@ -1,4 +1,4 @@
-//! What a person says about a clip, and the masks as they are before it has been carried to the other frames.
+//! A person's annotations of a clip, and the masks as they are before these have been carried to the other frames.
 
 import type { ClipOptions, ClipPropagation } from 'veronese';
 import { over, packed, unpacked } from '../correction/runs.js';
@@ -8,27 +8,27 @@ import { becameAfter } from './spans.js';
 import { type Said, isPrompt, withStatement } from './statement.js';
 import type { Notes, Version } from './tracked.js';
 
-/** Where what is said of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
+/** Where an annotation of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
 export type Spread = ClipPropagation | 'exact';
 
-/** What a person says: of objects in frames, what becomes of whole objects, what is drawn exactly, or what changes no masks. */
+/** An annotation: of objects in frames, of whole objects, pixels drawn exactly, or notes, which change no masks. */
 export type Saying = (Stated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
 
 export interface Stated {
   readonly said: readonly Said[];
 }
 
-/** What is drawn exactly in frames, by index. */
+/** Labels drawn exactly in frames, by index. */
 export interface Drawn {
   readonly drawn: ReadonlyMap<number, Uint8Array>;
 }
 
-/** What changes no masks: these notes in the place of those before. */
+/** Notes in the place of those before: they change no masks. */
 export interface Noted {
   readonly notes: Partial<Notes>;
 }
 
-/** What painting an object changes in the masks of its frame at once: the number of an object, 0, or 255 where nothing. */
+/** The labels that change at once where an object is painted in a frame: the number of an object, 0, or 255 where nothing changes. */
 export function seenOf(version: Version, frame: number, object: number, labels: Uint8Array): Uint8Array {
   const shown = unpacked(version.frames[frame]!.runs);
   const stays = (label: number, was: number): boolean => version.locked.has(was) || (label === 0 && object !== 0 && was !== object);
@@ -54,7 +54,7 @@ function withOne<V extends Version>(version: V, now: Said): V {
 function withEdits<V extends Version>(version: V, edits: NonNullable<ClipOptions['edits']>): V {
   const became = becameAfter(version.became, edits);
   const exact = new Map([...version.exact].map(([index, runs]) => [index, { ...runs, labels: runs.labels.map((label) => became.get(label) ?? label) }]));
-  // What nobody but the page knows of, as it was drawn exactly, is no part of the package's answer.
+  // Objects that were drawn exactly are known to the page alone, so they are no part of the package's answer.
   const frames = version.frames.map((frame) => frame && relabelled(frame, became));
   return exactly({ ...version, frames, became, exact });
 }
@@ -68,7 +68,7 @@ function withLabels<V extends Version>(version: V, index: number, labels: Uint8A
   const largest = Math.max(version.largest, ...frame.objects.map(({ id }) => id));
   const before = version.exact.get(index);
   if (!isExact && before === undefined) return { ...version, frames, largest };
-  // What a person says later counts, also where something was drawn exactly.
+  // A later annotation counts, also where something was drawn exactly.
   const said = packed(isExact || before === undefined ? labels : unpacked(before).map((label, p) => (label === UNLABELLED ? label : labels[p]!)), width, height);
   return { ...version, frames, largest, exact: new Map(version.exact).set(index, before === undefined ? said : over(before, said)) };
 }

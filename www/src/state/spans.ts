@@ -57,7 +57,7 @@ export function numbersOf(run: readonly TrackedFrame[], { first }: Range, { fram
   return numbers;
 }
 
-/** What became of objects after an edit as well. */
+/** The fate of objects after one more edit. */
 export function becameAfter(
   became: ReadonlyMap<number, number>,
   { merge = [], delete: gone = [] }: NonNullable<ClipOptions['edits']>,
@@ -72,7 +72,7 @@ export function becameAfter(
   return now;
 }
 
-/** What was drawn in frames, at the size of their masks. */
+/** Labels drawn in frames, at the size of their masks. */
 export function atSize(exact: Version['exact'], frames: Version['frames']): Version['exact'] {
   return new Map([...exact].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
 }

@@ -11,10 +11,10 @@ import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
-/** What led to the masks on screen. */
+/** How the masks on screen came about. */
 export type Cause = 'found' | 'solved' | 'drawn' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'separated' | 'restored' | 'tracked';
 
-/** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
+/** The run on the pair. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
 export type Run =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
   | { readonly phase: 'done'; readonly cause: Cause }
@@ -61,7 +61,7 @@ export interface Look extends Painting {
 
 export type ToolName = 'look' | 'brush' | 'eraser' | 'polygon' | 'box';
 
-/** What a press of the box tool points to: a new object, or more of the one that is selected, or what does not belong to it. */
+/** The meaning of a press with the box tool: a new object, more of the one that is selected, or pixels that do not belong to it. */
 export type Pointing = 'new' | 'add' | 'remove';
 
 export interface Tool {
@@ -70,7 +70,7 @@ export interface Tool {
   readonly radius: number;
   /** Whether what is drawn is kept pixel for pixel, and nothing follows. */
   readonly exact: boolean;
-  /** Where what is said of a frame of a clip spreads otherwise. */
+  /** Where an annotation of a clip's frame spreads otherwise. */
   readonly spread: ClipPropagation;
   readonly pointing: Pointing;
 }
@@ -155,14 +155,14 @@ interface ClipState {
   readonly classList: readonly string[];
 }
 
-/** What a person chose of the screen and the tools: the views. */
+/** A person's choices for the screen and the tools: the views. */
 interface ChosenState {
   readonly look: Look;
   readonly viewport: Viewport;
   readonly tool: Tool;
 }
 
-/** What the page tells: a message, until it is read, and whether work is kept: `projects/projects.ts`. */
+/** Messages: a notice, until it is read, and whether work is kept: `projects/projects.ts`. */
 interface ToldState {
   readonly notice: Notice | null;
   readonly keeping: Keeping;

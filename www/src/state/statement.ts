@@ -1,4 +1,4 @@
-//! What a person said of an object in a frame: pixels, or clicks and a box that point to it. It is kept as it was said.
+//! An annotation of an object in a frame: pixels, or clicks and a box that point to it. It is kept as it was given.
 
 import type { ClipPropagation } from 'veronese';
 import { type Runs, over, packed, unpacked } from '../correction/runs.js';
@@ -16,7 +16,7 @@ interface Statement {
   readonly propagate: ClipPropagation;
 }
 
-/** Pixels: the object's number, 0 where it is not, 255 where nothing is said. Of object 0: a label map, with numbers of any objects. */
+/** Pixels: the object's number, 0 where it is not, 255 where that is left open. Of object 0: a label map, with numbers of any objects. */
 export interface Painted extends Statement {
   readonly labels: Runs;
 }
@@ -38,13 +38,13 @@ export function namesObjects({ labels: { labels } }: Painted): boolean {
   return labels.some((label) => label !== 0 && label !== UNLABELLED);
 }
 
-/** What was painted of an object in a frame; of 0, the label map. */
+/** The pixels painted of an object in a frame; of 0, the label map. */
 export function paintedOf(said: readonly Said[], frame: number, object: number): Painted | null {
   return said.find((one): one is Painted => !isPrompt(one) && one.frame === frame && one.object === object) ?? null;
 }
 
 /**
- * All that is said, with this, in the order in which it was said. What is painted lies over what was painted of the same object; a label map of
+ * All annotations, with this one, in the order in which they were given. A stroke lies over those of the same object before; a label map of
  * objects also over the strokes in its frame but those of objects that are `locked`. A prompt takes the place of the one before.
  */
 export function withStatement(said: readonly Said[], now: Said, locked: ReadonlySet<number>): readonly Said[] {
@@ -58,7 +58,7 @@ export function withStatement(said: readonly Said[], now: Said, locked: Readonly
   return [...covered, all];
 }
 
-/** What is painted without the pixels of which something else is said. */
+/** The painted pixels but those that another annotation covers. */
 function without(painted: Painted, said: Runs): Painted {
   const above = unpacked(said);
   const { width, height } = painted.labels;

@@ -1,4 +1,4 @@
-//! What the package is told of what a person said, by its own numbers of objects.
+//! A person's annotations as the package takes them, by its own numbers of objects.
 
 import type { ClipOptions } from 'veronese';
 import { type Runs, resized, unpacked } from '../correction/runs.js';
@@ -31,7 +31,7 @@ function learned(numbers: Map<number, number>, id: number): number {
   return number;
 }
 
-/** What the package is told of what was said in frames of a span; `numbers` learns new ones. Where an object is not that it does not know is nothing. */
+/** Annotations of frames of a span for the package; `numbers` learns new ones. Where an object is not that it does not know is nothing. */
 export function toldOf(said: readonly Said[], { first }: Range, numbers: Map<number, number>): Required<Pick<ClipOptions, 'corrections' | 'prompts'>> {
   const corrections: NonNullable<ClipOptions['corrections']>[number][] = [];
   const prompts: NonNullable<ClipOptions['prompts']>[number][] = [];
@@ -56,7 +56,7 @@ export function theirNumbers(numbers: ReadonlyMap<number, number>, became: Versi
   return [...numbers].filter(([, here]) => is(became.get(here) ?? here)).map(([there]) => there);
 }
 
-/** What the package is told of objects that were merged or deleted; `numbers` learns under which number here an object goes on. */
+/** Merged and deleted objects for the package; `numbers` learns under which number here an object goes on. */
 export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number, number>): NonNullable<ClipOptions['edits']> {
   const groups = new Map<number, number[]>();
   for (const [there, here] of [...numbers].sort(([, one], [, other]) => one - other)) {
@@ -83,7 +83,7 @@ interface Size {
   readonly height: number;
 }
 
-/** What was said of masks of one size, for masks of another. */
+/** An annotation of masks of one size, for masks of another. */
 export function saidAtSize(said: Said, before: Size, now: Size): Said {
   if (!isPrompt(said)) return { ...said, labels: resized(said.labels, now) };
   const [sx, sy] = [now.width / before.width, now.height / before.height];

@@ -20,7 +20,7 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 
 type ChangeCause = 'corrected' | 'undone' | 'redone';
 
-/** What is done with the clip as a whole. */
+/** The run on the clip as a whole. */
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
@@ -34,7 +34,7 @@ export type ClipRun =
       readonly labelled: number;
     };
 
-/** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
+/** The solved pairs of each frame, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
 export interface SolvedPairs {
   /** The settings they were solved with, as text. */
   readonly settings: string;
@@ -45,7 +45,7 @@ export interface SolvedPairs {
 /** Frames that were segmented together. */
 export interface Span {
   readonly range: Range;
-  /** What the package knows of these frames, in a blob, which browsers can move to disk. */
+  /** The package's state of these frames, in a blob, which browsers can move to disk. */
   readonly state: Blob;
   /** The numbers of their objects here by those of the package, which counts anew in each run. */
   readonly numbers: ReadonlyMap<number, number>;
@@ -55,17 +55,17 @@ export interface Span {
 export interface Version {
   /** By index; `null` for frames without masks. */
   readonly frames: readonly (TrackedFrame | null)[];
-  /** What the package knows of these frames. Where spans overlap, the masks are of the last. There are none until the first masks are complete. */
+  /** The package's states of these frames. Where spans overlap, the masks are of the last. There are none until the first masks are complete. */
   readonly spans: readonly Span[];
   /** Longer side of the frames as they were segmented, pixels. */
   readonly longestSide: number;
   /** The masks before corrections, by index: they tell which object of another run is which. */
   readonly found: readonly (Runs | null)[];
-  /** What was said of objects in frames, in the order in which it was said. */
+  /** The annotations of objects in frames, in the order in which they were given. */
   readonly said: readonly Said[];
-  /** What was drawn exactly in frames, by index: their masks have these labels, whatever else is said; 255 where nothing was drawn. */
+  /** Labels drawn exactly in frames, by index: their masks have them, whatever else is annotated; 255 where nothing was drawn. */
   readonly exact: ReadonlyMap<number, Runs>;
-  /** What became of objects that were merged or deleted: the number of another object, or 0. */
+  /** The fate of objects that were merged or deleted: the number of another object, or 0. */
   readonly became: ReadonlyMap<number, number>;
   /** The objects that nothing changes until a person unlocks them. */
   readonly locked: ReadonlySet<number>;
@@ -79,7 +79,7 @@ export interface Version {
   readonly largest: number;
 }
 
-/** What a version says of objects and frames that changes no masks. */
+/** The parts of a version that change no masks. */
 export type Notes = Pick<Version, 'locked' | 'accepted' | 'names' | 'classes' | 'colours'>;
 
 export interface Tracked extends Version {
@@ -96,7 +96,7 @@ export interface Tracked extends Version {
   readonly future: readonly Version[];
   /** The frames at which a person looked because an object is least certain there, by its number. */
   readonly checked: ReadonlyMap<number, number>;
-  /** What was last exported, kept as a project, or found by itself. */
+  /** The last masks that were exported, kept as a project, or found by themselves. */
   readonly saved: Saved;
 }
 
@@ -137,7 +137,7 @@ export function notesOf({ locked, accepted, names, classes, colours }: Notes): N
   return { locked, accepted, names, classes, colours };
 }
 
-/** What is saved when the clip is kept or exported as it is. */
+/** The record of a clip that is kept or exported as it is. */
 export function savedOf({ frames, ...others }: Saved): Saved {
   return { frames, ...notesOf(others) };
 }
@@ -161,7 +161,7 @@ export function unchanged<V extends Pick<Version, 'frames'>>(before: Pick<Versio
 
 /** Whether leaving would lose what a person did. */
 export function isUnsavedClip({ frames, saved, past, future, run, ...others }: Tracked): boolean {
-  // What is undone is a correction as well: the next visit would have it still.
+  // An undone step is a correction as well: the next visit would have it still.
   const corrected = past.length > 0 || future.length > 0 || isCorrecting(run);
   const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => others[part] !== saved[part]);
   return noted || (frames !== saved.frames && corrected);

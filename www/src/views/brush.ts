@@ -36,7 +36,7 @@ export class Brush {
   readonly #corners = drawn('path', { class: 'corners' });
   readonly #strokes = drawn('g', {});
   readonly #prompt = drawn('g', {});
-  /** What is being drawn, and what takes it: it belongs to the tool and the mask that were selected when it began. */
+  /** The stroke under way, and who takes it: it belongs to the tool and the mask that were selected when it began. */
   #now: { readonly tool: ToolName; readonly points: number[]; readonly take: (path: Path) => void } | null = null;
   /** Whether the pointer was pressed for what is being drawn. A polygon goes on when it is lifted. */
   #pressed = false;

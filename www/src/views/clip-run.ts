@@ -73,7 +73,7 @@ function detailOf({ run, solved, range }: Tracked): string {
   return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(run.labelled, solved);
 }
 
-/** What is done, 0 to 1; `null` if it cannot be told. */
+/** The share that is done, 0 to 1; `null` if it cannot be told. */
 function shareOf({ run, solved, range }: Tracked): number | null {
   if (run.phase !== 'working' || run.stage === 'corrections') return null;
   if (run.stage === 'labels') return run.labelled / Math.max(1, solved);

@@ -1,4 +1,4 @@
-//! What is kept in this browser: the work to continue, and what became of the work on screen. Loaded once there is any.
+//! The work that is kept in this browser: the work to continue, and what became of the work on screen. Loaded once there is any.
 
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';

@@ -1,4 +1,4 @@
-//! What a press of the box tool is: a new object, or more or less of the selected one, whose clicks and box are shown.
+//! The meaning of a press with the box tool: a new object, or more or less of the selected one, whose clicks and box are shown.
 
 import { promptOf } from '../session/clip/drawing.js';
 import type { Pointing, State, Store } from '../state/state.js';
@@ -14,7 +14,7 @@ const HELP = {
   remove: 'Press on what does not belong to the selected object.',
 };
 
-/** What a press is, unless a key says otherwise. */
+/** The meaning of a press, unless a key changes it. */
 export function pointingIn(state: State): Pointing {
   return promptIn(state) === null ? 'new' : state.tool.pointing;
 }

@@ -69,7 +69,7 @@ function sentenceFor(state: State): string {
   }
 }
 
-/** What led to the masks on screen. */
+/** How the masks on screen came about. */
 function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, pair, waited }: Result): string {
   const { status } = strings;
   const strokes = strokesOf(edits);

@@ -19,7 +19,7 @@ export function mountSuggestions(root: ParentNode, store: Store, session: Sessio
     if (list.inert && now.look.kind === 'groups' && now.live === null) return;
     const suggestions = suggestionsFor(now);
     const asked = suggestions.map((suggestion) => ({ suggestion, sentence: sentenceFor(suggestion, now) }));
-    // What stays is left alone: it was read out, and may have the focus.
+    // Suggestions that stay are left alone: they were read out, and may have the focus.
     const text = JSON.stringify(asked);
     if (text === shown) return;
     shown = text;

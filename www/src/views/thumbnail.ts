@@ -1,4 +1,4 @@
-//! What a mask shows, as a small picture: its part of the frame.
+//! A small picture of a mask: its part of the frame.
 
 import type { Result } from '../state/state.js';
 import { contextOf } from './markup.js';

@@ -17,7 +17,7 @@ const OFTEN = 100;
 /** The beginning of carrying a correction through a clip. */
 const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
 
-/** What is left of a correction that was taken back, or that failed. */
+/** The run after a correction that was taken back, or that failed. */
 const TAKEN_BACK = { phase: 'done', cause: 'undone', changed: 0 } as const;
 
 interface Corrections {
@@ -46,7 +46,7 @@ export class Carrying {
     this.#shown = shown;
   }
 
-  /** Shows what is said at once in its own frame, and carries it through the clip after what was said before. */
+  /** Shows a correction at once in its own frame, and carries it through the clip after those before. */
   async correct(said: Saying): Promise<void> {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
@@ -141,12 +141,12 @@ export class Carrying {
     if (isNothing) this.#store.say(strings.notices.nothingThere);
     corrections.settled = corrections.now = isNothing ? before : after;
     if (!isNothing) set({ past: [...now.past, before], future: [] });
-    // What was said meanwhile stays on screen.
+    // Later corrections stay on screen.
     const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(corrections.settled, before) } as const);
     this.#shown.version(waiting.reduce(withSaid, corrections.settled), run);
   }
 
-  /** The masks of all frames after what is said. */
+  /** The masks of all frames after a correction. */
   async #carried(before: Version, saying: Saying, corrections: Corrections, signal: AbortSignal): Promise<Version> {
     const { now } = corrections;
     if (!('edits' in saying || 'said' in saying)) return now;
@@ -179,7 +179,7 @@ export class Carrying {
   }
 }
 
-/** What notes are about; `null` for what is said of masks. */
+/** The kinds of notes; `null` for a correction of masks. */
 function kindOf(saying: Saying): string | null {
   return 'notes' in saying && saying.notes !== undefined && !('said' in saying || 'drawn' in saying || 'edits' in saying) ? Object.keys(saying.notes).join() : null;
 }

@@ -1,4 +1,4 @@
-//! Drawing objects of a clip: strokes, boxes and clicks, masks copied to other frames, objects split. It becomes what is said of objects in
+//! Drawing objects of a clip: strokes, boxes and clicks, masks copied to other frames, objects split. It becomes annotations of objects in
 //! frames, in pixels of the masks. Loaded when something is drawn.
 
 import type { ClipPropagation } from 'veronese';
@@ -46,7 +46,7 @@ export class Drawing {
       const scale = masks.width / frame.width;
       const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
       const [shown, labels] = [unpacked(masks), nothing(masks)];
-      // What has a name is changed by its own strokes alone.
+      // An object with a name is changed by its own strokes alone.
       const stays = (id: number): boolean => now.locked.has(id) || (id !== own && keyOf('objects', id) in now.names);
       eachPixel(path, masks.width, masks.height, (p) => {
         if (!stays(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
@@ -118,12 +118,12 @@ export class Drawing {
     if (number === null) return;
     const [is, isNot] = [nothing(masks), nothing(masks)];
     for (const p of pieces) [is[p], isNot[p]] = [number, 0];
-    // What was found automatically gives way by itself.
+    // An automatic object gives way by itself.
     const isOwn = keyOf('objects', id) in tracked.names || tracked.said.some((one) => one.object === id || (!isPrompt(one) && one.labels.labels.includes(id)));
     this.#paint(frame, [...(isOwn ? [[id, isNot] as const] : []), [number, is]]);
   }
 
-  /** Paints objects in a frame, each by its number: where it is, where it is not, and 255 where nothing is said. */
+  /** Paints objects in a frame, each by its number: where it is, where it is not, and 255 where that is left open. */
   #paint(frame: number, all: readonly (readonly [number, Uint8Array])[]): void {
     const { tracked } = this.#store.get();
     const spread = this.#spread();
@@ -140,8 +140,8 @@ export class Drawing {
 }
 
 /**
- * What is said by painting an object in a frame: its number, 0 where it is not, 255 where nothing is said. What was merged into the object is
- * part of it. Of the background: that all unlocked objects there are not.
+ * The annotations of an object painted in a frame: its number, 0 where it is not, 255 where that is left open. What was merged into the object
+ * is part of it. Of the background: that all unlocked objects there are not.
  */
 export function painted(version: Version, frame: number, object: number, labels: Uint8Array, propagate: ClipPropagation): Painted[] {
   const masks = version.frames[frame]?.runs;

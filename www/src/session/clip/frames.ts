@@ -28,7 +28,7 @@ export class ClipFrames {
     readonly clip: Clip,
     readonly longestSide: number,
     readonly range: Range,
-    /** What a correction, which reads frames several times, finds without decoding: frames on screen, and so many bytes of others. */
+    /** A correction reads frames several times, and finds these without decoding: frames on screen, and so many bytes of others. */
     readonly at: { readonly hand: readonly LoadedFrame[]; readonly room: number } = { hand: [], room: 0 },
   ) {}
 

@@ -77,7 +77,7 @@ function mapsOf(painted: Imported['painted'], { frames, locked }: Tracked): Pain
 }
 
 interface Imported {
-  /** Labels by index of the frame: numbers of objects here, and 255 where nothing is said. */
+  /** Labels by index of the frame: numbers of objects here, and 255 where that is left open. */
   readonly painted: ReadonlyMap<number, Uint8Array>;
   readonly classes: ReadonlyMap<number, string>;
   /** Frames of the files that have no masks here, by name. */

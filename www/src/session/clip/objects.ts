@@ -1,5 +1,5 @@
-//! What a person does to the objects of a clip: merging and deleting, locks, names, classes and colours; and with `drawing.ts` strokes, boxes
-//! and clicks. Each becomes something that is said of objects, which is then carried through the clip.
+//! The edits of a clip's objects: merging and deleting, locks, names, classes and colours; and with `drawing.ts` strokes, boxes
+//! and clicks. Each becomes an annotation of objects, which is then carried through the clip.
 
 import type { ClipOptions } from 'veronese';
 import { nameOf } from '../../common/naming.js';
@@ -12,7 +12,7 @@ import type { Store } from '../../state/state.js';
 import { type Notes, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
-/** What is drawn of objects: {@link Objects.copyMask}, {@link Objects.split}. */
+/** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}. */
 interface Drawing {
   copyMask(by: 1 | -1): number | null;
   split(id: number): void;
@@ -21,7 +21,7 @@ interface Drawing {
 export class Objects {
   readonly #store: Store;
   readonly carrying: Carrying;
-  /** What draws, which is loaded when it is used; `null`, and a notice, if it cannot be. Set by the brush. */
+  /** Draws; loaded when it is used, and `null`, with a notice, if it cannot be. Set by the brush. */
   drawing: () => Promise<Drawing | null> = () => Promise.resolve(null);
 
   constructor(store: Store, carrying: Carrying) {

@@ -18,7 +18,7 @@ import { TimeLeft } from './time-left.js';
 const OFTEN = 100;
 
 export class ClipSegmenting {
-  /** What is known of the pairs of clips, by their fingerprints, for runs that go on. It is large, and no view shows it. */
+  /** The solved pairs of clips, by their fingerprints, for runs that go on. They are large, and no view shows them. */
   readonly solvedPairs = new Map<string, SolvedPairs>();
   readonly #store: Store;
   readonly #runs: ClipRuns;
@@ -32,7 +32,7 @@ export class ClipSegmenting {
     this.#shown = shown;
   }
 
-  /** What is known of this clip, also from when it was open before. A run on another one ends. */
+  /** The objects of this clip, also from when it was open before. A run on another one ends. */
   of(clip: Clip | null): Tracked | null {
     const { tracked } = this.#store.get();
     if (clip !== null && tracked?.clip === clip) return tracked;
@@ -178,16 +178,16 @@ export class ClipSegmenting {
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
     version = unchanged(now, version);
-    // What a person corrected can be brought back.
+    // A person's corrections can be brought back.
     if (now.past.length > 0) set({ past: [...now.past, versionOf(now)] });
     else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
     set({ future: [] });
-    // What was noted and drawn exactly meanwhile stays.
+    // Notes, and pixels that were drawn exactly meanwhile, stay.
     const meanwhile = { ...version, ...notesOf(now), exact: atSize(now.exact, version.frames), largest: Math.max(version.largest, now.largest) };
     this.#shown.version(exactly(meanwhile), corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
   }
 
-  /** What is known for these settings: other settings and another first frame begin anew. */
+  /** The pairs that were solved with these settings: other settings and another first frame begin anew. */
   #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
     const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
     const before = this.solvedPairs.get(fingerprint);

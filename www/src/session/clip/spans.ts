@@ -1,4 +1,4 @@
-//! What frames that were segmented together become by what is said, as the package answers: the next version of the masks. It shows nothing.
+//! Corrections of frames that were segmented together, as the package answers them: the next version of the masks. It shows nothing.
 
 import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
@@ -24,9 +24,7 @@ export class Spans {
     this.#segmenter = segmenter;
   }
 
-  /**
-   * Says in a span what is new there, and what became of objects. `changes` takes frames as they change, perhaps not for the last time.
-   */
+  /** Tells the package what is new in a span, and what became of objects. `changes` takes frames as they change, perhaps not for the last time. */
   corrected(version: Version, span: Span, said: readonly Said[], signal: AbortSignal, changes: (index: number, masks: TrackedFrame) => void): Promise<Version> {
     const accepted = acceptedIn(version).filter((index) => spanAt(version.spans, index) === span);
     return this.#answer(version, span, signal, changes, (numbers) => ({
@@ -38,8 +36,8 @@ export class Spans {
   }
 
   /**
-   * Says in the span that was segmented last all that was said `before`, and then that frames are accepted, with their labels. What was locked
-   * and named since is protected from what is said next.
+   * Repeats in the span that was segmented last all annotations of `before`, and then that frames are accepted, with their labels. Objects that
+   * were locked and named since are protected from later annotations.
    */
   async repeated(before: Version, now: Version, signal: AbortSignal): Promise<Version> {
     const at = now.spans.length - 1;

@@ -1,4 +1,4 @@
-//! What a person does to the masks of the pair: strokes, groups, names and colours, undo and redo. The edits are in the state; the labels
+//! The edits of the pair's masks: strokes, groups, names and colours, undo and redo. The edits are in the state; the labels
 //! follow from them. They are kept when the pair is left, and restored when it is opened again.
 
 import type { Segmentation } from 'veronese';

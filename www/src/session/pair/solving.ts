@@ -18,7 +18,7 @@ export class Solving {
   readonly #solutions = new Solutions();
   /** Identifies the running request. */
   #solving: symbol | null = null;
-  /** What led to the pending update. */
+  /** The cause of the pending update. */
   #cause: Cause = 'solved';
 
   constructor(store: Store, worker: PairWorker) {
