@@ -34,7 +34,7 @@ async function slide(page: Page, slot: 'first' | 'second', index: number): Promi
   await done(page);
 }
 
-test('videos give exactly the requested frames and keep their corrections, a folder its frames in the order of their names', async ({ page }) => {
+test('videos give exactly the requested frames and keep their corrections', async ({ page }) => {
   await openEmpty(page);
   const file = await video(page, 20, 'webm', 'vp8');
   await upload(page, [file]);
@@ -72,18 +72,6 @@ test('videos give exactly the requested frames and keep their corrections, a fol
   await slide(page, 'first', 7);
   await slide(page, 'second', 11);
   expect(await numbers(page)).toEqual([7, 11]);
-
-  await test.step('a folder of frames is a clip in the order of the names', async () => {
-    const names = ['f10.png', 'f2.png', 'f1.png', 'f11.png'];
-    const files = await Promise.all(names.map((name) => square(name, 96, 64, Number(/\d+/.exec(name)![0]), 0)));
-    await page.locator('#open-pair').setInputFiles(files);
-    await expect(page.locator('#clip-name')).toHaveText('f1-f11.png, 4 frames, 96 × 64');
-    await done(page);
-    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f2.png, 96 × 64');
-    await page.keyboard.press('.');
-    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f10.png, 96 × 64');
-    await done(page);
-  });
 
   // Another pair closes the clip.
   await withSamples(page);

@@ -5,7 +5,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, done, expect, goTo, open, openExport, openSegmented, test, upload, withoutStorage } from './support.js';
+import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, rename, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -14,12 +14,6 @@ async function visit(page: Page): Promise<void> {
   await page.goto('about:blank');
   await page.goto(PARALLAX);
   await done(page);
-}
-
-async function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
-  const input = page.locator(`${list} .motion-name`).nth(row);
-  await input.fill(name);
-  await input.press('Enter');
 }
 
 /** Waits until the work is written. The copy of its frames comes after it. */
@@ -57,11 +51,6 @@ function sizes(page: Page, name: 'projects' | 'frames'): Promise<number[]> {
 /** How many copies of frames the browser has. */
 async function copies(page: Page): Promise<number> {
   return (await sizes(page, 'frames')).length;
-}
-
-/** Whether the page can be left without a question. */
-function leaves(page: Page): Promise<boolean> {
-  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
 }
 
 /** Where the parts of the panel and of the bar are, from the top and from the left. */

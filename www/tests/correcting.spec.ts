@@ -3,23 +3,12 @@
 import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { differences, done, expect, labelsOnCanvas, mergeWith, open, test } from './support.js';
+import { type Place, differences, done, drag, expect, labelsOnCanvas, mergeWith, open, test, undoAll } from './support.js';
 
-/** Draws a stroke between two points of the picture, 0…1. */
-async function stroke(page: Page, from: readonly [number, number], to: readonly [number, number]): Promise<void> {
-  const box = (await page.locator('.layers').boundingBox())!;
-  const at = ([x, y]: readonly [number, number]): [number, number] => [box.x + x * box.width, box.y + y * box.height];
-  await page.mouse.move(...at(from));
-  await page.mouse.down();
-  await page.mouse.move(...at(to), { steps: 8 });
-  await page.mouse.up();
+/** Draws a stroke and waits for its masks. */
+async function stroke(page: Page, from: Place, to: Place): Promise<void> {
+  await drag(page, from, to);
   await expect(page.locator('#status')).toHaveText(/^Masks updated/);
-  await done(page);
-}
-
-/** Takes everything back. */
-async function undoAll(page: Page): Promise<void> {
-  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
   await done(page);
 }
 

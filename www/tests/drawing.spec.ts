@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openEmpty, openExport, openSegmented, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, openEmpty, openExport, openSegmented, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -143,7 +143,7 @@ test('what is drawn exactly is kept, exported and left alone by corrections else
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
   await page.keyboard.press('Escape');
-  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  await expect.poll(() => leaves(page)).toBe(true);
   await page.reload();
   await done(page);
   await upload(page, files);

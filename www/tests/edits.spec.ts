@@ -7,28 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, openAdvanced, openClip, openEmpty, openExport, square, test, upload, withoutStorage } from './support.js';
-
-/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
-async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
-  await page.locator('.layers').evaluate(
-    (layers, [lines, first, last]) => {
-      const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
-      press(first);
-      const box = layers.getBoundingClientRect();
-      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
-      for (const line of lines) {
-        ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
-          const [x, y] = line[Math.min(k, 1)]!;
-          const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
-          layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
-        });
-      }
-      press(last);
-    },
-    [lines, first, last] as const,
-  );
-}
+import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, drawAtOnce, expect, labelsOnCanvas, mergeWith, motionsChosen, openAdvanced, openClip, openEmpty, openExport, square, test, undoAll, upload, withoutStorage } from './support.js';
 
 /** Selects the brush, and a mask by its position in the list. */
 async function brush(page: Page, row: number): Promise<void> {
@@ -70,12 +49,6 @@ async function openPair(page: Page): Promise<void> {
   await openEmpty(page);
   await upload(page, await frames(2));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
-  await done(page);
-}
-
-/** Takes everything back. */
-async function undoAll(page: Page): Promise<void> {
-  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
   await done(page);
 }
 

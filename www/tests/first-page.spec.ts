@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, clipPhase, done, expect, labelsOnCanvas, openExport, square, test, upload, withSmallSampleClip } from './support.js';
+import { axe, clipDone, clipFrames, clipPhase, done, expect, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -17,11 +17,6 @@ async function isAnythingKept(page: Page): Promise<boolean> {
     for await (const _ of folder.keys()) return true;
     return false;
   });
-}
-
-/** Whether the page can be left without a question: nothing is still to be written. */
-function leaves(page: Page): Promise<boolean> {
-  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
 }
 
 /** As a first visitor sees it, until it rests. */

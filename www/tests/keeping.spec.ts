@@ -2,7 +2,7 @@
 
 import { type Locator, type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reopen, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
 
 const [WIDTH, HEIGHT, COUNT] = [120, 84, 6];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
@@ -134,7 +134,7 @@ test('accepted frames stay accepted and as they are when something is corrected 
     await expect(reviewed).toHaveText(`2 of ${COUNT} accepted`);
     const again = await allMasks(page);
     expect([1, 4].map((index) => differences(again[index]!, before[index]!))).toEqual([0, 0]);
-    await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+    await expect.poll(() => leaves(page)).toBe(true);
     await reopen(page, await clipFrames(COUNT, WIDTH, HEIGHT));
     await expect(reviewed).toHaveText(`2 of ${COUNT} accepted`);
   });
@@ -203,7 +203,7 @@ test('a prompt is refined by presses that add and remove, with mouse and keyboar
   });
 
   await test.step('after a reload it is a prompt still, and the switch and the keyboard refine it', async () => {
-    await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+    await expect.poll(() => leaves(page)).toBe(true);
     await reopen(page, files);
     await expect(status(page)).toHaveText(/^Continued/);
     await goTo(page, 4);

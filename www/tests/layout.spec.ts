@@ -42,7 +42,8 @@ test.describe('on a phone', () => {
     const small = await page.evaluate(() => {
       const targets = document.querySelectorAll<HTMLElement>('.masthead .button, .segmented label, .step, .lane-name, #tools .button, #clip-run .button, #objects .button, #track');
       const seen = [...targets].filter((target) => target.checkVisibility());
-      return seen.filter((target) => target.getBoundingClientRect().height < 44).map((target) => `${target.className} ${target.textContent}`);
+      const side = (target: HTMLElement): number => Math.min(target.offsetHeight, target.matches('.step') ? target.offsetWidth : Infinity);
+      return seen.filter((target) => side(target) < 44).map((target) => `${target.className} ${target.textContent}`);
     });
     expect(small).toEqual([]);
     await page.locator('#objects').evaluate((list) => list.scrollIntoView({ block: 'center' }));

@@ -1,9 +1,6 @@
 //! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
 
-import { type Upload, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
-
-/** None of these tests is about how well a clip is segmented. */
-const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count, 100, 70);
+import { axe, clipDone, differences, done, drag, expect, goTo, labelsOnCanvas, openSegmented, smallFrames, test } from './support.js';
 
 test('objects are selected, locked and deleted, corrected frames are found, and a correction spreads where it is told to', async ({ page }) => {
   await openSegmented(page, await smallFrames(6));

@@ -5,15 +5,10 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipFrames, clipInNode, differences, done, drag, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, reopen, segmentClip, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipInNode, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, rename, reopen, segmentClip, smallFrames, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
-}
-
-/** Whether the page can be left without a question. */
-function leaves(page: Page): Promise<boolean> {
-  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
 }
 
 /** Waits until the panel says that the work is kept, and nothing is left to write. */
@@ -54,12 +49,6 @@ async function hide(page: Page): Promise<void> {
   });
 }
 
-async function rename(page: Page, row: number, name: string): Promise<void> {
-  const input = page.locator('#objects .motion-name').nth(row);
-  await input.fill(name);
-  await input.press('Enter');
-}
-
 async function savedProject(page: Page): Promise<Upload> {
   await openExport(page);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save project' }).click()]);
@@ -67,13 +56,10 @@ async function savedProject(page: Page): Promise<Upload> {
   return { name: download.suggestedFilename(), mimeType: '', buffer: await readFile(await download.path()) };
 }
 
-/** Frames for a test that is not about how well they are segmented. */
-const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count, 100, 70);
-
 /** A segmented clip with a name and a correction. */
 async function correctedClip(page: Page, files: Upload[]): Promise<void> {
   await openSegmented(page, files);
-  await rename(page, 2, 'Box');
+  await rename(page, '#objects', 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \d+ frames/);
@@ -225,7 +211,7 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   await kept(page);
   const session = await context.newCDPSession(page);
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: 100 });
-  await rename(page, 1, 'Ball');
+  await rename(page, '#objects', 1, 'Ball');
   await expect(page.locator('#notice-code')).toHaveText('storage-full');
   expect(await leaves(page)).toBe(false);
   await openExport(page);
@@ -237,7 +223,7 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   expect(gunzipSync(project.buffer).toString('latin1')).toContain('"Ball"');
 
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin });
-  await rename(page, 2, 'Box');
+  await rename(page, '#objects', 2, 'Box');
   await kept(page);
   await page.goto('about:blank'); // a reload would keep what the form says
   await openClip(page, files);
@@ -250,7 +236,7 @@ test('a browser that keeps nothing says so, and asks before the work is left', a
   await withoutStorage(page);
   const files = await smallFrames(3);
   await openSegmented(page, files);
-  await rename(page, 1, 'Ball');
+  await rename(page, '#objects', 1, 'Ball');
   await expect(page.locator('#notice-code')).toHaveText('storage-refused');
   expect(await leaves(page)).toBe(false);
   await savedProject(page);
@@ -267,17 +253,17 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 3 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
   await expect(second.locator('#notice-sentence')).toContainText('“f00-f02.png” is open in another tab');
-  await rename(second, 1, 'Ball');
+  await rename(second, '#objects', 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);
   await expect(second.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
   await second.keyboard.press('Escape');
 
   // The first tab keeps its own work as before, and that stays when it is gone.
-  await rename(first, 2, 'Box');
+  await rename(first, '#objects', 2, 'Box');
   await kept(first);
   await first.close();
-  await rename(second, 2, 'Square');
+  await rename(second, '#objects', 2, 'Square');
   await second.locator('#notice-close').click();
   await hide(second);
   expect(await namesInBrowser(second)).toEqual({ 'objects-2': 'Box' });
@@ -287,7 +273,7 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   second.on('dialog', (dialog) => void dialog.accept());
   await reopen(second, files);
   await expect(second.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
-  await rename(second, 1, 'Ball');
+  await rename(second, '#objects', 1, 'Ball');
   await kept(second);
   expect(await namesInBrowser(second)).toEqual({ 'objects-1': 'Ball', 'objects-2': 'Box' });
 });

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reopen, test } from './support.js';
+import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
 
 /** The masks of a frame, shown. */
 async function masksOf(page: Page, index: number): Promise<Uint8Array> {
@@ -47,17 +47,7 @@ async function openSmall(page: Page, files: Upload[]): Promise<void> {
 
 /** Draws two strokes in one task, so that the second waits for the first; the keys that follow meet both. */
 async function drawTwo(page: Page): Promise<void> {
-  await page.locator('.layers').evaluate((layers, lines) => {
-    const box = layers.getBoundingClientRect();
-    layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
-    for (const line of lines) {
-      ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
-        const [x, y] = line[Math.min(k, 1)]!;
-        const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
-        layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
-      });
-    }
-  }, [OVER_DISC, BESIDE]);
+  await drawAtOnce(page, [OVER_DISC, BESIDE]);
   await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
 }
@@ -245,7 +235,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   await page.getByRole('button', { name: 'Redo' }).click();
   await expect(other).toHaveAttribute('aria-pressed', 'true');
   await page.getByRole('button', { name: 'Undo' }).click();
-  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  await expect.poll(() => leaves(page)).toBe(true);
   await reopen(page, files);
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 6 frames.');
   await expect(lock).toHaveAttribute('aria-pressed', 'true');

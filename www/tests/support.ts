@@ -156,6 +156,27 @@ export async function drag(page: Page, from: Place, to: Place): Promise<void> {
   await page.mouse.up();
 }
 
+/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
+export async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
+  await page.locator('.layers').evaluate(
+    (layers, [lines, first, last]) => {
+      const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
+      press(first);
+      const box = layers.getBoundingClientRect();
+      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
+      for (const line of lines) {
+        ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
+          const [x, y] = line[Math.min(k, 1)]!;
+          const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
+          layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
+        });
+      }
+      press(last);
+    },
+    [lines, first, last] as const,
+  );
+}
+
 /** A function whose results are kept, for all tests of a process, by what it is given. */
 function once<F extends (...given: never[]) => unknown>(make: F, keyOf: (...given: Parameters<F>) => string = (...given) => given.join()): F {
   const made = new Map<string, unknown>();
@@ -250,6 +271,17 @@ async function phase(page: Page, selector: string, name: string): Promise<void> 
   await expect(page.locator(selector)).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
 }
 
+/** Whether the page can be left without a question: nothing is still to be written. */
+export function leaves(page: Page): Promise<boolean> {
+  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+}
+
+/** Takes all corrections of a pair back. */
+export async function undoAll(page: Page): Promise<void> {
+  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
+  await done(page);
+}
+
 /** Makes the browser one that keeps no projects. */
 export async function withoutStorage(page: Page): Promise<void> {
   await page.addInitScript(() => {
@@ -273,6 +305,13 @@ export async function chooseMotions(page: Page, motions: number | 'Automatic'): 
 export async function motionsChosen(page: Page, motions: number | 'Automatic'): Promise<void> {
   await page.locator('#inspect').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
   await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
+}
+
+/** Names the mask of a row. */
+export async function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
+  const input = page.locator(`${list} .motion-name`).nth(row);
+  await input.fill(name);
+  await input.press('Enter');
 }
 
 /** Merges the mask of a row of the list, whose details are open, with another. */
@@ -438,6 +477,9 @@ const clipFrame = once(async (k: number, width: number, height: number): Promise
   }
   return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
 });
+
+/** Frames for a test that is not about how well they are segmented. */
+export const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count, 100, 70);
 
 /** The serious and critical violations that axe finds, of some rules or of all. */
 export async function axe(page: Page, rules?: string[]): Promise<string[]> {

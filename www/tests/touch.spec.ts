@@ -174,13 +174,9 @@ test('fingers zoom, pan, scroll and draw, and strokes stay whoever ends them', a
   });
 });
 
-test('a finger finds the buttons and both handles of the timeline, and drags these; it selects several objects', async ({ page }) => {
+test('a finger finds both handles of the timeline, and drags these; it selects several objects', async ({ page }) => {
   await openSegmented(page, await clipFrames(6, 100, 70));
   await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
-  for (const name of ['Step both back', 'Play', 'Step both forward', 'Speed 1×']) {
-    const { width, height } = (await page.getByRole('button', { name, exact: true }).boundingBox())!;
-    expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
-  }
   const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
   const track = (await page.locator('#track').boundingBox())!;
   const drag = async (handle: typeof from, index: number): Promise<void> => {

@@ -6,10 +6,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, expect, goTo, labelsOnCanvas, mergeWith, openClip, openEmpty, openExport, openSegmented, reopen, segmentClip, square, test, upload, withProcessors, withSamples } from './support.js';
-
-/** Frames for a test that paints nothing. */
-const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count, 100, 70);
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, mergeWith, openClip, openEmpty, openExport, openSegmented, reopen, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -25,11 +22,6 @@ async function chooseBrush(page: Page): Promise<void> {
 async function shows(page: Page, index: number): Promise<void> {
   await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
   await done(page);
-}
-
-/** Whether the page can be left without a question. */
-function leaves(page: Page): Promise<boolean> {
-  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
 }
 
 test('the objects of a clip keep number, name and colour in all frames, also when its first run is cancelled at once', async ({ page }) => {
