@@ -126,7 +126,7 @@ test('strokes that are still being applied are undone, cancelled, exported and s
   await test.step('a stroke drawn during segmentation is applied afterwards', async () => {
     const found = await labelsOnCanvas(page);
     await brush(page, 1);
-    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { first: '#setting-quality-best' });
+    await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { first: '#settings [value=best]' });
     await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
     await expect(strokes(page)).toHaveCount(1);
     await done(page);

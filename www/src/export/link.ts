@@ -3,7 +3,7 @@
 import { type Sample, sampleCalled } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
 import { sampleOf } from '../state/pair.js';
-import { CONTROLS, DEFAULT_SETTINGS, type Settings } from '../state/settings.js';
+import { DEFAULT_SETTINGS, type Settings, settingFrom } from '../state/settings.js';
 import type { State } from '../state/state.js';
 
 export interface Linked {
@@ -15,17 +15,7 @@ export interface Linked {
 
 export function settingsFromHash(hash: string): Linked {
   const values = new URLSearchParams(hash.replace(/^#/, ''));
-  const settings: Record<string, unknown> = {};
-  for (const control of CONTROLS) {
-    const text = values.get(control.name);
-    if (text === null) continue;
-    if (control.kind === 'switch') {
-      if (text === 'true' || text === 'false') settings[control.name] = text === 'true';
-    } else {
-      const choice = control.choices.find(({ value }) => String(value) === text);
-      if (choice !== undefined) settings[control.name] = choice.value;
-    }
-  }
+  const settings: Partial<Settings> = Object.assign({}, ...Object.keys(DEFAULT_SETTINGS).map((name) => settingFrom(name, values.get(name))));
   const kind = values.get('masks');
   return {
     settings,

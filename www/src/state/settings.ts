@@ -1,4 +1,4 @@
-//! The settings as data: name, values, help. `views/options.ts` makes the form from them.
+//! The settings: their values, and those that they begin with. The form is in `index.html`.
 
 import type { SegmentOptions } from 'veronese';
 
@@ -8,85 +8,21 @@ export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quali
   readonly longestSide: number;
 };
 
-interface Common<K extends keyof Settings> {
-  readonly name: K;
-  /** Rarely needed: folded away. */
-  readonly advanced?: boolean;
-  readonly label: string;
-  readonly help: string;
-  readonly initial: Settings[K];
-}
-
-/** One of a few values. The evidence plot shows the scores of the numbers of motions and offers the choice. */
-export interface ChoiceControl<K extends keyof Settings = keyof Settings> extends Common<K> {
-  readonly kind: 'select' | 'radio' | 'scores';
-  readonly choices: readonly { readonly value: Settings[K]; readonly label: string }[];
-}
-
-/** On or off. */
-export interface SwitchControl extends Common<'markUnknown'> {
-  readonly kind: 'switch';
-}
-
-export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | SwitchControl;
+/** In the order of a link. */
+export const DEFAULT_SETTINGS: Settings = { motions: 'auto', quality: 'best', markUnknown: false, longestSide: 2048 };
 
 /** The paper's limit on the number of motions. */
 const MOST_MOTIONS = 10;
 
-const MOTIONS: ChoiceControl<'motions'> = {
-  kind: 'scores',
-  name: 'motions',
-  label: 'Number of motions',
-  help: '',
-  initial: 'auto',
-  choices: [
-    { value: 'auto', label: 'Automatic' },
-    ...Array.from({ length: MOST_MOTIONS }, (_, i) => ({ value: i + 1, label: String(i + 1) })),
-  ],
+const CHOICES: { readonly [K in keyof Settings]: readonly Settings[K][] } = {
+  motions: ['auto', ...Array.from({ length: MOST_MOTIONS }, (_, k) => k + 1)],
+  quality: ['fast', 'best'],
+  markUnknown: [false, true],
+  longestSide: [640, 1024, 2048, 4096],
 };
 
-const QUALITY: ChoiceControl<'quality'> = {
-  kind: 'radio',
-  name: 'quality',
-  label: 'Quality',
-  help: 'Fast for a quick look, Best for final masks.',
-  initial: 'best',
-  choices: [
-    { value: 'fast', label: 'Fast' },
-    { value: 'best', label: 'Best' },
-  ],
-};
-
-const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
-  kind: 'select',
-  name: 'longestSide',
-  advanced: true,
-  label: 'Working size',
-  help: 'Larger frames are scaled down to this size when opened. Masks are exported at full size.',
-  initial: 2048,
-  choices: [
-    { value: 640, label: '640 pixels' },
-    { value: 1024, label: '1024 pixels' },
-    { value: 2048, label: '2048 pixels' },
-    { value: 4096, label: '4096 pixels' },
-  ],
-};
-
-const MARK_UNKNOWN: SwitchControl = {
-  kind: 'switch',
-  name: 'markUnknown',
-  advanced: true,
-  label: 'Leave unexplained pixels unlabelled',
-  help: 'For example, those that are hidden in the second frame.',
-  initial: false,
-};
-
-/** In the order of the form. */
-export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, LONGEST_SIDE, MARK_UNKNOWN];
-
-export const DEFAULT_SETTINGS: Settings = {
-  motions: MOTIONS.initial,
-  quality: QUALITY.initial,
-  markUnknown: MARK_UNKNOWN.initial,
-  longestSide: LONGEST_SIDE.initial,
-};
+/** The setting of this name that is written so; `undefined` if there is none. */
+export function settingFrom(name: string, text: string | null): Partial<Settings> | undefined {
+  const value = CHOICES[name as keyof Settings].find((choice) => String(choice) === text);
+  return value === undefined ? undefined : { [name]: value };
+}
