@@ -212,9 +212,6 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   // A correction of the object itself changes it once it is unlocked.
   await page.keyboard.press('1');
   await page.locator('#tools [value=eraser]').check();
-  await drag(page, at(29, 27), at(40, 27));
-  await expect(page.locator('#notice-sentence')).toHaveText('Disc is locked, so nothing changes it. Unlock it first.');
-  await page.locator('#notice-close').click();
   await lock.click();
   await expect(page.locator('#clip-status')).toHaveText('Unlocked.');
   await drag(page, at(29, 27), at(40, 27));

@@ -29,6 +29,9 @@ export interface Clip {
   close(): void;
 }
 
+/** Of folders, whose frames have no times. */
+export const FRAMES_PER_SECOND = 25;
+
 /** A frame whose size is not that of the clip, pixels. */
 export interface OtherSize {
   readonly index: number;

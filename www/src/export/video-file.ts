@@ -2,12 +2,11 @@
 //! stored together (WebM's BlockAdditions). Loaded, with mediabunny, when a video is saved.
 
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output, WebMOutputFormat } from 'mediabunny';
+import { FRAMES_PER_SECOND } from '../clips/clip.js';
 import type { ClipExport } from './clip-export.js';
 import { type Ground, colours, drawn, matteOf } from './cut-out.js';
 import { H264 } from './video-codecs.js';
 
-/** Frames a second of folders, as their frames have no times. */
-const FRAMES_PER_SECOND = 25;
 /** Seconds between frames from which a player can start. */
 const KEY_FRAMES = 2;
 /** Bits for each pixel of a frame, and the least a second. */

@@ -1,15 +1,13 @@
 //! Passing through the frames of a clip, as it is played or as a pointer is dragged over the timeline. Where that ends, the pair is
 //! segmented. It owns the frame to which the pointer was dragged last.
 
-import type { Clip } from '../clips/clip.js';
+import { type Clip, FRAMES_PER_SECOND } from '../clips/clip.js';
 import type { Store } from '../state/state.js';
 import type { Frames } from './frames.js';
 import type { PairSegmenting } from './pair/segmenting.js';
 
 /** How fast a clip can be played, as a multiple of how fast it was taken. */
 const SPEEDS = [0.25, 0.5, 1, 2];
-/** Frame rate at which folders are played, as their frames have no times. */
-const FRAMES_PER_SECOND = 25;
 
 export class Playing {
   readonly #store: Store;

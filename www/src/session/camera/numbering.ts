@@ -3,10 +3,10 @@
 
 import type { ClipFrame } from 'veronese';
 import { UNLABELLED } from '../../result/masks.js';
+import { MOST_OBJECTS } from '../../state/spans.js';
 
 type Numbered = Pick<ClipFrame, 'labels' | 'objects' | 'background'>;
 
-const MOST_NUMBERS = 254;
 /** Objects of two frames are the same if what both cover is at least this share of what either covers. */
 const LEAST_OVERLAP = 0.25;
 
@@ -46,7 +46,7 @@ export class Numbering {
   /** A number that no object of this stream has; each is used again as late as possible. */
   #free(): number {
     const taken = new Set(this.#numbers.values());
-    do this.#last = (this.#last % MOST_NUMBERS) + 1;
+    do this.#last = (this.#last % MOST_OBJECTS) + 1;
     while (taken.has(this.#last));
     return this.#last;
   }

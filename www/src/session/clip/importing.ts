@@ -3,9 +3,10 @@
 import { readAnnotations } from 'veronese/formats';
 import { PageError } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
-import { packed } from '../../correction/runs.js';
+import { packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
+import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
 import type { Painted } from '../../state/statement.js';
 import type { Tracked } from '../../state/tracked.js';
@@ -36,8 +37,6 @@ const ANNOTATIONS = /\.(json|xml|zip)$|^gt\.txt$/i;
 const NO_PICTURES = /\.(json|xml|zip|txt)$/i;
 /** Of the header of a PNG: the place of its colour type, and that of indices into a palette. */
 const PNG = { colourType: 25, indexed: 3 };
-/** The largest number of an object. */
-const MOST_OBJECTS = 254;
 /** The class of objects that were given none. */
 const CLASS = 'object';
 
@@ -96,28 +95,20 @@ async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Impo
   for (const [name, frame] of found.frames) {
     const index = indices.get(keyOf(name)) ?? -1;
     const runs = frames[index]?.runs;
-    if (runs === undefined || !spans.some(({ range }) => range.first <= index && index <= range.last)) {
+    if (runs === undefined || spanAt(spans, index) === null) {
       left.push(name);
       continue;
     }
     const fits = frame.width === clip.width && frame.height === clip.height;
     if (!fits) throw new PageError('frame-size-mismatch', texts.otherSize(name, frame, clip));
-    painted.set(index, atSize(frame.read(), clip, runs).map((label) => numbers[label]!));
+    const labels = resized(packed(frame.read(), clip.width, clip.height), runs);
+    painted.set(index, unpacked(labels).map((label) => numbers[label]!));
     // The page stays responsive between frames.
     await new Promise((resolve) => setTimeout(resolve));
   }
   if (painted.size === 0) throw new PageError('invalid-input', texts.none(left));
   const given = Object.entries(found.names).filter(([, name]) => name !== CLASS);
   return { painted, left, classes: new Map(given.map(([label, name]) => [numbers[Number(label)]!, name])) };
-}
-
-/** The labels of the frame as it was segmented, by nearest neighbour. */
-function atSize(labels: Uint8Array, full: Size, { width, height }: Size): Uint8Array {
-  const [sx, sy] = [full.width / width, full.height / height];
-  return Uint8Array.from({ length: width * height }, (_, p) => {
-    const [x, y] = [p % width, Math.floor(p / width)];
-    return labels[Math.floor((y + 0.5) * sy) * full.width + Math.floor((x + 0.5) * sx)]!;
-  });
 }
 
 /** The number of an object here by that in a file. One that was merged goes on in the other; one that was deleted is a new object. */
