@@ -506,7 +506,7 @@ export type ErrorCode =
   | 'not-finite'
   | 'invalid-option'
   | 'invalid-input'
-  | 'object-locked' // something new is said of a locked object of a clip
+  | 'object-locked' // a new annotation of a locked object of a clip
   | 'unreadable-image'
   // the environment
   | 'wasm-load-failed'
