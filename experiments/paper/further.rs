@@ -73,7 +73,7 @@ fn rank_rule(trials: usize, seed: u64) -> Result<()> {
             for trial in 0..trials as u64 {
                 let mut random = Random::from_seed(1_000_000 * seed + trial);
                 let truth = random_motions(n, &mut random);
-                let data = synthetic::Protocol::B1.measurements(&truth, 600, noise, &mut random).normalised().0;
+                let data = synthetic::measurements(&truth, 600, noise, &mut random).normalised().0;
                 let mut found = [0; 4];
                 for i in (1..=n + 1).rev() {
                     let embedded = EmbeddedData::new(&data, i);

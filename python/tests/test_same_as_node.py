@@ -186,7 +186,7 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
     asked.clips = [
         (generated, False, {}),
         (generated, False, {"quality": "fast", **said}),
-        (generated, False, {"quality": "fast", **said, "locked": [7]}),
+        (generated, False, {"quality": "fast", **said, "locked": [1]}),
         (
             generated,
             False,

@@ -20,13 +20,13 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 #[path = "../../tests/synthetic/mod.rs"]
 mod synthetic;
 
-use synthetic::{Protocol, random_motions, worst_error};
+use synthetic::{measurements, random_motions, worst_error};
 
 /// Motions and measurements of them.
 fn problem(n: usize, noise: f64) -> (Vec<AffineMotion>, Measurements, Random) {
     let mut random = Random::from_seed(20 + n as u64);
     let truth = random_motions(n, &mut random);
-    let data = Protocol::B1.measurements(&truth, 200 * n.max(3), noise, &mut random);
+    let data = measurements(&truth, 200 * n.max(3), noise, &mut random);
     (truth, data, random)
 }
 
