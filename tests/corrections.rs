@@ -965,3 +965,17 @@ fn one_of_the_grounds_own_colours_is_followed_by_its_motion() {
         assert!(10 * both > 8 * either, "frame {t}: {both} of {either}");
     }
 }
+
+#[test]
+fn a_second_stroke_in_a_frame_is_taken_back_exactly() {
+    let mut shot = crossing();
+    let first = shot.stroke(9, [46, 24, 30, 10]);
+    let second = shot.stroke(9, [70, 60, 20, 12]);
+    let both: Vec<u8> = first.iter().zip(&second).map(|(&one, &other)| one.min(other)).collect();
+    shot.correct(4, &first);
+    let before = shot.labels();
+    shot.correct(4, &both);
+    assert!(shot.labels() != before);
+    shot.correct(4, &first);
+    assert!(shot.labels() == before, "{:?} differ", differing(&before, &shot.labels()));
+}

@@ -170,18 +170,22 @@ impl FrameCorrection {
         (1..UNANNOTATED).filter(|&object| is_taken(usize::from(object))).collect()
     }
 
-    /// The annotated frame at once, by the labels that it has shown so far.
+    /// The annotated frame at once. Each object goes by where it was before strokes were drawn, so that it matters not which came before.
     #[inline(never)]
     fn at_once(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, shown: &[u8], changes: &mut Changes) {
         let Arrived { index, features, .. } = *arrived;
-        let shown = at_features(shown, UNANNOTATED, clip.size()[0], features);
         let seeds = |object: u8| clip.seeds_at(index, object, features);
-        let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &shown, flows: None };
+        let annotation = clip.frames[index].annotation.clone().unwrap_or_default();
         let mut proposals = Vec::new();
         for &object in self.groups.iter().flat_map(|group| &group.changing) {
+            let is_shown = || shown.iter().map(|&label| u8::from(label == object)).collect();
+            let own: Vec<u8> = annotation.base(object).unwrap_or_else(is_shown);
+            let own: Vec<u8> = own.into_iter().map(|inside| object * inside).collect();
+            let own = at_features(&own, UNANNOTATED, clip.size()[0], features);
+            let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &own, flows: None };
             let anchor = Anchor { frame: index, spread: Spread::Both };
             let mut track = Track::new(object, vec![anchor], index + 1);
-            track.learn_shown(features, &shown);
+            track.learn_shown(features, &own);
             let mut group = Group { tracks: vec![track], changing: vec![object] };
             proposals.append(&mut group.visit(index, Direction::Forward, false, &scene));
         }
