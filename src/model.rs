@@ -224,8 +224,8 @@ model! {
     /// Odds with which the fit of a prompt begins, nats: of the middle of a box or a disc, of a region, of votes. 1.5 costs .03 J where a click
     /// is given. Real.
     beginning: f32 = 2.0;
-    /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .006 J after the second
-    /// round of strokes, and rounds lose in five clips of twelve instead of one; 2 costs .004 after the first. Real.
+    /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .002 J after the second
+    /// round of strokes, and rounds lose in five clips of thirty instead of two; 2 costs .004 after the first. Real.
     seen: f32 = 1.0;
     /// Odds within which evidence does not tell an object from ground, nats: probabilities of .27 to .73. Also what it costs a pixel to
     /// leave the objects of its motion, half of what it costs to leave its own. Real; insensitive.
