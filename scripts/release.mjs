@@ -7,7 +7,6 @@ import { parseArgs } from 'node:util';
 
 import { buildPackage, buildWheel } from './lib/builds.mjs';
 import { changelogProblem } from './lib/changelog.mjs';
-import { noticesAgree, writeNotices } from './lib/notices.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { projectText, root } from './lib/project.mjs';
 import { OWN } from './lib/python-packages.mjs';
@@ -16,16 +15,14 @@ import { buildSite } from './lib/site.mjs';
 import { versionProblem, versions } from './lib/versions.mjs';
 
 const OUT = join(root, 'out', 'release');
-const USAGE = `npm run release -- --dry-run | --tag vX.Y.Z | --notices
+const USAGE = `npm run release -- --dry-run | --tag vX.Y.Z
 
   --dry-run   rehearses a release of what is here
-  --tag       prepares the release of this tag: nothing may be uncommitted, and the changelog must be dated
-  --notices   writes the licences of what is shipped to THIRD-PARTY-NOTICES, and nothing else`;
+  --tag       prepares the release of this tag: nothing may be uncommitted, and the changelog must be dated`;
 
 await command(async (args) => {
-  const { tag, notices } = options(args);
-  const { ownPython } = await prepare({ ownPython: !notices });
-  if (notices) return writeNotices();
+  const { tag } = options(args);
+  const { ownPython } = await prepare({ ownPython: true });
   if (ownPython.problem) throw new Stop(ownPython.problem);
   const found = await versions();
   const version = found['Cargo.toml'];
@@ -34,7 +31,6 @@ await command(async (args) => {
     tag && tag !== `v${version}` ? `The tag is ${tag}, and the version is ${version}.` : undefined,
     tag && changelogProblem(projectText('CHANGELOG.md'), version),
     tag && (await treeProblem()),
-    (await noticesAgree()) ? undefined : 'The notices are not of what is shipped now: `npm run release -- --notices` writes them.',
   ].filter(Boolean);
   if (problems.length > 0) throw new Stop(problems.join('\n'));
   await publishNowhere(tag);
@@ -45,7 +41,7 @@ await command(async (args) => {
 
 function options(args) {
   try {
-    const { values } = parseArgs({ args, options: { 'dry-run': { type: 'boolean' }, tag: { type: 'string' }, notices: { type: 'boolean' } } });
+    const { values } = parseArgs({ args, options: { 'dry-run': { type: 'boolean' }, tag: { type: 'string' } } });
     if (values.tag && !/^v\d+\.\d+\.\d+$/.test(values.tag)) throw new Error(`A tag is called like v0.1.0, not '${values.tag}'.`);
     if (Object.keys(values).length !== 1) throw new Error('Nothing is published from here: push a tag, and the workflow release.yml publishes.');
     return values;

@@ -4,13 +4,14 @@ import { existsSync, readdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
+import { NOTICES, writeNotices, writeNoticesOfWheel } from './notices.mjs';
 import { cargoHome, root, which } from './project.mjs';
 import { Stop, must, run, say } from './run.mjs';
 import { pinnedRust } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 /** What the package and the page carry. */
-const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
+const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', NOTICES];
 const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
 /**
@@ -65,6 +66,8 @@ export async function compileAhead() {
 /** Builds the modules, then the npm package: their JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
 export const buildPackage = once(async () => {
   await buildModules();
+  const parts = ['Cargo.lock', 'package-lock.json', 'wasm/Cargo.toml', 'pkg/package.json', 'www/package.json', 'scripts/lib/notices.mjs'];
+  await step('the notices of licences', NOTICES, [NOTICES], parts, [], writeNotices);
   // Includes the modules, because one entry of the package embeds them.
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
@@ -99,6 +102,7 @@ async function makeWheel(python, profile, env = {}) {
   const folder = join(root, 'out', 'wheel');
   rmSync(folder, { recursive: true, force: true });
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked']);
+  await writeNoticesOfWheel();
   const args = ['-m', 'maturin', 'build', '--quiet', '--locked', ...profile, '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder];
   await must('The wheel could not be built.', python, args, { env });
   return join(folder, readdirSync(folder)[0]);

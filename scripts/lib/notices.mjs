@@ -1,17 +1,15 @@
 // THIRD-PARTY-NOTICES: the licences of what others wrote and Veronese ships, from the sources that Cargo and npm have downloaded.
-// cargo-about does the same for crates, but takes minutes to compile and knows no packages of npm.
+// The builds write it. cargo-about does the same for crates, but takes minutes to compile and knows no packages of npm.
 
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
-import { inProject, projectText, root } from './project.mjs';
-import { must, say } from './run.mjs';
+import { projectText, root } from './project.mjs';
+import { must } from './run.mjs';
 
-/** In the project and in the npm package, and in the wheel. */
-const NOTICES = [
-  { path: 'THIRD-PARTY-NOTICES', parts: partsOfProject },
-  { path: 'python/THIRD-PARTY-NOTICES', parts: partsOfWheel },
-];
+/** In the npm package, on the page and on the site. */
+export const NOTICES = 'THIRD-PARTY-NOTICES';
+const NOTICES_OF_WHEEL = 'python/THIRD-PARTY-NOTICES';
 
 /** In the package's scripts, but no dependency of theirs. */
 const BUNDLED = ['@rgrove/parse-xml', 'fflate'];
@@ -64,38 +62,27 @@ async function partsOfWheel() {
   return [['In the module', [std, ...[...all.values()].sort(byName)]]];
 }
 
-/** Whether the files are of the packages that are used now. Says which are not. */
-export async function noticesAgree() {
-  const stale = [];
-  for (const file of NOTICES) {
-    const text = await notices(file);
-    if (!inProject(file.path) || projectText(file.path) !== text) stale.push(file.path);
-  }
-  for (const path of stale) say(`${path} is not of the packages that are used now.`);
-  return stale.length === 0;
-}
-
 export async function writeNotices() {
-  for (const file of NOTICES) {
-    const text = await notices(file);
-    writeFileSync(join(root, file.path), text);
-  }
+  write(NOTICES, await partsOfProject());
 }
 
-/** The text of a file. */
-async function notices({ parts: partsOf }) {
-  const parts = await partsOf();
+export async function writeNoticesOfWheel() {
+  write(NOTICES_OF_WHEEL, await partsOfWheel());
+}
+
+function write(path, parts) {
   const components = parts.flatMap(([, all]) => all);
   const byText = new Map();
   for (const component of components) for (const text of component.texts) byText.set(text, [...(byText.get(text) ?? []), component]);
   const title = ({ name, version }) => `${name} ${version}`;
-  return [
+  const lines = [
     'Veronese is licensed under MIT OR Apache-2.0 (LICENSE-MIT, LICENSE-APACHE). It contains the following works of others.',
-    'Source code is where the addresses point to, in the version that is named. `npm run release -- --notices` writes this file.',
+    'Source code is where the addresses point to, in the version that is named.',
     ...parts.flatMap(([place, all]) => [`\n${place}:\n`, ...all.map((one) => `- ${title(one)}: ${one.licence}, ${one.source}`)]),
     ...[...byText].map(([text, all]) => `\n${'-'.repeat(80)}\n${all.map(title).join(', ')}\n\n${text}`),
     '',
-  ].join('\n');
+  ];
+  writeFileSync(join(root, path), lines.join('\n'));
 }
 
 /** What is compiled into a module: no macros, which run in the compiler, and nothing that only builds or tests need. */
