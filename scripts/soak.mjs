@@ -4,14 +4,10 @@
 // Tests that npm test leaves out, each a program that runs to its end: those of lib/parts.mjs, RARE. Others count, for one build of the package,
 // in quality fast at 320 × 240:
 //   pairs         10,000 pairs in Node
-//   pairs-page    2,000 pairs in a page of headless Chromium
 //   clip          5,000 frames of a clip as a stream
-//   kills         200 worker threads that are ended while they work
-//   hostile       20,000 calls at random with values that do not belong there
 // After each batch the memory must not have grown, and a reference pair must still have the same answer.
 //   --minutes N   for this run (15)
 //   --count N     another number for the part that is named
-//   --seed S      of hostile and kills (1)
 //   --jobs N      workers of pools (2)
 //   --again       forgets what is done of these parts
 //   --list        says when each part last passed, and runs nothing
@@ -28,15 +24,12 @@ import { inProject, projectText, root } from './lib/project.mjs';
 import { Stop, command, run } from './lib/run.mjs';
 
 /** What is tested. */
-const BUILT = ['pkg/wasm/veronese_bg.wasm', 'pkg/wasm/codecs/veronese_codecs_bg.wasm', 'pkg/dist/node.js', 'pkg/dist/calls.js', 'pkg/dist/web.js'];
+const BUILT = ['pkg/wasm/veronese_bg.wasm', 'pkg/wasm/codecs/veronese_codecs_bg.wasm', 'pkg/dist/node.js', 'pkg/dist/calls.js'];
 const STATE = 'out/soak/state.json';
 /** How many, of what, and the generator. Those that need the built package are imported once it is there. */
 const COUNTED = {
   pairs: { total: 10_000, unit: 'pairs', load: async () => (await import('./lib/soak/pairs.mjs')).pairs },
-  'pairs-page': { total: 2000, unit: 'pairs in a page', needs: { browser: true }, load: async () => (await import('./lib/soak/page.mjs')).page },
   clip: { total: 5000, unit: 'frames', load: async () => (await import('./lib/soak/clip.mjs')).clip },
-  kills: { total: 200, unit: 'kills', load: async () => (await import('./lib/soak/kills.mjs')).kills },
-  hostile: { total: 20_000, unit: 'calls', load: async () => (await import('./lib/soak/hostile.mjs')).hostile },
 };
 const PROGRAMS = Object.entries(RARE).map(([name, part]) => [name, { total: 1, unit: part.title, needs: part.needs, load: async () => programOf(part) }]);
 const PARTS = { ...Object.fromEntries(PROGRAMS), ...COUNTED };
@@ -51,7 +44,7 @@ await command(async (args) => {
   }
   const setup = await prepare(needsOf(parts.map((part) => PARTS[part])));
   await buildPackage();
-  const state = resumed(parts, again, options.seed);
+  const state = resumed(parts, again);
   const until = Date.now() + 60_000 * minutes;
   let failed = 0;
   for (const part of parts) {
@@ -116,7 +109,7 @@ function parse(args) {
   const flag = { type: 'boolean', default: false };
   let found;
   try {
-    const known = { minutes: text('15'), count: text(), seed: text('1'), jobs: text('2'), again: flag, list: flag };
+    const known = { minutes: text('15'), count: text(), jobs: text('2'), again: flag, list: flag };
     found = parseArgs({ args, options: known, allowPositionals: true });
   } catch (error) {
     throw new Stop(error.message);
@@ -137,7 +130,6 @@ function parse(args) {
     again: values.again,
     list: values.list,
     minutes: number('minutes', (value) => value > 0 && value <= 600, 'a number of minutes up to 600'),
-    seed: number('seed', (value) => Number.isInteger(value) && value >= 0 && value < 2 ** 31, 'a whole number from 0'),
     jobs: number('jobs', positive, 'a whole number from 1'),
     count: values.count === undefined ? undefined : number('count', positive, 'a whole number from 1'),
   };
@@ -148,13 +140,13 @@ function stored() {
   return inProject(STATE) ? { ...none, ...JSON.parse(projectText(STATE)) } : none;
 }
 
-/** What is done: nothing if the package or the seed is another one, or the parts are complete and asked for again. When parts passed stays. */
-function resumed(parts, again, seed) {
+/** What is done: nothing if the package is another one, or the parts are complete and asked for again. When parts passed stays. */
+function resumed(parts, again) {
   const sum = createHash('sha256');
   for (const file of BUILT) sum.update(readFileSync(join(root, file)));
   const built = sum.digest('hex');
   const old = stored();
-  if (old.built !== built || old.seed !== seed) return { built, seed, references: {}, done: {}, passed: old.passed };
+  if (old.built !== built) return { built, references: {}, done: {}, passed: old.passed };
   if (again) for (const part of parts) delete old.done[part];
   return old;
 }

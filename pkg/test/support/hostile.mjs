@@ -219,39 +219,3 @@ export const CLIPS = {
   onPreview: [(v) => [[first, second], { onPreview: v }], ['undefined', 'function']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
 };
-
-/** How deep lists and objects may be nested. */
-const DEPTH = 2;
-
-/** A call that is chosen at random, with a value that is chosen at random: one of VALUES, or some of them in lists and objects. */
-export function randomCall(random) {
-  const places = [
-    ...Object.entries(CALLS).map(([place, [name, args]]) => ({ place, name, args })),
-    ...Object.entries(CLIPS).map(([place, [args]]) => ({ place: `segmentClip: ${place}`, name: 'segmentClip', args })),
-  ];
-  const one = (list) => list[Math.floor(random() * list.length)];
-  const chosen = one(places);
-  const words = [];
-  const keys = ['data', 'width', 'height', 'labels', 'motions', 'matrix', 'frame', 'length', 'read', 'quality', 'size', 'counts', '0'];
-  const value = (depth) => {
-    const kind = depth === 0 ? 0 : random();
-    if (kind < 0.6) {
-      // Inside of others these are errors of the source, which are passed on as they are.
-      const name = one(Object.keys(VALUES).filter((value) => depth === DEPTH || !/throwing|proxy|promise/.test(value)));
-      words.push(name);
-      return VALUES[name];
-    }
-    const count = Math.floor(4 * random());
-    words.push(kind < 0.8 ? `[${count}` : `{${count}`);
-    return kind < 0.8
-      ? Array.from({ length: count }, () => value(depth - 1))
-      : Object.fromEntries(Array.from({ length: count }, () => [one(keys), value(depth - 1)]));
-  };
-  const given = value(DEPTH);
-  return { ...chosen, given, words: words.join(' ') };
-}
-
-/** What becomes of a random call with an entry or a Segmenter. */
-export function outcomeOf(entry, { name, args, given }) {
-  return outcome(() => (name === 'segmentClip' ? all(entry.segmentClip(...args(given))) : entry[name](...args(given))));
-}

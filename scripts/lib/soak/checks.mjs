@@ -26,7 +26,7 @@ export function flatMemory() {
   };
 }
 
-export const inMiB = (bytes) => Math.round(bytes / MIB);
+const inMiB = (bytes) => Math.round(bytes / MIB);
 
 /** Throws unless an answer is the reference. The first one ever becomes it. */
 export function sameAsBefore(references, name, hash) {

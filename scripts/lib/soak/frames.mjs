@@ -1,4 +1,4 @@
-// The frames of the long soak: a square that moves before a ground, 320 × 240, drawn from a number. Plain JavaScript, also for the page.
+// The frames of the long soak: a square that moves before a ground, 320 × 240, drawn from a number.
 
 import { frame } from '../../../pkg/test/support/moving.mjs';
 
