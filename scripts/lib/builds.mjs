@@ -1,6 +1,6 @@
 // Builds the WebAssembly modules, the npm package, the page and the wheel. What has not changed is skipped.
 
-import { existsSync, readdirSync, rmSync } from 'node:fs';
+import { copyFileSync, existsSync, readdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
@@ -103,6 +103,7 @@ async function makeWheel(python, profile, env = {}) {
   rmSync(folder, { recursive: true, force: true });
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked']);
   await writeNoticesOfWheel();
+  for (const name of ['LICENSE-APACHE', 'LICENSE-MIT']) copyFileSync(join(root, name), join(root, 'python', name));
   const args = ['-m', 'maturin', 'build', '--quiet', '--locked', ...profile, '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder];
   await must('The wheel could not be built.', python, args, { env });
   return join(folder, readdirSync(folder)[0]);
