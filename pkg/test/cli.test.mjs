@@ -298,6 +298,19 @@ describe('usage', () => {
     'a look-ahead above 8': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', '9']],
     'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
     'a seed too large': ['invalid-option', ['points', 'a', '--seed', '9007199254740992']],
+    'a batch of nothing': ['usage', ['batch']],
+    'an empty name in a batch': ['usage', ['batch', 'a', '']],
+    'an overlay of a batch without --out': ['usage', ['batch', 'a', '--overlay']],
+    'a before file': ['wrong-usage', ['batch', 'a', '--before', 'b']],
+    'two videos': ['usage', ['video', 'a', 'b']],
+    'a list for a video': ['wrong-usage', ['video', 'a', '--list', 'b']],
+    'jobs of pair': ['wrong-usage', ['pair', 'a', 'b', '--jobs', '2']],
+    'no jobs': ['invalid-option', ['batch', 'a', '--jobs', '0']],
+    'too many jobs': ['invalid-option', ['batch', 'a', '--jobs', '257']],
+    'every none': ['invalid-option', ['batch', 'a', '--every', '0']],
+    'half a shard': ['invalid-option', ['batch', 'a', '--shard', '1']],
+    'shard 0': ['invalid-option', ['batch', 'a', '--shard', '0/2']],
+    'shard 3 of 2': ['invalid-option', ['batch', 'a', '--shard', '3/2']],
   };
   for (const [title, [code, args]] of Object.entries(wrong)) {
     test(`${title} is wrong`, async () => checkError(await veronese(args), 2, code));

@@ -239,13 +239,23 @@ describe('interrupted runs', { skip: skipWindows }, () => {
       require('module').syncBuiltinESMExports();`)}"`,
   });
 
-  test('know what they wrote, wherever they end', async (t) => {
+  /** The files that a run leaves in an empty folder. */
+  async function straight(args, out) {
+    await done(args);
+    const files = tree(out);
+    rmSync(out, { recursive: true });
+    return files;
+  }
+
+  test('know what they wrote, wherever they end, and end as a straight run does', async (t) => {
     const folder = made(t);
     const { commands, out, path } = folder;
     clipFolder(path('drawn'));
     const all = { ...commands, convert: ['convert', path('drawn'), '--to', 'labelme,coco', '--out', out] };
     for (const [command, args] of Object.entries(all)) {
       const other = command === 'convert' ? [...args, '--from', '2'] : [...args, '--motions', '2'];
+      // The times of a pair are in its result.
+      const expected = command === 'pair' ? undefined : await straight(args, out);
       const ends = (first, places) => places.map(([n, when]) => [first, n, when]);
       const few = [[undefined, 3, 'after'], [other, 1, 'after']];
       const more = [[1, 'before'], [2, 'before'], [4, 'before'], [5, 'after']];
@@ -256,6 +266,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
         const again = await veronese(args);
         assert.deepEqual([again.code, again.stderr], [0, ''], `${command} ${n} ${when} ${Boolean(first)}`);
         assert.deepEqual(entries(out).filter((name) => name.startsWith('.veronese-')), [], 'nothing half-written stays');
+        if (expected) assert.deepEqual(tree(out), expected, 'the files of a straight run');
         rmSync(out, { recursive: true });
       }
     }
