@@ -127,9 +127,13 @@ describe('inOrder, on random sources, readers and signals', () => {
         const { notes, source } = scripted({ kind, steps, next });
         let stop = false;
         let begunAfterStop = false;
+        let busy = 0;
         const work = async (input, index) => {
           if (stop) begunAfterStop = true;
+          busy += 1;
+          assert.ok(busy <= room, `${busy} at once, where there is room for ${room}`);
           if (next() < 0.7) await setTimeout(Math.floor(next() * 3));
+          busy -= 1;
           return [input, index];
         };
         if (ending === 0) controller.abort();

@@ -3,7 +3,6 @@ import { describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { segmentPair, segmentPairs, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
-import { inOrder } from '../build/calls/ordered.js';
 import { frame, pair } from './support/frames.mjs';
 import { all, failure, timeless } from './support/shapes.mjs';
 
@@ -68,12 +67,6 @@ describe('SegmenterPool', () => {
     assert.equal(error.code, 'cancelled');
     for (const other of others) assert.equal((await other).width, 64);
   });
-
-  test('refuses a number of jobs that is none', () => {
-    for (const jobs of [0, -1, 1.5, 257, NaN, '2', null]) {
-      assert.throws(() => new SegmenterPool({ jobs }), { name: 'VeroneseError', code: 'invalid-option' }, String(jobs));
-    }
-  });
 });
 
 describe('segmentPairs', () => {
@@ -132,42 +125,9 @@ describe('segmentPairs', () => {
     assert.equal(new Set(seen.values()).size, 1, 'as many stages each');
   });
 
-  test('a signal ends it at once, even while the source lets it wait', async () => {
-    const controller = new AbortController();
-    async function* source() {
-      yield input(0);
-      await new Promise(() => {});
-    }
-    const outcomes = segmentPairs(source(), { jobs: 2, signal: controller.signal });
-    assert.equal((await outcomes.next()).value.index, 0, 'a slow source does not hold back the answer that is there');
-    const next = failure(outcomes.next());
-    const since = performance.now();
-    controller.abort('enough');
-    const error = await next;
-    assert.ok(performance.now() - since < 1000);
-    assert.equal(error.code, 'cancelled');
-    assert.equal(error.cause, 'enough');
-    assert.equal((await failure(all(segmentPairs([input(0)], { signal: AbortSignal.abort() })))).code, 'cancelled');
-  });
-
   test('takes promises of pairs, and no pairs at all', async () => {
     assert.equal((await all(segmentPairs([Promise.resolve(input(0))], { jobs: 1 })))[0].segmentation.width, 64);
     assert.deepEqual(await all(segmentPairs([])), []);
-  });
-});
-
-describe('inOrder', () => {
-  test('keeps the order whatever finishes first, and the number under way', async () => {
-    let [busy, most] = [0, 0];
-    const work = async (milliseconds, index) => {
-      most = Math.max(most, ++busy);
-      await setTimeout(milliseconds);
-      busy -= 1;
-      return index;
-    };
-    const answers = await all(inOrder([30, 1, 20, 2, 10, 1, 1], work, { room: 3, stop: () => new Error('stopped') }));
-    assert.deepEqual(answers, [0, 1, 2, 3, 4, 5, 6]);
-    assert.equal(most, 3);
   });
 });
 

@@ -8,7 +8,6 @@ import { Segmenter, segmentPair } from 'veronese';
 import { glue } from '../build/module/glue.js';
 import { WorkerPool } from '../build/pool/pool.js';
 import { serve } from '../build/worker/serve.js';
-import { Warming } from '../build/worker/warming.js';
 import { pair } from './support/frames.mjs';
 import { failure, timeless } from './support/shapes.mjs';
 
@@ -30,33 +29,6 @@ function told({ supplied = Promise.resolve(module), size = 1 } = {}) {
 }
 
 describe('a warm-up in the worker', () => {
-  test('ends after the slice under way', async () => {
-    let slices = 0;
-    const warming = new Warming({
-      segmentPair: async () => {
-        slices += 1;
-        if (slices === 3) setTimeout(() => warming.end());
-      },
-    });
-    await warming.run();
-    assert.equal(slices, 3);
-  });
-
-  test('begins with the smallest pairs', async () => {
-    const pixels = [];
-    const warming = new Warming({
-      segmentPair: async (first, second, options) => {
-        assert.deepEqual([first.width, first.height, options], [second.width, second.height, { quality: 'fast' }]);
-        assert.equal(first.data.length, 4 * first.width * first.height);
-        pixels.push(first.width * first.height);
-        if (pixels.length === 5) warming.end();
-      },
-    });
-    await warming.run();
-    assert.deepEqual(pixels, pixels.toSorted((one, other) => one - other));
-    assert.ok(pixels[0] < 1000);
-  });
-
   test('runs no other slice once a task has come, and is not answered', async (t) => {
     t.mock.method(performance, 'now', () => 0); // on a busy machine it could be over after one slice
     const calls = t.mock.method(glue, 'segmentPair').mock;
@@ -71,15 +43,6 @@ describe('a warm-up in the worker', () => {
     assert.equal(calls.callCount(), slices + 1);
     assert.deepEqual(replies.map(({ kind }) => kind).filter((kind) => kind !== 'progress'), ['done']);
     assert.deepEqual(timeless(replies.at(-1).result), timeless(await segmentPair(...pair())));
-  });
-
-  test('runs no slice if the task comes before there is a module', async (t) => {
-    const calls = t.mock.method(glue, 'segmentPair').mock;
-    const replies = [];
-    const answer = serve((reply) => replies.push(reply));
-    await Promise.all([answer({ task: WARM_UP, module }), answer({ task: PAIR })]);
-    assert.equal(calls.callCount(), 1);
-    assert.deepEqual(replies.map(({ kind }) => kind).filter((kind) => kind !== 'progress'), ['done']);
   });
 
   test('says that it has ended where nothing comes, or why it could not begin', async () => {
@@ -126,20 +89,6 @@ describe('a task that gives way in the pool', () => {
     assert.deepEqual(requests, ['first', 'second', 'later']);
     reply({ kind: 'rested' });
     await later;
-  });
-
-  test('leaves another one alone, and an idle worker that has started comes before it', async () => {
-    const { pool, requests, reply, started } = told({ size: 2 });
-    const both = [pool.rest('one'), pool.rest('two')];
-    await setImmediate();
-    assert.deepEqual([requests, started()], [['one', 'two'], 2]);
-    reply({ kind: 'rested' }, 0);
-    await both[0];
-    const task = pool.run('task');
-    reply({ kind: 'done', result: 1 }, 0);
-    assert.equal(await task, 1);
-    reply({ kind: 'rested' }, 1);
-    await both[1];
   });
 
   test('that fails says why, and its worker gets the module again', async () => {

@@ -1,4 +1,4 @@
-// What the public entries are handed where something else belongs: for hostile.test.mjs, and at random for npm run soak -- hostile.
+// What the public entries are handed where something else belongs: for hostile.test.mjs.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
