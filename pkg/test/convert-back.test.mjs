@@ -1,14 +1,14 @@
 // `veronese convert … --to corrections`: annotations, read back into a folder for `clip --corrections`.
 
 import assert from 'node:assert/strict';
-import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette } from 'veronese';
 import { clipFolder } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese } from './support/program.mjs';
+import { entries, notConverted, temporaryFolder, veronese } from './support/program.mjs';
 
 const indices = (...path) => Uint8Array.from(decode(readFileSync(join(...path))).data);
 const json = (...path) => JSON.parse(readFileSync(join(...path), 'utf8'));
@@ -18,14 +18,6 @@ async function run(...args) {
   assert.equal(stderr, '');
   assert.equal(code, 0);
   return stdout.trimEnd().split('\n').map((line) => JSON.parse(line));
-}
-
-async function refused(args, code, sentence, exit = 1) {
-  const answer = await veronese(args);
-  assert.equal(answer.stdout, '');
-  assert.ok(answer.stderr.startsWith(`veronese: error: ${code}: `), answer.stderr);
-  assert.match(answer.stderr, sentence);
-  assert.equal(answer.code, exit);
 }
 
 test('every format that is read back, of what convert writes', async (t) => {
@@ -70,8 +62,7 @@ test('every format that is read back, of what convert writes', async (t) => {
     });
   }
   for (const source of Object.values(never)) {
-    await refused(['convert', join(all, source), '--to', 'corrections', '--out', folder.path('never')], 'invalid-input', /annotation in a format that is read: COCO/);
-    assert.equal(existsSync(folder.path('never')), false);
+    await notConverted(folder.path(), [join(all, source), '--to', 'corrections', '--out', folder.path('never')], 'invalid-input', /annotation in a format that is read: COCO/);
   }
 });
 
@@ -114,27 +105,25 @@ test('a folder with the frames beside the annotations, and another run', async (
   await run('convert', folder.path('f002.json'), '--to', 'corrections', '--out', out);
   assert.deepEqual(entries(out), ['edits.json', 'f002.png', 'mine.png']);
   writeFileSync(join(out, 'f003.png'), 'mine as well');
-  const before = readdirSync(out);
-  await refused(['convert', join(labelMe, 'f003.json'), '--to', 'corrections', '--out', out], 'file-exists', /f003\.png/);
-  assert.deepEqual(readdirSync(out), before);
+  await notConverted(out, [join(labelMe, 'f003.json'), '--to', 'corrections', '--out', out], 'file-exists', /f003\.png/);
   assert.equal(readFileSync(join(out, 'f003.png'), 'utf8'), 'mine as well');
-  await refused(['convert', folder.path('all'), '--to', 'corrections', '--out', folder.path('x')], 'invalid-input', /is coco and .* is labelme: give one of them/);
+  await notConverted(folder.path(), [folder.path('all'), '--to', 'corrections', '--out', folder.path('x')], 'invalid-input', /is coco and .* is labelme: give one of them/);
 });
 
 test('wrong usage and files that cannot be read', async (t) => {
   const folder = temporaryFolder(t);
   const file = folder.file('a.json', '{"images": [], "annotations": []}');
   const out = folder.path('out');
-  const usage = (args, sentence) => refused(['convert', ...args], 'usage', sentence, 2);
+  const refused = (...rest) => notConverted(folder.path(), ...rest);
+  const usage = (args, sentence) => refused(args, 'usage', sentence, 2);
   await usage([file, '--to', 'corrections'], /'--to corrections' needs '--out DIR'/);
   await usage([file, '--to', 'corrections,coco', '--out', out], /cannot be with formats that are written/);
   await usage([file, '--to', 'corrections', '--out', out, '--tolerance', '1'], /'--to corrections' has no option '--tolerance'/);
   await usage([file, '--to', 'coco', '--clip', out], /'--clip' needs '--to corrections'/);
-  await refused(['convert', file, '--to', 'corrections', '--out', out], 'invalid-input', /'.*a\.json' annotates no frame/);
-  await refused(['convert', folder.path('none.json'), '--to', 'corrections', '--out', out], 'file-not-found', /none\.json/);
-  await refused(['convert', folder.file('b.json', '{'), '--to', 'corrections', '--out', out], 'invalid-input', /b\.json': it is not JSON/);
-  await refused(['convert', file, '--to', 'corrections', '--out', out, '--clip', folder.path('none')], 'file-not-found', /tracks\.json/);
+  await refused([file, '--to', 'corrections', '--out', out], 'invalid-input', /'.*a\.json' annotates no frame/);
+  await refused([folder.path('none.json'), '--to', 'corrections', '--out', out], 'file-not-found', /none\.json/);
+  await refused([folder.file('b.json', '{'), '--to', 'corrections', '--out', out], 'invalid-input', /b\.json': it is not JSON/);
+  await refused([file, '--to', 'corrections', '--out', out, '--clip', folder.path('none')], 'file-not-found', /tracks\.json/);
   mkdirSync(folder.path('empty'));
-  await refused(['convert', folder.path('empty'), '--to', 'corrections', '--out', out], 'invalid-input', /no file is an annotation/);
-  assert.equal(existsSync(out), false);
+  await refused([folder.path('empty'), '--to', 'corrections', '--out', out], 'invalid-input', /no file is an annotation/);
 });

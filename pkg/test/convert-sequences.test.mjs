@@ -10,7 +10,7 @@ import { decodeVeronese, encodeCocoVideo, encodeCvatVideo, encodeDavis } from 'v
 import { openClip } from '../build/cli/clip-folder.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { converted, entries, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'supervisely', 'web-annotation', 'veronese', 'masks'];
 const TRACKS = ['youtube-vis', 'cvat-video', 'cvat-mots', 'mots', 'mot', 'label-studio-video'];
@@ -24,25 +24,6 @@ function files(folder) {
   return readdirSync(folder, { recursive: true })
     .filter((name) => statSync(join(folder, name)).isFile())
     .sort();
-}
-
-async function converted(...args) {
-  const { code, stdout, stderr } = await veronese(['convert', ...args]);
-  assert.equal(stderr, '');
-  assert.equal(code, 0);
-  assert.match(stdout, /^\{.*\}\n$/, 'one line');
-  return JSON.parse(stdout);
-}
-
-/** The call fails with this code, and nothing appears, disappears or stays half-written. */
-async function refused(folder, args, code, sentence, exit = 1) {
-  const before = files(folder);
-  const answer = await veronese(['convert', ...args]);
-  assert.equal(answer.stdout, '');
-  assert.equal(answer.code, exit, answer.stderr);
-  assert.ok(answer.stderr.startsWith(`veronese: error: ${code}: `), answer.stderr);
-  assert.match(answer.stderr, sentence);
-  assert.deepEqual(files(folder), before);
 }
 
 describe('a clip', () => {

@@ -1,5 +1,6 @@
 // Runs the program: as a call, with streams that collect what it writes, or as a user does, in a process of its own.
 
+import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -28,6 +29,25 @@ export async function veronese(args, { stdin = '', onLine } = {}) {
   const stderr = { isTTY: false, write: (piece) => (text.stderr += piece) };
   const code = await main(args, { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
   return { code, ...text, seconds: (performance.now() - started) / 1000 };
+}
+
+/** The line of `veronese convert` for these arguments, which has to work. */
+export async function converted(...args) {
+  const { code, stdout, stderr } = await veronese(['convert', ...args]);
+  assert.deepEqual([code, stderr], [0, '']);
+  assert.match(stdout, /^\{.*\}\n$/, 'one line');
+  return JSON.parse(stdout);
+}
+
+/** `veronese convert` ends with this error, prints nothing else, and leaves everything below `folder` as it is. */
+export async function notConverted(folder, args, errorCode, sentence, exit = 1) {
+  const files = () => readdirSync(folder, { recursive: true }).sort();
+  const before = files();
+  const { code, stdout, stderr } = await veronese(['convert', ...args]);
+  assert.deepEqual([code, stdout], [exit, ''], stderr);
+  assert.ok(stderr.startsWith(`veronese: error: ${errorCode}: `), stderr);
+  assert.match(stderr, sentence);
+  assert.deepEqual(files(), before);
 }
 
 /** Starts it in a process; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
