@@ -36,16 +36,9 @@ export interface VeroneseSegmenterEvents {
   error: VeroneseError;
 }
 
-export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, keyof VeroneseSegmenterEvents> {
-  progress: CustomEvent<Progress | ClipProgress>;
-  result: CustomEvent<Segmentation>;
-  frame: CustomEvent<ClipFrame>;
-  tracks: CustomEvent<ClipTracks>;
-  'veronese-correction': CustomEvent<ClipCorrection | ClipPrompt>;
-  show: CustomEvent<{ index: number; width: number; height: number; labels: Uint8Array }>;
-  select: CustomEvent<number | null>;
-  error: CustomEvent<VeroneseError>;
-}
+export type VeroneseSegmenterEventMap = Omit<HTMLElementEventMap, keyof VeroneseSegmenterEvents> & {
+  [Type in keyof VeroneseSegmenterEvents]: CustomEvent<VeroneseSegmenterEvents[Type]>;
+};
 
 /** An object that clicks and a box point to, as a {@link ClipPrompt} without its frame. */
 export type ElementPrompt =

@@ -10,12 +10,17 @@ export interface VeroneseSegmenterAttributes {
   second?: string | undefined;
   /** URL of a video, which takes precedence. */
   src?: string | undefined;
+  /** Number of motions, 1 to 10, or `auto`, which is usual. */
   motions?: 'auto' | number | `${number}` | undefined;
+  /** `best` for accuracy, which is usual, or `fast` for live use. */
   quality?: 'fast' | 'best' | undefined;
   /** Whether masks of two frames are groups of motions. */
   grouped?: boolean | undefined;
+  /** The name under which a form gets the masks. */
   name?: string | undefined;
+  /** Whether it takes no input and submits nothing; it still segments. */
   disabled?: boolean | undefined;
+  /** Whether it is invalid without masks. */
   required?: boolean | undefined;
 }
 

@@ -72,7 +72,7 @@ export const buildPackage = once(async () => {
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, ...LICENCES, 'package-lock.json'];
-  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js', 'pkg/THIRD-PARTY-NOTICES'], inputs, [], () =>
+  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js', 'pkg/custom-elements.json', 'pkg/THIRD-PARTY-NOTICES'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 });
