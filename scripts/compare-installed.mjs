@@ -72,7 +72,7 @@ function hashesOf(folder) {
   return Object.fromEntries(files.map((path) => [path, createHash('sha256').update(lasting(path, readFileSync(join(folder, path)))).digest('hex')]));
 }
 
-/** What two runs of the same version have in common: times and versions are left out of JSON. */
+/** A file without what differs between two runs of the same version: times and versions are left out of JSON. */
 function lasting(path, content) {
   if (!path.endsWith('.json')) return content;
   return JSON.stringify(JSON.parse(content), (key, value) => (key === 'milliseconds' || key === 'software' ? undefined : value));

@@ -23,7 +23,7 @@ import { prepare } from './lib/prepare.mjs';
 import { inProject, projectText, root } from './lib/project.mjs';
 import { Stop, command, run } from './lib/run.mjs';
 
-/** What is tested. */
+/** The files that are tested. */
 const BUILT = ['pkg/wasm/veronese_bg.wasm', 'pkg/wasm/codecs/veronese_codecs_bg.wasm', 'pkg/dist/node.js', 'pkg/dist/calls.js'];
 const STATE = 'out/soak/state.json';
 /** How many, of what, and the generator. Those that need the built package are imported once it is there. */
@@ -140,7 +140,7 @@ function stored() {
   return inProject(STATE) ? { ...none, ...JSON.parse(projectText(STATE)) } : none;
 }
 
-/** What is done: nothing if the package is another one, or the parts are complete and asked for again. When parts passed stays. */
+/** The stored state: empty if the package is another one, or the parts are complete and asked for again. When parts passed stays. */
 function resumed(parts, again) {
   const sum = createHash('sha256');
   for (const file of BUILT) sum.update(readFileSync(join(root, file)));

@@ -1,4 +1,4 @@
-//! What is measured, by name, so that the measurement stays the same and stays short.
+//! The cases of the measurement, by name, so that the measurement stays the same and stays short.
 
 use std::collections::BTreeSet;
 use std::path::Path;

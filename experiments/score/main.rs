@@ -45,7 +45,7 @@ fn main() {
     program::start(HELP, options(std::env::args().skip(1)), run);
 }
 
-/// What was asked for; `None` where help was.
+/// The options; `None` for help.
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
     let mut options = Options { save: false, only: Vec::new(), file: KEPT.into(), shared: "../shared".into() };
     while let Some(name) = arguments.next() {

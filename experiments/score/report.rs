@@ -95,7 +95,7 @@ fn cell(found: &Estimate, signed: bool) -> String {
     }
 }
 
-/// What changed since `before`, of the cases of both.
+/// The changes since `before`, of the cases of both.
 pub(crate) fn changes(before: &[Entry], now: &[Entry]) -> String {
     let mut text = String::new();
     let old = |entry: &Entry| before.iter().find(|other| other.key() == entry.key());

@@ -42,7 +42,7 @@ pub(crate) fn estimate(values: &[(&str, f64)]) -> Option<Estimate> {
     Some(Estimate { cases: values.len(), mean: mean(&mut sequences.iter().copied()), interval })
 }
 
-/// What became of a figure.
+/// How a figure has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// It is the same in every case.

@@ -1,4 +1,4 @@
-//! What the programs measure with, on cases whose figures follow from their definition. One program: it is linked once.
+//! The figures of the programs, on cases whose figures follow from their definition. One program: it is linked once.
 
 mod annotator;
 #[path = "../boundary.rs"]

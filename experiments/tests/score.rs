@@ -1,4 +1,4 @@
-//! What `npm run score` says of figures: intervals over sequences, and what rose and what fell.
+//! The report of `npm run score`: intervals over sequences, and figures that rose or fell.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[path = "../score/report.rs"]

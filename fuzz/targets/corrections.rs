@@ -1,4 +1,4 @@
-//! What a person says of a clip, in any order and together, what is interrupted, and what must not change then.
+//! Annotations of a clip, in any order and together, and interrupted ones, after which nothing may have changed.
 #![no_main]
 
 use libfuzzer_sys::arbitrary::{self, Arbitrary};

@@ -8,7 +8,7 @@ import { rolldown } from 'rolldown';
 
 const folder = (name) => fileURLToPath(new URL(`../${name}/`, import.meta.url));
 const sources = (names) => Object.fromEntries(Object.entries(names).map(([name, source]) => [name, resolve(folder('build'), `${source}.js`)]));
-/** What package.json names, and the files that workers are started from: each with its source. */
+/** The entries of package.json, and the files that workers are started from: each with its source. */
 const ENTRIES = sources({
   web: 'entries/web',
   node: 'entries/node',
@@ -27,11 +27,11 @@ const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work' });
  * what it publishes are no modules; of fflate what browsers get, which Node runs too.
  */
 const BUNDLED = { '@rgrove/parse-xml': '@rgrove/parse-xml/src/index.ts', fflate: 'fflate/esm/browser.js' };
-/** What an encoder of masks shares with the calls. */
+/** Shared by the encoders of masks and the calls. */
 const SHARED = ['common/'];
-/** What encoders and readers of masks share. */
+/** Shared by encoders and readers of masks. */
 const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
-/** What all entries with calls share, but for what they load when masks are given or several workers share a clip. */
+/** Shared by all entries with calls, but for what they load when masks are given or several workers share a clip. */
 const CALLS = ['module/', 'calls/(?!clip/(?:given-masks|shared-pairs)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));

@@ -14,7 +14,7 @@ const MODULES = [
   { from: '../wasm/codecs/veronese_codecs.js', to: '../build/entries/glue-codecs.js', calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS] },
 ];
 
-// What is no longer compiled must not be found by anything.
+// Nothing may find files that are no longer compiled.
 rmSync(new URL('../build/', import.meta.url), { recursive: true, force: true });
 for (const folder of ['module', 'entries']) mkdirSync(new URL(`../build/${folder}/`, import.meta.url), { recursive: true });
 for (const { from, to, calls } of MODULES) {

@@ -52,7 +52,7 @@ describe('segmentPair', () => {
         for (const other of [right, labels[p + width] ?? label]) if (other !== label) touching.add([label, other].sort().join());
       });
       for (const junction of junctions) assert.ok(touching.has(junction.labels.join()), `${quality}: ${junction.labels}`);
-      // What was joined for its continuous flow is likelier to be one thing than a car and the road.
+      // A pair that was joined for its continuous flow is likelier to be one thing than a car and the road.
       const likelihoods = (joined) =>
         junctions.filter(({ labels: [a, b] }) => (motions[a].group === motions[b].group) === joined).map(({ likelihood }) => likelihood);
       assert.ok(Math.min(...likelihoods(true), 1) > Math.min(...likelihoods(false)), quality);

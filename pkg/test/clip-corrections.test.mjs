@@ -306,7 +306,7 @@ describe('what a person said through the command line', () => {
     await run(args);
     const seen = labelsOf(out, 1);
     assert.ok(seen.includes(9));
-    // What was seen is no longer what is said.
+    // The corrections are other ones now.
     said('edits.json', '{"accepted": ["f1"]}');
     said('f3.png', await mask(stroke(1, 3, 8)));
     await run(args);

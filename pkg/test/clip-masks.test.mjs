@@ -1,4 +1,4 @@
-// What a person says of a whole clip, directly and in workers: given masks, where corrections spread, locked objects, frames as they change.
+// Annotations of a whole clip, directly and in workers: given masks, where corrections spread, locked objects, frames as they change.
 
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
@@ -141,7 +141,7 @@ for (const [way, segment] of WAYS) {
         const later = await run(segment, { state: await locking.state(), corrections: [{ frame: 4, labels: stroke }] });
         assert.equal(changedOf(whole, later, 1), 0);
       }
-      // What a person has spoken of needs no lock.
+      // An annotated object needs no lock.
       const said = segment(source, { state, masks: [{ frame: 1, labels: labelled(1, 7) }] });
       const before = await all(said);
       const after = await run(segment, { state: await said.state(), corrections: [{ frame: 3, labels: corner(9) }] });

@@ -1,4 +1,4 @@
-// What a person says of a clip is said of an object: what it changes, and what it leaves as it is.
+// Every annotation of a clip is about an object: which pixels it changes, and which it leaves as they are.
 
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
@@ -53,7 +53,7 @@ describe('a locked object', () => {
     // A lock holds from the annotations that it is given with.
     const given = { corrections: [{ frame: 3, object: 2, labels: half(2, 3, 0) }] };
     assert.deepEqual((await said({ ...given, locked: [2] })).labels, (await said(given)).labels);
-    // What was said before it was locked may be said again.
+    // Annotations from before the lock may be given again.
     const corrections = [{ frame: 3, labels: half(2, 3, 2) }];
     const before = await said({ corrections, locked: [2] });
     assert.deepEqual((await run({ state: before.state, corrections })).labels, before.labels);

@@ -99,7 +99,7 @@ test('a folder with the frames beside the annotations, and another run', async (
   const out = folder.path('said');
   const [{ frames }] = await run('convert', labelMe, '--to', 'corrections', '--out', out);
   assert.equal(frames, 7);
-  // What is not annotated any more goes; what is somebody else's stays.
+  // Frames that are not annotated any more go; files of others stay.
   writeFileSync(join(out, 'mine.png'), 'mine');
   cpSync(join(labelMe, 'f002.json'), folder.path('f002.json'));
   await run('convert', folder.path('f002.json'), '--to', 'corrections', '--out', out);

@@ -78,7 +78,7 @@ test('measurements have a module of their own, which veronese/slim waits for and
   assert.equal((await without.segmentPair(...pair())).width, 64);
   assert.equal(made, 1, 'the worker lives on');
 
-  // What a worker was given and could not start is given again, and refused again in the same words.
+  // A module that a worker could not start is given again, and refused again in the same words.
   const mistaken = new slim.Segmenter(bytes, { points: bytes, worker });
   t.after(() => mistaken.close());
   for (let k = 0; k < 2; k++) assert.match((await failure(mistaken.fitMotions(measurements))).message, /no fitMotions/);

@@ -119,7 +119,7 @@ describe('segmentPairs and pools', () => {
     t.after(() => pool.close());
     for (const [name, value] of Object.entries(VALUES)) {
       const good = { first, second };
-      // What cannot even be awaited is an error of the source.
+      // A value that cannot even be awaited is an error of the source.
       const inputs = [/throwing|proxy/.test(name) ? undefined : value, { first: value, second }, { first, second: value }, good];
       const outcomes = await all(pool.segmentPairs(inputs));
       assert.deepEqual(outcomes.map(({ error }) => error !== undefined), [true, true, true, false]);

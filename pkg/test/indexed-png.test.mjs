@@ -11,7 +11,7 @@ import { pngOf } from './support/chunks.mjs';
 import { png } from './support/frames.mjs';
 import { labelImages } from './support/masks.mjs';
 
-/** What a byte is predicted to be, by the number of the filter, as the PNG specification has it. */
+/** The prediction of a byte, by the number of the filter, as the PNG specification has it. */
 const PREDICTED = [
   () => 0,
   (left) => left,

@@ -1,4 +1,4 @@
-// What the module holds. Its memory never shrinks, so its size is the most that was ever in use at once.
+// The memory of the module. It never shrinks, so its size is the most that was ever in use at once.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

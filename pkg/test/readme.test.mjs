@@ -21,7 +21,7 @@ function project(t) {
   return folder;
 }
 
-/** What an example calls `first` and `second` where it does not make them itself. */
+/** `first` and `second` of an example, where it does not make them itself. */
 const FRAMES = `
 import { readFileSync as readFrame } from 'node:fs';
 import { decodeImage as decodeFrame } from 'veronese/codecs';

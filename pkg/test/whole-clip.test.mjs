@@ -115,7 +115,7 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(later.stages.pairs, []);
       // It keeps corrections until they are taken back, and edits.
       const kept = await outcome(segment, list, { state: later.state, edits: { delete: [9] } });
-      // What an object that a person spoke of took over is there again without it.
+      // Without the annotated object, the objects that it took over are there again.
       assert.deepEqual(idsOf((await outcome(segment, list, { state: kept.state })).frames), ALL.map(() => [1]));
       const back = await outcome(segment, list, { state: later.state, corrections: [{ frame: 3, labels: mask(255, 255) }] });
       assert.deepEqual(idsOf(back.frames), idsOf(whole.frames));

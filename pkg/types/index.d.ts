@@ -211,7 +211,7 @@ export interface ClipProgress {
 /** Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere. */
 export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
 
-/** What a person is certain of in one frame of a clip, painted. */
+/** Labels of one frame of a clip that a person is certain of. */
 export interface ClipCorrection {
   /** Index of the frame, from 0. Each frame has one correction of each object at most, and one label map. */
   frame: number;
@@ -333,7 +333,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    */
   masks?: readonly ClipMask[] | undefined;
   /**
-   * What is painted in some frames, with the numbers of an earlier run. It holds there to the pixel, and the objects that it is about are
+   * Labels painted in some frames, with the numbers of an earlier run. It holds there to the pixel, and the objects that it is about are
    * followed from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it
    * says anything.
    *
@@ -468,7 +468,7 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
    */
   state(): Promise<Uint8Array | undefined>;
   /**
-   * What masks, corrections, prompts and accepted labels have changed, by frame, then by object, with the numbers before any edit; edits are not
+   * The changes by masks, corrections, prompts and accepted labels, by frame, then by object, with the numbers before any edit; edits are not
    * counted. Empty before the first frame has been returned, and for a stream.
    */
   changes(): Promise<ClipChange[]>;

@@ -1,4 +1,4 @@
-// What <veronese-segmenter> takes where frameworks write it as markup.
+// Attributes, properties and listeners of <veronese-segmenter> where frameworks write it as markup.
 
 import type { ClipFrames, VeroneseSegmenterEvents } from './element-class.js';
 

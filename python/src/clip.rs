@@ -52,7 +52,7 @@ pub(crate) fn segment_clip(
         .with_confidence(false);
     let look_ahead = options::look_ahead(look_ahead)?;
     let source = Source::of(frames)?;
-    // What needs frames that can be read again.
+    // These need frames that can be read again.
     let needs = [
         ("masks", masks.is_some()),
         ("corrections", corrections.is_some()),
@@ -95,7 +95,7 @@ pub(crate) fn segment_clip(
     })
 }
 
-/// What is asked of a whole clip at its beginning.
+/// The options of a whole clip.
 struct Asked {
     said: Said,
     state: Option<Vec<u8>>,
@@ -129,10 +129,10 @@ pub(crate) struct Clip {
     /// Width and height of all frames, once known.
     size: Option<[usize; 2]>,
     place: Place,
-    /// What was changed by what was said last.
+    /// The changes by the last annotations.
     changes: Vec<Changed>,
     tracks: Tracks,
-    /// What the source raised, or what is wrong with a frame; the frames before it come first.
+    /// The error of the source, or of a frame; the frames before it come first.
     failure: Option<PyErr>,
 }
 
@@ -208,13 +208,13 @@ impl Clip {
         self.renumber(py, &objects, 0)
     }
 
-    /// What objects have gained and lost by what was said last.
+    /// The pixels that objects have gained and lost by the last annotations.
     fn changes<'py>(&mut self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         self.prepare(py)?;
         self.changes.iter().map(|changed| results::clip_change(py, changed)).collect()
     }
 
-    /// What is known of a whole clip, as bytes for the option `state`.
+    /// The state of a whole clip, as bytes for the option `state`.
     fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.prepare(py)?;
         let state = self.call(py, |kept| kept.segmented(|clip| Ok(clip.to_bytes())))?;

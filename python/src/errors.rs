@@ -1,4 +1,4 @@
-//! What goes wrong, as the exception of the package.
+//! Errors as the exception of the package.
 
 use pyo3::prelude::*;
 

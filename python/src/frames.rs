@@ -85,7 +85,7 @@ impl Given {
     }
 }
 
-/// What is in a file. A pipe is not waited for.
+/// The content of a file. A pipe is not waited for.
 fn content(path: &Path) -> Result<Vec<u8>, Failure> {
     let name = path.display();
     let unreadable = |message: String| Failure { code: "unreadable-file", message };

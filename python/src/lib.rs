@@ -14,7 +14,7 @@ mod points;
 mod results;
 mod worker;
 
-/// What `veronese` is made of; its functions are called by the Python code of the package alone.
+/// The compiled part of `veronese`; its functions are called by the Python code of the package alone.
 #[pymodule]
 fn _veronese(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

@@ -31,10 +31,10 @@ pub(crate) fn seed(given: &Bound<'_, PyAny>) -> Result<u64, Failure> {
 /// 2⁵³ − 1, the largest that JavaScript has.
 const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// What is asked of the look-ahead of a clip.
+/// The look-ahead of a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LookAhead {
-    /// What suits the frames.
+    /// Chosen by the frames.
     Unsaid,
     All,
     Frames(usize),

@@ -17,13 +17,13 @@ use crate::errors::Failure;
 /// Time between two looks for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// What a thread says to the one that waits.
+/// Messages of a thread to the one that waits.
 enum Said<R> {
     Stage(Stage),
     Done(Result<R, Failure>),
 }
 
-/// What unwinds a call whose result nobody waits for.
+/// Unwinds a call whose result nobody waits for.
 struct Abandoned;
 
 /// A call of its own. `progress` is called with the name of each stage, its index and the number of stages; what it raises ends the call.
@@ -121,7 +121,7 @@ fn spawn(work: impl FnOnce() + Send + 'static) -> Result<(), Failure> {
     }
 }
 
-/// What some work comes to; a panic is an error of code `internal`. None where nobody waits.
+/// The outcome of some work; a panic is an error of code `internal`. None where nobody waits.
 fn caught<R>(work: impl FnOnce() -> Result<R, Failure>) -> Option<Result<R, Failure>> {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(done) => Some(done),

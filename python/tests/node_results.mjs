@@ -1,7 +1,7 @@
-// What the npm package makes of the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
+// Results of the npm package for the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
 //
 // Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, said }], points: [{ positions, derivatives, options }] }.
-// What is said has masks, corrections, prompts and accepted frames, with files of labels. A frame is a path of an image, or of RGBA bytes with their size.
+// `said` has masks, corrections, prompts and accepted frames, with files of labels. A frame is a path of an image, or of RGBA bytes with their size.
 
 import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';

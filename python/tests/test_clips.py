@@ -117,7 +117,7 @@ LATER: Any = {
 
 @pytest.mark.parametrize("name", LATER)
 def test_what_is_said_later_holds_as_what_is_said_at_the_beginning(name: str) -> None:
-    """What it does is compared with Node (test_same_as_node.py)."""
+    """Its results are compared with those of Node in test_same_as_node.py."""
     said, say = LATER[name]
     wide = np.full((72, 96), 255, np.uint8)
     wide[10:60, 15:40] = 8

@@ -25,7 +25,7 @@ NODE = shutil.which("node") or ""
 pytestmark = pytest.mark.skipif(not NODE, reason="there is no node to compare with")
 
 NAMES = {"mark_unknown": "markUnknown", "look_ahead": "lookAhead"}
-# What is said of frames, and what Node has in another form.
+# Annotations of frames, which Node has in another form.
 SAID = ("masks", "corrections", "prompts", "accepted")
 
 
@@ -51,7 +51,7 @@ def matrix(entries: Optional[NDArray[np.float64]]) -> List[float]:
 
 
 class Asked:
-    """What both are asked for: frames as files of bytes for Node, as arrays or paths for Python."""
+    """Calls of both: frames as files of bytes for Node, as arrays or paths for Python."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

@@ -64,7 +64,7 @@ async function installMissing(chromium) {
   }
 }
 
-/** What `way` says of these programs; what is missing if one is. */
+/** The way to drive these programs, or the names of those that are missing. */
 function found(programs, way) {
   const missing = Object.keys(programs).filter((name) => !programs[name]);
   return missing.length > 0 ? { missing } : way(Object.values(programs));

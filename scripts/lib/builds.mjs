@@ -10,7 +10,7 @@ import { Stop, must, run, say } from './run.mjs';
 import { pinnedRust } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
-/** What the package and the page carry. */
+/** Texts in the package and on the page. */
 const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', NOTICES];
 const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
@@ -24,7 +24,7 @@ export const MODULES = [
   { name: 'veronese_codecs', folder: 'pkg/wasm/codecs', title: 'the module with codecs', features: ['frames', 'points', 'codecs'] },
 ];
 
-/** What lies between the steps of the method, for the site alone; no part of the package. */
+/** Shows the steps of the method one by one, for the site alone; no part of the package. */
 const STAGES = { name: 'veronese_stages', folder: 'site/module', title: 'the module of the site', features: ['frames', 'points', 'stages'] };
 
 /** Compiles Rust to WebAssembly, one module after another. */

@@ -17,7 +17,7 @@ export function figuresOf(name) {
 }
 
 /**
- * What a command has measured, with where it comes from. `origin` has the `command`, on which `data` constants were chosen and which were held
+ * The measurements of a command, with where they come from. `origin` has the `command`, on which `data` constants were chosen and which were held
  * out, and programs with their versions that belong to the machine.
  */
 export function withOrigin({ command, data, ...programs }, measured) {

@@ -1,4 +1,4 @@
-// What a first visitor waits for: the page is opened anew with nothing kept, until its clip is found.
+// The waiting of a first visitor: the page is opened anew with nothing kept, until its clip is found.
 
 /** How often it is opened. */
 const VISITS = 3;

@@ -14,7 +14,7 @@ const NOTICES_OF_WHEEL = 'python/THIRD-PARTY-NOTICES';
 /** In the package's scripts, but no dependency of theirs. */
 const BUNDLED = ['@rgrove/parse-xml', 'fflate'];
 
-/** What a licence's own text has, and nothing else: the first that a component offers is taken. */
+/** Words that only the text of that licence has: the first that a component offers is taken. */
 const LICENCES = {
   'BSD-2-Clause': /Redistribution and use in source and binary forms(?![^]*name of)/,
   ISC: /Permission to use, copy, modify, and\/or distribute/,
@@ -37,7 +37,7 @@ const standardLibrary = (crates) => ({
   ],
 });
 
-/** What wheels are built for. */
+/** The targets of wheels. */
 const NATIVE = ['x86_64-unknown-linux-gnu', 'aarch64-unknown-linux-gnu', 'x86_64-apple-darwin', 'aarch64-apple-darwin', 'x86_64-pc-windows-msvc'];
 
 /** The letters of the page's name; README.md there says how they were made. */
@@ -85,7 +85,7 @@ function write(path, parts) {
   writeFileSync(join(root, path), lines.join('\n'));
 }
 
-/** What is compiled into a module: no macros, which run in the compiler, and nothing that only builds or tests need. */
+/** The crates that are compiled into a module: no macros, which run in the compiler, and nothing that only builds or tests need. */
 async function crates(of, triple) {
   const cargo = async (name, target, ...args) => {
     const all = [name, '--locked', ...of, target, triple, ...args];
@@ -103,7 +103,7 @@ function byName(a, b) {
   return `${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1;
 }
 
-/** What npm installs for those who use the package, and for the page: without types, which are not in a script. */
+/** Packages that npm installs for users of the package, and for the page: without types, which are not in a script. */
 function packages() {
   const found = new Map();
   const add = (manifest) => {

@@ -155,7 +155,7 @@ export const RARE = {
   },
 };
 
-/** What the parts of these names need of set-up, for prepare.mjs. */
+/** The needs of these parts, for prepare.mjs. */
 export function needsOf(parts) {
   return Object.assign({}, ...parts.map(({ needs }) => needs));
 }

@@ -45,7 +45,7 @@ export const pytest = {
   failures: (output) => first(output, /^(?:FAILED|ERROR) (\S+)/gm),
 };
 
-/** What a program writes without colours. */
+/** The output of a program without colours. */
 export function plain(output) {
   return output.replace(ESCAPES, '');
 }

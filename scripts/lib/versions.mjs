@@ -5,7 +5,7 @@ import { inProject, projectText } from './project.mjs';
 const MANIFESTS = ['package.json', 'pkg/package.json', 'www/package.json'];
 /** Those that do not exist are left out. */
 const CRATES = ['Cargo.toml', 'wasm/Cargo.toml', 'python/Cargo.toml'];
-/** What names a version of the package. */
+/** The files that name a version of the package. */
 const NAMED = [
   ['pkg/README.md', /veronese@(\d[\w.-]*)\//g],
   ...['element', 'embedding'].map((name) => [`site/pages/guide/${name}.md`, /veronese@(\d[\w.-]*)\//g]),

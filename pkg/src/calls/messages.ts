@@ -1,4 +1,4 @@
-// What the page and its worker say to each other.
+// The messages between the page and its worker.
 
 import type { ClipChange, ClipFrame, ClipPropagation, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
@@ -9,7 +9,7 @@ export type Settings = Record<string, unknown>;
 
 export type Frames = readonly [first: Pixels, second: Pixels];
 
-/** What `relabel` needs of a segmentation, and what is said about its pixels. */
+/** The parts of a segmentation that `relabel` needs, and the evidence for its pixels. */
 export interface Correction {
   /** Six entries of each motion. */
   matrices: Float64Array;
@@ -26,7 +26,7 @@ export type CallTask =
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
-/** What is done with a clip from its first frame on; wasm/src/clip.rs says what each step returns. */
+/** The steps of a clip from its first frame on; wasm/src/clip.rs says what each step returns. */
 export type ClipStep =
   | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
@@ -41,7 +41,7 @@ export type ClipTask = { clip: number } & (ClipStep | { call: 'beginClip'; whole
 /** A warm-up gives way to any other task. */
 export type Task = CallTask | { call: 'warmUp' };
 
-/** What `relabel` changes of a segmentation. */
+/** The parts of a segmentation that `relabel` changes. */
 export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
 
 /** The frames that were still waiting at the end of a clip, and the number of objects beyond the last number. */
@@ -78,7 +78,7 @@ export interface Painted {
   propagate?: ClipPropagation | undefined;
 }
 
-/** What points to an object in a frame. */
+/** Clicks and a box that point to an object in a frame. */
 export interface Pointed {
   frame: number;
   object: number;
@@ -89,7 +89,7 @@ export interface Pointed {
   propagate?: ClipPropagation | undefined;
 }
 
-/** What annotations have changed since the step before, the frame that they want next, and when they want none all that they have changed. */
+/** The changes by annotations since the step before, the frame that they want next, and when they want none all that they have changed. */
 export interface Annotating {
   wanted?: number;
   changed: number[];
@@ -109,7 +109,7 @@ export type Reply<R = Result> =
   | { kind: 'rested'; error?: ErrorMessage }
   | { kind: 'failed'; error: ErrorMessage };
 
-/** What is handed over to a worker instead of copied. */
+/** The buffers that are handed over to a worker instead of copied. */
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
   if ('clip' in task) {

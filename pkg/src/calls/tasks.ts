@@ -162,7 +162,7 @@ function checkedArray(which: string, array: unknown, kind: string, of: string): 
   return array;
 }
 
-/** What the core needs of a segmentation, as flat arrays, and what stays of it. Whether labels and motions fit is the core's question. */
+/** A segmentation as the flat arrays of the core, and the rest of it. Whether labels and motions fit is the core's question. */
 function checkedSegmentation(segmentation: unknown) {
   // How sure the labels were says nothing about those of now.
   const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
@@ -175,7 +175,7 @@ function checkedSegmentation(segmentation: unknown) {
   const candidates = isListOf(evidence?.candidates, isObject) ? evidence.candidates.map((candidate) => ({ ...candidate })) : [];
   const known = { junctions: junctions.map((one) => ({ ...one, labels: [...one.labels] })) };
   return {
-    // What is answered anew keeps its place.
+    // New values keep their place.
     kept: { ...whole, motions: [], labels: [], ...known, evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,
     labels,
     matrices: Float64Array.from(motions.flatMap(({ matrix }) => matrix)),

@@ -100,7 +100,7 @@ Prints one line of JSON on stdout; batch and video print one line per pair, clip
 Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
 
-/** What `convert` reads masks back to. */
+/** The format of `convert` that reads masks back. */
 const BACK = 'corrections';
 
 const OPTIONS = {

@@ -13,7 +13,7 @@ import { sha256 } from './files.js';
 
 export const EDITS = 'edits.json';
 
-/** What edits.json says. */
+/** The content of edits.json. */
 interface Edits {
   edits: ClipEdits;
   prompts: FullPrompt[];
@@ -25,7 +25,7 @@ interface Edits {
 
 type FullPrompt = Extract<ClipPrompt, { object: number }>;
 
-/** What a folder says. */
+/** The annotations of a folder. */
 interface Folder extends Edits {
   said: ClipCorrection[];
   paths: string[];

@@ -10,13 +10,13 @@ import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFram
 
 export const TRACKS = 'tracks.json';
 export const LABELS = 'labels';
-/** What another run can use again. Nothing is lost but time where it is missing. */
+/** For another run to use again. Nothing is lost but time where it is missing. */
 export const HIDDEN = '.clip';
 
 /** Latest time of a frame, seconds. */
 const LATEST = 1e9;
 
-/** What is read of tracks.json. */
+/** The part of tracks.json that is read. */
 interface Tracks {
   width: number;
   height: number;

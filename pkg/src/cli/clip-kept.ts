@@ -1,4 +1,4 @@
-// What an unfinished clip has found out about its frames, and what a finished one knows of them: so that pairs are solved once, and that
+// The pairs of an unfinished clip, and the state of a finished one: so that pairs are solved once, and that
 // accepted frames stay what they were. A file begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
 
 import { readdirSync, rmSync } from 'node:fs';

@@ -16,7 +16,7 @@ export interface Record extends ClipTracks {
   frames: string[];
   /** Names of the frames' own files. */
   files: string[];
-  /** What corrections have changed, where they have. */
+  /** The changes by corrections, where there are any. */
   changes?: ClipChange[];
   settings: { overlay: boolean; [name: string]: unknown };
   /** Hash of the settings and the frames. */

@@ -112,7 +112,7 @@ async function acceptedAsSeen(
   return seen;
 }
 
-/** What was seen of a frame, with a mask that may have been given since: it is about the objects that it names. */
+/** The labels that were seen of a frame, with a mask that may have been given since: it is about the objects that it names. */
 function labelsUnder(mask: Uint8Array, seen: Uint8Array): Uint8Array {
   const named = new Set(mask);
   return seen.map((label, p) => {

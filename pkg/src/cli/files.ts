@@ -83,7 +83,7 @@ function isFolder(place: string): boolean {
   return statSync(place, { throwIfNoEntry: false })?.isDirectory() === true;
 }
 
-/** What is in a place, itself where it is a link. Throws `write-failed` where nothing can be. */
+/** The status of a place, of a link itself. Throws `write-failed` where nothing can be. */
 export function lookAt(path: string): Stats | undefined {
   try {
     return lstatSync(path, { throwIfNoEntry: false });

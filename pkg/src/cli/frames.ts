@@ -115,7 +115,7 @@ function exists(path: string, asFile: boolean): boolean {
 }
 
 /**
- * What is there, if anything. What cannot be looked at (a link that leads to itself, something in a locked folder) counts as a file:
+ * The status of a file, if it is there. One that cannot be looked at (a link that leads to itself, something in a locked folder) counts as a file:
  * whoever reads it is told why it cannot be read, and the other pairs go on.
  */
 function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | undefined {

@@ -1,4 +1,4 @@
-// What a run of the program reads and writes, and how it hears that it is to stop.
+// Input and output of a run of the program, and the signal that stops it.
 
 export interface Io {
   stdin: NodeJS.ReadableStream;

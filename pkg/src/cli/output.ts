@@ -11,7 +11,7 @@ import { VeroneseError } from '../common/errors.js';
 import { checkFolder, lookAt, makeFolder, type OutputFile, sha256, taken, writeFailed, writing } from './files.js';
 import { HOST, Manifest, RUN } from './manifest.js';
 
-/** What goes into a file, at once or piece by piece. */
+/** The content of a file, at once or piece by piece. */
 export type Content = Uint8Array | string | AsyncIterable<string>;
 
 /** Writes a file. Folders in its path, which is divided by `/`, are made. */
@@ -20,7 +20,7 @@ export type Write = (path: string, content: Content) => Promise<void>;
 /** The folder of a run for what is not complete. */
 const PART = `${RUN}.part`;
 const PARTS = /^\.veronese-([0-9a-f]{8})-(\d+)\.(?:part|list)$/;
-/** What another machine has not touched for so long was left, milliseconds. */
+/** Files of another machine that are older were left behind, milliseconds. */
 const LEFT = 86_400_000;
 
 export class Output {
@@ -191,7 +191,7 @@ function isAlive(pid: number): boolean {
   }
 }
 
-/** What files are recognised by, whatever path leads to them. */
+/** The identity of a file, whatever path leads to it. */
 export function idsOf(paths: readonly string[]): Set<string> {
   return new Set(paths.map(idOf).filter((id) => id !== undefined));
 }

@@ -30,7 +30,7 @@ export function isImageOfPair(path: string): boolean {
   return /^(mask-\d+|overlay|confidence)\.png$/.test(path);
 }
 
-/** What is read of result.json. */
+/** The part of result.json that is read. */
 interface Result {
   width: number;
   height: number;

@@ -73,12 +73,12 @@ function each(nameOf: (frame: SequenceFrame) => string, encode: Encode<Content |
   return { convert, files: [] };
 }
 
-/** What encoders of videos take beside the frames. */
+/** Options of the encoders of videos. */
 function videoMeta({ meta }: Sequence, { video }: SequenceSettings): ClipMeta {
   return { ...meta, clip: video ?? meta.clip };
 }
 
-/** What the encoders of one image take. */
+/** Arguments of the encoders of one image. */
 function given({ meta: { names, labels } }: Sequence, { labels: pixels, width, height, image, motions = [] }: SequenceFrame) {
   return [pixels, width, height, { image, names, labels, motions }] as const;
 }

@@ -33,7 +33,7 @@ export function lastOf({ from, until }: Range, last: number): number {
   return wanted;
 }
 
-/** What a folder's sequence is called. */
+/** The name of a folder's sequence. */
 export function sequenceName(folder: string): string {
   return basename(resolve(folder)) || 'clip';
 }

@@ -9,7 +9,7 @@ import { idsOf, Output } from './output.js';
 import { filesOfPair, isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
 import { type InputFile, jsonLine, type PairSettings, type Report } from './pair.js';
 
-/** What a pair's result.json has besides the report; the report's times are left out, since they differ between two runs. */
+/** The entries of a pair's result.json besides the report; the report's times are left out, since they differ between two runs. */
 export interface Record extends Omit<Report, 'milliseconds'> {
   inputs: { name: string; sha256: string }[];
   /** Hash of everything that decides what the files hold. */

@@ -1,4 +1,4 @@
-// What the program says: results on stdout, errors and progress on stderr.
+// Results on stdout, errors and progress on stderr.
 
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import type { Io, Stderr } from './io.js';

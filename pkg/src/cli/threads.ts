@@ -6,7 +6,7 @@ import { WorkerPool } from '../pool/pool.js';
 import { spawnWith } from '../pool/threads.js';
 import type { Task, TaskResult } from './work.js';
 
-/** What `make` makes for a number of threads, once: the next command of the process goes on with threads that have started. */
+/** The result of `make` for a number of threads, once: the next command of the process goes on with threads that have started. */
 export function oneForEach<T>(make: (jobs: number) => T): (jobs: number) => T {
   const made = new Map<number, T>();
   return (jobs) => {

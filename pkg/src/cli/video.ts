@@ -162,7 +162,7 @@ async function framesAsTheyAre(): Promise<string[]> {
   return old ? ['-vsync', 'passthrough'] : ['-fps_mode', 'passthrough'];
 }
 
-/** What ffmpeg says when it ends with an error, as the end of a sentence that begins with the file. */
+/** The message of ffmpeg when it ends with an error, as the end of a sentence that begins with the file. */
 function reasonIn(said: string): string | undefined {
   if (/matches no streams/.test(said)) return 'has no pictures: there is no video stream in it';
   const line = lastLine(said);
@@ -175,7 +175,7 @@ async function missingEnd(file: string, size: number): Promise<string | undefine
   try {
     const { buffer } = await handle.read(Buffer.alloc(8), 0, 8, 0);
     const length = buffer.toString('latin1', 0, 4) === 'RIFF' ? buffer.readUInt32LE(4) + 8 : 0;
-    // What was written to a pipe has no length, or the largest.
+    // A file that was written to a pipe states no length, or the largest.
     return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
   } finally {
     await handle.close();

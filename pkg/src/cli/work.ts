@@ -28,7 +28,7 @@ export type Task = PairTask | PointsTask;
 export interface TaskResult {
   /** False where the result was there already. */
   done: boolean;
-  /** What is printed; without times where nothing was done. */
+  /** The printed line; without times where nothing was done. */
   report: object;
   /** To be written. */
   files: OutputFile[];

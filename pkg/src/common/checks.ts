@@ -1,4 +1,4 @@
-// What callers hand in, looked at before anything is done with it: the same for direct calls, workers and encoders.
+// Checks of arguments before anything is done with them: the same for direct calls, workers and encoders.
 
 import { VeroneseError } from './errors.js';
 
@@ -34,7 +34,7 @@ export function reading<T>(read: () => T): T {
   }
 }
 
-/** What was thrown while something was read, as an error of ours. */
+/** An error that was thrown while an argument was read, as an error of ours. */
 export function unreadable(cause: unknown): VeroneseError {
   if (cause instanceof VeroneseError) return cause;
   const reason = cause instanceof Error ? cause.message : 'something was thrown';

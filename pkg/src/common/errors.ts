@@ -12,7 +12,7 @@ export class VeroneseError extends Error {
   }
 }
 
-/** What crosses from a worker: an error's class does not survive the copy. */
+/** An error on its way from a worker: its class does not survive the copy. */
 export interface ErrorMessage {
   code: ErrorCode;
   message: string;

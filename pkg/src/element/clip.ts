@@ -9,7 +9,7 @@ import { type Place, pixelsOf } from './sources.js';
 import { Video } from './video.js';
 import { part } from './view.js';
 
-/** What a clip reads its frames from. */
+/** The source of a clip's frames. */
 interface Source {
   /** For `segmentClip`. */
   frames: ClipSource;
@@ -30,7 +30,7 @@ export interface ShownFrame {
   labels: Uint8Array;
 }
 
-/** What the element does when a clip can show a frame, or cannot. */
+/** Called when a clip can show a frame, or cannot. */
 interface Listeners {
   show: (frame: ShownFrame) => void;
   fail: (thrown: unknown) => void;
@@ -44,7 +44,7 @@ export class ElementClip {
   readonly #listeners: Listeners;
   #source: Source | undefined;
   #clip: Clip | undefined;
-  /** What is known of a clip whose frames are all done and can be read again. */
+  /** The state of a clip whose frames are all done and can be read again. */
   #state: Uint8Array | undefined;
   #current = 0;
   /** Until the frame that is wanted is shown. */

@@ -1,4 +1,4 @@
-// What is written in the element's attributes, as options. It goes to the core as it is, which says what is wrong with it.
+// The element's attributes as options. They go to the core as they are, which refuses what is wrong.
 
 import type { SegmentOptions } from '../../types/index.js';
 

@@ -1,4 +1,4 @@
-// What a frame can be given as, and its pixels.
+// Sources of a frame, and its pixels.
 
 import type { FrameSource } from '../../types/element-class.js';
 import type { Pixels } from '../../types/index.js';

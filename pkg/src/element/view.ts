@@ -1,4 +1,4 @@
-// What the element shows: a frame, its masks, and the objects as a list box that lies over them.
+// The view of the element: a frame, its masks, and the objects as a list box that lies over them.
 
 import type { Pixels } from '../../types/index.js';
 import { UNLABELLED } from '../common/checks.js';
@@ -21,7 +21,7 @@ const STYLE = `
   .progress { position: absolute; inset: auto 0 0; inline-size: 100%; block-size: 0.375rem; }
 `;
 
-/** What a person does. */
+/** Actions of a person. */
 interface Listeners {
   select: (object: number | null) => void;
   /** Frames forward, negative for back. */

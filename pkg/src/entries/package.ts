@@ -1,4 +1,4 @@
-// What an entry exports, made for the place where it runs.
+// The exports of an entry, made for the place where it runs.
 
 // First in the file as well, where gzip packs it best: measured, 1 % of the whole.
 import { glue } from '../module/glue.js';
@@ -16,7 +16,7 @@ export { version } from '../calls/version.js';
 export { VeroneseError } from '../common/errors.js';
 export { davisPalette } from '../common/palette.js';
 
-/** What differs between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
+/** The differences between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
 interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
   read?: Read;
   /** Where the core module lies if the caller does not say. */

@@ -61,7 +61,7 @@ class Images implements Gathering<string> {
   }
 }
 
-/** What stands before the annotations. `more` are further elements of the task. */
+/** The document before the annotations. `more` are further elements of the task. */
 export function cvatHead(mode: 'annotation' | 'interpolation', size: number, names: Iterable<string>, more: readonly string[] = []): string[] {
   return [
     '<?xml version="1.0" encoding="utf-8"?>',

@@ -5,7 +5,7 @@ import { invalidInput, isFrameRate, isObject, isRising, reading, UNLABELLED, unr
 import { VeroneseError } from '../common/errors.js';
 import { checkedMeta, checkLabels, imageOf, isFinite, isText, type Mask, masksOf } from './input.js';
 
-/** What is known of a clip, checked. */
+/** Metadata of a clip, checked. */
 export interface Clip extends FormatMeta {
   name: string;
   tracked: boolean;
@@ -35,7 +35,7 @@ export interface Extent {
   length: number;
 }
 
-/** What a document is made of, frame by frame. */
+/** The content of a document, frame by frame. */
 export interface Gathering<Document> {
   add(frame: Frame): void;
   finish(extent: Extent): Document;

@@ -115,7 +115,7 @@ function rowsOf({ data, width, height, depth }: Png): Uint8Array {
   return unfiltered(rows, row, height, Math.ceil(depth / 8));
 }
 
-/** What a zlib stream in pieces holds. Throws `unreadable-image` where that is more than `most` bytes, or damaged. */
+/** The content of a zlib stream in pieces. Throws `unreadable-image` where that is more than `most` bytes, or damaged. */
 export function inflated(data: readonly Uint8Array[], most: number): Uint8Array {
   const whole = new Uint8Array(most);
   let filled = 0;

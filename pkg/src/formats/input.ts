@@ -1,4 +1,4 @@
-// What every encoder reads: a label image and what is known about its masks. Checked once, here.
+// The input of every encoder: a label image and the metadata of its masks. Checked once, here.
 
 import type { FormatMeta, FormatMotion } from '../../types/formats.js';
 import {
@@ -81,7 +81,7 @@ export function checkLabels(labels: Uint8Array, width: number, height: number): 
   }
 }
 
-/** What is known beside the labels, as a copy: documents share nothing with what they are made of. `more` may be there as well. */
+/** The metadata of labels, as a copy: documents share nothing with what they are made of. `more` may be there as well. */
 export function checkedMeta(meta: unknown, more: readonly string[] = []): FormatMeta {
   return reading(() => {
     if (meta === undefined) return {};

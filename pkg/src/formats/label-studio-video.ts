@@ -4,7 +4,7 @@ import type { ClipMeta, Encoded, LabelFrames, LabelStudioVideoTask } from '../..
 import { gathered, type Gathering } from './frames.js';
 import { checkedOptions, type Mask } from './input.js';
 
-/** What the labelling configuration calls its parts, and who made the prediction. */
+/** Names of the labelling configuration, and who made the prediction. */
 const NAMES = { fromName: 'box', toName: 'video', modelVersion: 'veronese' };
 
 type Sequence = LabelStudioVideoTask['predictions'][number]['result'][number]['value']['sequence'];

@@ -5,7 +5,7 @@ import type { FormatMeta, FormatOptions, LabelStudioResult, LabelStudioTask } fr
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { Outlines, points, type Ring } from './outline.js';
 
-/** What the labelling configuration calls its parts, and who made the prediction. */
+/** Names of the labelling configuration, and who made the prediction. */
 const NAMES = { fromName: 'tag', toName: 'image', modelVersion: 'veronese' };
 
 export function encodeLabelStudio(

@@ -22,7 +22,7 @@ export function encodeMotChallenge<Frames extends LabelFrames>(frames: Frames, m
   });
 }
 
-/** What readers ask of a sequence. They want the frame rate as a whole number. */
+/** The properties of a sequence that readers need. They want the frame rate as a whole number. */
 export function seqinfo({ name, rate }: Clip, { width, height, length }: Extent, images: readonly string[]): string {
   const [extension = '.jpg'] = /\.[^./\\]+$/.exec(images[0] ?? '') ?? [];
   const entries = {

@@ -5,7 +5,7 @@ import { VeroneseError } from '../common/errors.js';
 /** Longest part of a path, less an extension of four characters, and longest path; bytes that every file system takes. */
 const LONGEST = { part: 251, path: 4000 };
 
-/** What no name may have: the pattern, and the sentence's end. */
+/** Patterns that no name may have, each with the sentence's end. */
 const WRONG: readonly [RegExp, string][] = [
   [/\p{Cc}/u, 'has control characters'],
   [/\\/, 'has a backslash; folders are divided by /'],

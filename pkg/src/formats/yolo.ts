@@ -38,7 +38,7 @@ function numberOf(name: string, classes: readonly string[]): number {
   return number;
 }
 
-/** What half pixels up to a side are of it, as text: once each and not for every vertex. */
+/** Half pixels up to a side as shares of it, as text: once each and not for every vertex. */
 function shares(side: number): string[] {
   return Array.from({ length: 2 * side + 1 }, (_, halves) => String(Number((halves / 2 / side).toFixed(DECIMALS))));
 }

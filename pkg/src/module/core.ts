@@ -4,7 +4,7 @@ import type { WasmSource } from '../../types/index.js';
 import { isFailure, VeroneseError, veroneseError } from '../common/errors.js';
 import { compile, loadFailed, type Read } from './loading.js';
 
-/** What the generated glue has in every build. */
+/** The part of the generated glue that every build has. */
 export interface Glue {
   /** Makes the instance, unless there is one. */
   instantiate(module: WebAssembly.Module): Promise<unknown>;
@@ -12,7 +12,7 @@ export interface Glue {
   forgetInstance(): void;
 }
 
-/** What has an instance to call. Entries that are loaded together share their glue. */
+/** A module with an instance to call. Entries that are loaded together share their glue. */
 const live = new WeakSet<Glue>();
 
 export class Core<G extends Glue> {

@@ -1,4 +1,4 @@
-// What wasm-bindgen makes of wasm/src/frames.rs, as far as it is used here; scripts/glue.mjs puts the JavaScript beside the other
+// The JavaScript of wasm-bindgen for wasm/src/frames.rs, as far as it is used here; scripts/glue.mjs puts the JavaScript beside the other
 // compiled sources.
 
 import type { Glue } from './core.js';

@@ -65,7 +65,7 @@ export type Module = () => Promise<WebAssembly.Module>;
 /** A place for one worker, which is started when there is work for it and replaced when it was ended. */
 interface Lane<Task, Result> {
   thread: Thread<Task> | undefined;
-  /** What its worker has been given. */
+  /** The requests that its worker has been given. */
   modules: Set<Module>;
   job: Job<Task, Result> | undefined;
   /** Whether its worker knows of the job. */
@@ -286,7 +286,7 @@ export class WorkerPool<Task, Result> {
 
   #receive(lane: Lane<Task, Result>, reply: Reply<Result>): void {
     const { job } = lane;
-    // What has given way may have ended by itself just before.
+    // A task that gave way may have ended by itself just before.
     if (!job || (reply.kind === 'rested' && !job.givesWay)) return;
     if (reply.kind === 'progress') {
       if (job.settled) return;

@@ -30,7 +30,7 @@ import { spawnWith } from './threads.js';
 /** Most workers of one pool: more is a mistake, not a wish. */
 export const MOST_JOBS = 256;
 
-/** What the classes need of the place where they run. */
+/** Needs of the classes that differ by the place where they run. */
 export interface Host {
   newCore: () => Core<Glue>;
   /** For measurements. */
@@ -108,7 +108,7 @@ export function segmenters(host: Host) {
           const segmentation = await this.segmentPair(first, second, { ...rest, ...call });
           return { index, input, segmentation };
         } catch (thrown) {
-          // What is not of the package was thrown by the listener.
+          // An error that is not of the package was thrown by the listener.
           const error = thrown instanceof VeroneseError ? thrown : new VeroneseError('cancelled', 'the listener threw', { cause: thrown });
           return { index, input, error };
         }

@@ -9,14 +9,14 @@ interface Thread extends WorkerLike {
   postMessage(message: unknown, transfer?: ArrayBuffer[]): void;
 }
 
-/** What a thread of Node has that a Web Worker has not. */
+/** The members of a thread of Node that a Web Worker lacks. */
 interface NodeThread extends Thread {
   on(event: string, listener: (value: never) => void): unknown;
   ref(): void;
   unref(): void;
 }
 
-/** What a Web Worker has that a thread of Node has not. */
+/** The members of a Web Worker that a thread of Node lacks. */
 interface WebThread extends Thread {
   addEventListener(type: string, listener: (event: never) => void): void;
 }

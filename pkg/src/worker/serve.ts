@@ -46,7 +46,7 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
   };
 }
 
-/** What is handed over instead of copied. */
+/** Buffers that are handed over instead of copied. */
 function buffersOfResult(result: Result): ArrayBuffer[] {
   if (result instanceof Uint8Array) return buffersOf([result]);
   const { labels, confidence, frames = [] }: Partial<Pick<Segmentation, 'labels' | 'confidence'> & ClipEnd> = Object(result);

@@ -1,4 +1,4 @@
-// What `veronese convert` writes of clips, read by the decoders of the tools it is meant for, and compared with the labels.
+// The files of `veronese convert` for clips, read by the decoders of the tools it is meant for, and compared with the labels.
 
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -12,7 +12,7 @@ import { decoded, skip } from '../support/python.mjs';
 
 const FORMATS =
   'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,cvat-points,cvat-mots,mots,mot,label-studio,label-studio-polygon,label-studio-video,labelme,yolo,davis,supervisely,masks';
-/** What is compared: some formats are written in two ways or read by two tools. */
+/** Names of comparisons: some formats are written in two ways or read by two tools. */
 const READ = FORMATS.split(',').flatMap((name) => ({ 'cvat-video': ['cvat-video, polygons', 'cvat-video, boxes'], mot: ['mot', 'mot, read by datumaro'] })[name] ?? name);
 
 /** Discs and boxes that wander, leave and come back, with holes, noise and pixels without a label; and the names of some. */

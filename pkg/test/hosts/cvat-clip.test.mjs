@@ -238,7 +238,7 @@ describe('a clip in CVAT', { skip, timeout: 300_000 }, () => {
     assert.deepEqual(await outcome(), straight);
     assert.deepEqual(masksOf(labelsIn(`${out}-interrupted/clip/labels`)), masksOf(labelsIn(`${out}-straight/clip/labels`)));
 
-    // What a person does before the other run is not undone by it.
+    // A person's changes before the other run are not undone by it.
     const args = await begin('person');
     await brokenOff(args, 1, true);
     const mine = groupOf(await tracks(), RIGHT);

@@ -43,7 +43,7 @@ const TYPES = {
   solid: { packages: ['solid-js'], jsxImportSource: 'solid-js', jsx: 'preserve' },
 };
 
-/** What is written in each; in Preact the same as in React, but for three names. */
+/** The sample of each; in Preact the same as in React, but for three names. */
 function sampleOf(name) {
   const read = (file) => readFileSync(join(here, 'markup', file), 'utf8');
   if (name !== 'preact') return read(`${name}.tsx`);
@@ -102,7 +102,7 @@ describe('JSX', () => {
   }
 });
 
-/** What each example imports, its configuration included. */
+/** Imports of each example, its configuration included. */
 const EXAMPLES = {
   vue: ['vue', 'vite', '@vitejs/plugin-vue'],
   svelte: ['svelte', 'vite', '@sveltejs/vite-plugin-svelte'],

@@ -1,4 +1,4 @@
-// What the Label Studio backend reads in labelling configurations.
+// Labelling configurations, as the Label Studio backend reads them.
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -28,7 +28,7 @@ after(async () => {
   remove?.();
 });
 
-/** What the README says; everything else is forbidden, but for the page's icon. */
+/** The policy of the README; everything else is forbidden, but for the page's icon. */
 const policyFor = (origin) => `default-src 'none'; img-src data:; ${documented(origin)}`;
 
 /** Serves the package from an origin of its own, and a page with the script; returns the page's address. */

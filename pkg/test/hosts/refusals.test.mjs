@@ -1,4 +1,4 @@
-// What the servers of examples/hosts do not do for whoever can reach them.
+// Requests that the servers of examples/hosts refuse.
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';

@@ -52,7 +52,7 @@ test('a result that was edited, damaged or lost its image is done again', async 
     assert.deepEqual([place.json, place.png].map((path) => readFileSync(path)), [json, image], title);
   }
 
-  // What lies in the frames is a result without an image, and is looked at in the same way.
+  // An error of the frames is a result without an image, and is looked at in the same way.
   const bad = Buffer.from('no image');
   const failing = { ...task, job: jobOf([sha256(bad), sha256(two)], options), first: folder.file('bad.png', bad) };
   assert.equal(await perform(pool, failing), true);

@@ -27,7 +27,7 @@ async function served(t, content, { type = 'video/x-matroska', ...options } = {}
   return { film: `${origin}/film`, predict: `${await backend(t, { allow: [origin], ...options })}/predict` };
 }
 
-/** What the temporary folders of videos are. */
+/** The temporary folders of videos. */
 const folders = () => readdirSync(tmpdir()).filter((name) => name.startsWith('veronese-video-'));
 
 /** The box of each object in each frame, in pixels, as `segmentClip` itself finds the objects. */

@@ -1,4 +1,4 @@
-// What every host of the package has to find: the same bits as a direct call in Node.
+// The outcome that every host of the package must have: the same bits as a direct call in Node.
 
 import assert from 'node:assert/strict';
 import { fitMotions, segmentPair } from 'veronese';

@@ -26,7 +26,7 @@ export function drawnClip() {
   });
 }
 
-/** What tracks.json says of the labels. */
+/** The content of tracks.json for the labels. */
 export function tracksOf(frames, { width = WIDTH, height = HEIGHT, names = {}, ...more } = {}) {
   const objects = new Map();
   frames.forEach((labels, frame) => {

@@ -35,7 +35,7 @@ from trackeval.datasets.mots_challenge import MOTSChallenge  # noqa: E402
 
 
 class Clip:
-    """What was converted, and what should be found."""
+    """The converted clip, and what should be found."""
 
     def __init__(self, case, folder):
         self.folder = folder / case["out"]

@@ -26,7 +26,7 @@ export function tree(folder) {
   return files;
 }
 
-/** What was printed, line by line. */
+/** Printed lines of JSON. */
 export const lines = (text) => text.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line));
 
 export const tracksOf = (out) => JSON.parse(readFileSync(join(out, 'tracks.json'), 'utf8'));

@@ -1,4 +1,4 @@
-// What the public entries are handed where something else belongs: for hostile.test.mjs.
+// Values for the arguments of the public entries that do not belong there: for hostile.test.mjs.
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
@@ -29,7 +29,7 @@ const throwing = new Proxy({}, {
   ownKeys: () => { throw new RangeError('mine'); },
 });
 
-/** What is handed in where something else belongs. */
+/** The values by name. */
 export const VALUES = {
   undefined: undefined,
   null: null,
@@ -138,7 +138,7 @@ export const CALLS = {
   'fitMotions: an option that does not exist': ['fitMotions', (v) => [measurements, { nonsense: v }], ['undefined']],
 };
 
-/** What becomes of a call: its result, or the error's code and sentence. */
+/** The outcome of a call: its result, or the error's code and sentence. */
 export async function outcome(call) {
   let result;
   try {
@@ -163,7 +163,7 @@ export async function all(outcomes) {
   return list;
 }
 
-/** What cannot even be awaited or iterated is an error of the source, which is passed on as it is. */
+/** A value that cannot even be awaited or iterated is an error of the source, which is passed on as it is. */
 const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
 const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
 

@@ -12,7 +12,7 @@ import { main } from '../../dist/cli.js';
 export const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
 /**
- * What the program does for these arguments, without a process. `onLine(line)` hears each line of its output. Resolves to exit code, output
+ * Runs the program with these arguments, without a process. `onLine(line)` hears each line of its output. Resolves to exit code, output
  * and seconds.
  */
 export async function veronese(args, { stdin = '', onLine } = {}) {
@@ -82,7 +82,7 @@ export function temporaryFolder(t) {
   };
 }
 
-/** What is in an output folder, beside the list of files that the program wrote. */
+/** The names in an output folder, without the list of files that the program wrote. */
 export function entries(folder) {
   return readdirSync(folder).filter((name) => name !== '.veronese').sort();
 }

@@ -1,4 +1,4 @@
-// What the contract says of results, field by field.
+// The contract of results, field by field.
 
 import assert from 'node:assert/strict';
 

@@ -1,4 +1,4 @@
-// What a user writes; compiled under strict settings, never run.
+// Code of a user; compiled under strict settings, never run.
 
 import {
   type ClipAccepted,

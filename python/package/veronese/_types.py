@@ -1,4 +1,4 @@
-"""What the calls take and return besides arrays: plain classes without methods."""
+"""Arguments and results of the calls besides arrays: plain classes without methods."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Propagation = Literal["both", "forward", "backward", "none"]
 
 
 class VeroneseError(Exception):
-    """What cannot be processed, and why. ``code`` is stable, the same as on the command line; the message may change."""
+    """An input that cannot be processed, and why. ``code`` is stable, the same as on the command line; the message may change."""
 
     code: str
 
@@ -228,7 +228,7 @@ class BackgroundMotion:
 
 @dataclass(frozen=True, eq=False)
 class ClipTracks:
-    """What :meth:`Clip.tracks` returns."""
+    """The result of :meth:`Clip.tracks`."""
 
     objects: List[ClipTrack]
     """By number, which is the order of appearance."""
@@ -250,7 +250,7 @@ class Mask:
 
 @dataclass(frozen=True, eq=False)
 class Correction:
-    """What is certain in one frame of a clip, painted.
+    """Labels of one frame of a clip that are certain.
 
     255 says nothing. Without ``object`` the labels are a map: it is about the objects that it names (a number that no object has makes a new
     one), and 0 is where none of these is. A map that names none says of all objects where they are not, as an eraser does. A correction

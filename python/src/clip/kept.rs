@@ -1,4 +1,4 @@
-//! What there is of a clip, kept in a thread of its own.
+//! A clip, kept in a thread of its own.
 
 use veronese::clip::{
     Annotations, Changed, ClipFrame, ClipJob, ClipOptions, ClipSegmenter, SegmentedClip, StreamSegmenter,
@@ -15,7 +15,7 @@ pub(crate) enum Kept {
     Pairs(ClipSegmenter),
     Segmented {
         clip: SegmentedClip,
-        /// What takes effect, and the clip before.
+        /// The job of annotations, and the clip before.
         job: Option<(ClipJob, SegmentedClip)>,
         /// Whether it came as bytes.
         restored: bool,

@@ -1,4 +1,4 @@
-//! What a person says of a clip, read from the classes of the package: masks, corrections, prompts, and frames that are right.
+//! Annotations of a clip, read from the classes of the package: masks, corrections, prompts, and frames that are right.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::frames::image;
 use crate::options::{invalid, whole};
 use crate::results::class;
 
-/// What is given for the options of that name.
+/// The values of the options of that name.
 #[derive(Default)]
 pub(crate) struct Given<'a, 'py> {
     pub(crate) masks: Option<&'a Bound<'py, PyAny>>,
@@ -22,7 +22,7 @@ pub(crate) struct Given<'a, 'py> {
     pub(crate) accepted: Option<&'a Bound<'py, PyAny>>,
 }
 
-/// What is said at one time.
+/// Annotations that are given together.
 #[derive(Default)]
 pub(crate) struct Said {
     pub(crate) annotations: Annotations,
@@ -190,7 +190,7 @@ impl Reader {
         Ok(labels)
     }
 
-    /// What does not say where it spreads does so as the label map of its frame.
+    /// Without a direction of its own it spreads as the label map of its frame.
     fn said(self, rest: Annotations) -> Said {
         let maps = self.masks.iter().chain(&self.corrections).filter(|(painted, _)| painted.object.is_none());
         let ways: BTreeMap<usize, Spread> = maps.filter_map(|(map, spread)| Some((map.frame, (*spread)?))).collect();

@@ -10,7 +10,7 @@ use crate::results::{class, matrix, sighting};
 
 #[derive(Default)]
 pub(crate) struct Tracks {
-    /// What there is in each frame that was returned.
+    /// The objects of each frame that was returned.
     frames: BTreeMap<usize, (Vec<ClipObject>, Option<AffineMotion>)>,
     /// Frames that were returned, and have changed since.
     stale: BTreeSet<usize>,

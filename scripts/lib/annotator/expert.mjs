@@ -80,7 +80,7 @@ function painting(page, fault, id, width, { frame, tool, radius, objects }) {
 }
 
 /**
- * What he corrects next: the largest region that a frame misses or has wrongly, and that the thinnest brush fits into. As frames near a
+ * The fault to correct next: the largest region that a frame misses or has wrongly, and that the thinnest brush fits into. As frames near a
  * corrected one follow it, the size of a region counts as often as its frame is away from those.
  */
 function faultIn(labels, id, truths, width, corrected) {

@@ -57,7 +57,7 @@ export async function annotatedPage(page, address, settings) {
         return (await waiting).path();
       });
     },
-    /** What the page shows beside the picture: the frame, the tool, its radius, the selected object and all objects. */
+    /** The state on screen beside the picture: the frame, the tool, its radius, the selected object and all objects. */
     state: () => page.evaluate(stateOnScreen),
     /** The number of each pixel's mask in every frame, by its colour. The frame on screen stays. */
     look: async () => {

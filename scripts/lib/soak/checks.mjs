@@ -1,4 +1,4 @@
-// What the parts of the long soak check after each batch: the same answer to the same question, and no more memory than in the beginning.
+// Checks of the long soak after each batch: the same answer to the same question, and no more memory than in the beginning.
 
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';

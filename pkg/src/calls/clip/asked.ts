@@ -1,4 +1,4 @@
-// What is asked of a clip: its frames and options, checked.
+// The frames and options of a clip, checked.
 
 import type { ClipOptions, ClipProgress } from '../../../types/index.js';
 import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole } from '../../common/checks.js';

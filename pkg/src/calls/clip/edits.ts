@@ -17,7 +17,7 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   if (!isObject(value)) throw wrong('must be an object');
   const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names', 'locked', ...more]);
   if (unknown !== undefined) throw wrong(`there is no edit ${unknown}`);
-  // What an object inherits, such as the methods of a map, was not given.
+  // Inherited members, such as the methods of a map, were not given.
   const given: Record<string, unknown> = { ...value };
   const { merge = [], names = {}, locked } = given;
   const isMerged = (list: unknown): list is number[] => isListOf(list, isObjectNumber) && list.length >= 2;

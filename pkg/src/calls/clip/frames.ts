@@ -14,7 +14,7 @@ export interface TakeOptions {
 }
 
 export class Frames {
-  /** What the source threw, or what is wrong with a frame. */
+  /** The error of the source, or of a frame. */
   failure: { thrown: unknown } | undefined;
   /** Width and height of all frames, once known. */
   size: Pick<Pixels, 'width' | 'height'> | undefined;

@@ -68,7 +68,7 @@ export class PlacedClip {
     return result as T;
   }
 
-  /** What the caller's code gives, unless the signal is aborted first. */
+  /** The result of the caller's code, unless the signal is aborted first. */
   async wait<T>(promised: T | Promise<T>): Promise<T | undefined> {
     // Nobody else hears what it throws if the signal comes first.
     Promise.resolve(promised).catch(() => undefined);

@@ -1,4 +1,4 @@
-// What a person says of frames, checked.
+// Annotations of frames, checked.
 
 import type { ClipPropagation } from '../../../types/index.js';
 import { checkAttached, invalidOption, isArrayOf, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
@@ -7,13 +7,13 @@ import type { Annotations, Painted, Pointed } from '../messages.js';
 import { taken } from '../taking.js';
 import { isObjectNumber, RANGE } from './edits.js';
 
-/** What is painted in a frame. */
+/** Labels painted in a frame. */
 export interface Said extends Painted {
   /** Of masks that say how wide they are. */
   width?: number | undefined;
 }
 
-/** What points to an object in a frame. */
+/** Clicks and a box that point to an object in a frame. */
 export interface Prompt extends Pointed {
   /** The option that it came with. */
   option: 'corrections' | 'prompts';
@@ -71,7 +71,7 @@ export function promptOf(entry: Record<string, unknown>, wrong: Wrong): Pointed 
   return { frame: frame as number, object, clicks: clicks.flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]), box: [...(box ?? [])], propagate: propagate as ClipPropagation | undefined };
 }
 
-/** What a label and a box or a click say. */
+/** The prompt of a label with a box or a click. */
 function inFull({ label, box, click, ...rest }: Record<string, unknown>, wrong: Wrong): Record<string, unknown> {
   if (!isObjectNumber(label)) throw wrong(`must have a label, ${RANGE}`);
   if (box !== undefined && click !== undefined) throw wrong('must have a box or a click, not both');

@@ -137,7 +137,7 @@ export class SharedPairs {
         await this.#solveBlock(this.#clip.beside(signal, await this.#workers.claim(signal, true)), async () => !this.#ended);
       }
     } catch {
-      // What it was to solve waits for another worker.
+      // Its pairs wait for another worker.
     }
   }
 

@@ -3,16 +3,16 @@
 import type { ClipChange, ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
 import type { PlacedClip } from './place.js';
 
-/** What a clip has told besides its frames, and where it is kept until it ends. */
+/** The results of a clip besides its frames, and where they are kept until it ends. */
 export interface Told {
   tracks: Tracks;
   state?: Uint8Array;
-  /** What was said has changed. */
+  /** Annotations have changed. */
   changes?: ClipChange[];
   clip?: PlacedClip;
 }
 
-/** What there is in a frame. */
+/** The objects of a frame. */
 export type FoundFrame = Omit<ClipFrame, 'labels'>;
 
 export class Tracks {

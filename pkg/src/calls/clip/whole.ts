@@ -13,7 +13,7 @@ import { isWithin, type Prompt, type Said } from './said.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
-/** What is asked, with masks that are checked as well. */
+/** The options, with masks that are checked as well. */
 type Task = Omit<Asked, 'masks'> & { masks: readonly Said[] };
 
 /** If the source fails, the frames before come first. */

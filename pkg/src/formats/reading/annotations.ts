@@ -86,7 +86,7 @@ function contextOf(all: readonly Source[], names: readonly string[] | undefined)
   };
 }
 
-/** What the file is, unless it is none of the formats. Throws `invalid-input` where it begins like one and is damaged. */
+/** The format of the file, unless it is none of those known. Throws `invalid-input` where it begins like one and is damaged. */
 function recognised(source: Source): Recognised[] {
   const { name, bytes } = source;
   const start = bytes.find((byte) => !BEFORE.includes(byte));

@@ -1,4 +1,4 @@
-// What shapes are drawn on: the labels of one frame. A pixel is in a polygon if its centre is, by the even-odd rule; of shapes that overlap
+// The labels of one frame, on which shapes are drawn. A pixel is in a polygon if its centre is, by the even-odd rule; of shapes that overlap
 // the later one is on top. Files may come from anywhere, so the work is bounded: it is counted in borders crossed and pixels filled.
 
 import { invalidInput } from '../../common/checks.js';

@@ -1,4 +1,4 @@
-// What the readers of all formats give: frames, each with what draws its labels, and the objects that they know.
+// The result of the readers of all formats: frames, each with what draws its labels, and the objects that they know.
 
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
@@ -14,7 +14,7 @@ export interface Known {
 }
 
 export interface ReadFrame {
-  /** What it is called, without folder and extension. */
+  /** Its name, without folder and extension. */
   name: string;
   /** The file that says something of it. */
   file: string;
@@ -35,9 +35,9 @@ export interface Source {
   bytes: Uint8Array;
 }
 
-/** What a reader may need to know beside the file. */
+/** Information that a reader may need beside the file. */
 export interface Context {
-  /** What the frame of this index is called, where the format only counts frames. */
+  /** The name of the frame of this index, where the format only counts frames. */
   nameOf: (index: number) => string;
   /** The lines of the file `labels.txt` in the same folder: the names of classes by number, from 1. */
   classesOf: (source: Source) => string[];

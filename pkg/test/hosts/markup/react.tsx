@@ -1,4 +1,4 @@
-// What a user of React writes; compiled under strict settings, never run.
+// Code of a user of React; compiled under strict settings, never run.
 
 import { useRef, useState } from 'react';
 import type { ClipTrack } from 'veronese';

@@ -1,4 +1,4 @@
-// What a user of Solid writes; compiled under strict settings, never run.
+// Code of a user of Solid; compiled under strict settings, never run.
 
 import { createSignal } from 'solid-js';
 import { VeroneseSegmenterElement } from 'veronese/solid';

@@ -1,4 +1,4 @@
-// What a page does: a direct call, one in a worker, a pool; measurements. Bundled or served as it is.
+// The calls of a page: a direct call, one in a worker, a pool; measurements. Bundled or served as it is.
 
 import { fitMotions, Segmenter, segmentPair, segmentPairs } from 'veronese';
 import { first, second } from './frames.js';

@@ -1,4 +1,4 @@
-// What every host has to find: the same bits.
+// The report of every host: the same bits.
 
 export function report({ count, motions, labels }) {
   return JSON.stringify({ count, motions, labels: Array.from(labels).join('') });

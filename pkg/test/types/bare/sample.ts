@@ -1,4 +1,4 @@
-// What a program writes that knows neither the DOM nor Node: a server at the edge, a plug-in of an editor. Compiled, never run.
+// Code of a program that knows neither the DOM nor Node: a server at the edge, a plug-in of an editor. Compiled, never run.
 
 import { paintLabels, type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
 import { decodeImage } from 'veronese/codecs';

@@ -1,4 +1,4 @@
-// What every application here is given, and what it has to report: a clip that arrives as a property, and its first labels.
+// Input and report of every application here: a clip that arrives as a property, and its first labels.
 
 import { first, second } from './frames.js';
 
