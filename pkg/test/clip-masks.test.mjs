@@ -5,7 +5,7 @@ import { after, describe, test } from 'node:test';
 import { davisPalette, segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
 import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
-import { asked } from '../build/calls/clip/asked.js';
+import { checkedOptions } from '../build/calls/clip/options.js';
 import { frame } from './support/frames.mjs';
 import { all, failure } from './support/shapes.mjs';
 import { cases } from './support/soak.mjs';
@@ -65,7 +65,7 @@ test('the square is found by itself', () => {
 
 test('what is merged into a locked object is locked with it, and what into a named one is named', () => {
   const found = (options) => {
-    const { locked, edits: { named } } = asked(list, options);
+    const { locked, edits: { named } } = checkedOptions(list, options);
     return { locked: locked && [...locked], named: named && [...named] };
   };
   const merge = [[2, 5], [6, 7]];

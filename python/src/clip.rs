@@ -3,8 +3,8 @@
 //! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where what is said needs them, and once for their
 //! labels. Each step is done in the thread that keeps the clip; frames are read between the steps.
 
+mod annotations;
 mod kept;
-mod said;
 mod source;
 mod tracks;
 
@@ -21,8 +21,8 @@ use crate::errors::Failure;
 use crate::options::{self, LookAhead};
 use crate::results;
 use crate::worker::Worker;
+use annotations::{FrameAnnotations, Given};
 use kept::{Kept, Step, Summary};
-use said::{Given, Said};
 use source::Source;
 use tracks::Tracks;
 
@@ -77,7 +77,7 @@ pub(crate) fn segment_clip(
         _ if whole => None,
         _ => Some(MAX_LOOK_AHEAD),
     };
-    let said = Said::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
+    let said = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
     let worker = Worker::<Kept>::start()?;
     worker
         .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
@@ -97,7 +97,7 @@ pub(crate) fn segment_clip(
 
 /// The options of a whole clip.
 struct Asked {
-    said: Said,
+    said: FrameAnnotations,
     state: Option<Vec<u8>>,
 }
 
@@ -194,7 +194,7 @@ impl Clip {
     /// Makes objects one, which keeps the number of the first. Returns the indices of the frames that change.
     #[pyo3(signature = (*objects))]
     fn merge(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        let objects = said::objects("objects", objects)?;
+        let objects = annotations::objects("objects", objects)?;
         let [kept, others @ ..] = &objects[..] else {
             return Err(Failure::option("objects", "there is nothing to merge").into());
         };
@@ -204,7 +204,7 @@ impl Clip {
     /// Makes objects background. Returns the indices of the frames that change.
     #[pyo3(signature = (*objects))]
     fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        let objects = said::objects("objects", objects)?;
+        let objects = annotations::objects("objects", objects)?;
         self.renumber(py, &objects, 0)
     }
 
@@ -433,7 +433,7 @@ impl Clip {
 
     fn say(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
         self.prepare(py)?;
-        let said = Said::of(given, self.length())?;
+        let said = FrameAnnotations::of(given, self.length())?;
         said.check(self.size.unwrap_or_default())?;
         self.annotate(py, said.annotations)
     }

@@ -18,7 +18,7 @@ use crate::errors::Failure;
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Messages of a thread to the one that waits.
-enum Said<R> {
+enum Message<R> {
     Stage(Stage),
     Done(Result<R, Failure>),
 }
@@ -35,13 +35,13 @@ pub(crate) fn alone<R: Send + 'static>(
     let (tell, said) = channel();
     spawn(move || {
         let mut listener = |stage| {
-            if tell.send(Said::Stage(stage)).is_err() {
+            if tell.send(Message::Stage(stage)).is_err() {
                 resume_unwind(Box::new(Abandoned));
             }
         };
         if let Some(done) = caught(|| work(&mut listener)) {
             // Nobody may wait any more.
-            let _ = tell.send(Said::Done(done));
+            let _ = tell.send(Message::Done(done));
         }
     })?;
     answer(py, said, |Stage { name, index, of, .. }| match progress {
@@ -87,7 +87,7 @@ impl<T: Default + 'static> Worker<T> {
         let job = move |kept: &mut T| {
             let done = caught(|| work(kept));
             let goes_on = !matches!(done, None | Some(Err(Failure { code: "internal", .. })));
-            let _ = done.is_none_or(|done| tell.send(Said::Done(done)).is_ok());
+            let _ = done.is_none_or(|done| tell.send(Message::Done(done)).is_ok());
             goes_on
         };
         self.jobs.send(Box::new(job)).map_err(|_| lost())?;
@@ -138,15 +138,15 @@ fn sentence(thrown: &(dyn Any + Send)) -> String {
 /// Waits for the result, without the interpreter.
 fn answer<R: Send>(
     py: Python<'_>,
-    mut said: Receiver<Said<R>>,
+    mut said: Receiver<Message<R>>,
     mut on_stage: impl FnMut(Stage) -> PyResult<()>,
 ) -> PyResult<R> {
     loop {
         let (heard, waiting) = py.detach(move || (said.recv_timeout(PATIENCE), said));
         said = waiting;
         match heard {
-            Ok(Said::Stage(stage)) => on_stage(stage)?,
-            Ok(Said::Done(done)) => return Ok(done?),
+            Ok(Message::Stage(stage)) => on_stage(stage)?,
+            Ok(Message::Done(done)) => return Ok(done?),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Err(lost().into()),
         }

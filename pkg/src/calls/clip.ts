@@ -3,7 +3,7 @@
 import type { Clip, ClipFrame, ClipOptions, ClipSource } from '../../types/index.js';
 import { reading } from '../common/checks.js';
 import { cancelled } from '../common/errors.js';
-import { asked } from './clip/asked.js';
+import { checkedOptions } from './clip/options.js';
 import { Frames } from './clip/frames.js';
 import { type Place, PlacedClip } from './clip/place.js';
 import { streamed } from './clip/stream.js';
@@ -28,7 +28,7 @@ async function* segmented(
   reserve: (signal?: AbortSignal) => Promise<Place>,
   told: Told,
 ): AsyncGenerator<ClipFrame, void, undefined> {
-  const task = reading(() => asked(frames, options));
+  const task = reading(() => checkedOptions(frames, options));
   const { signal } = task;
   if (signal?.aborted) throw cancelled(signal);
   const place = await reserve(signal);

@@ -4,7 +4,7 @@ import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
-import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/said.js';
+import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
 import { isListOf, isObject, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';

@@ -6,10 +6,10 @@ import { davisPalette } from '../../common/palette.js';
 import type { decodeIndices as Decode } from '../../formats/indexed-png.js';
 import { decompressed } from '../../formats/reading/coco-rle.js';
 import { isObjectNumber, RANGE } from './edits.js';
-import { bytesOf, checkedList, type Said, type Wrong } from './said.js';
+import { bytesOf, checkedList, type LabelledFrame, type Wrong } from './annotations.js';
 
 /** Masks of single objects in one frame become one. */
-export async function checkedMasks(masks: unknown, length: number): Promise<Said[]> {
+export async function checkedMasks(masks: unknown, length: number): Promise<LabelledFrame[]> {
   const isPng = ({ png }: Record<string, unknown>) => png !== undefined;
   // It needs an inflater, which not everybody has.
   const reader = isListOf(masks, isObject) && masks.some(isPng) ? await import('../../formats/indexed-png.js') : undefined;
@@ -22,7 +22,7 @@ export async function checkedMasks(masks: unknown, length: number): Promise<Said
   });
 }
 
-function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): Omit<Said, 'frame'> {
+function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): Omit<LabelledFrame, 'frame'> {
   const bytes = bytesOf(png, 'png', wrong);
   try {
     const { indices, width } = decodeIndices(bytes, { foreign: true });
@@ -57,7 +57,7 @@ function numberOf([r, g, b]: readonly [number, number, number]): number {
 }
 
 /** The mask of an object over those of others in the same frame. */
-function withObject({ frame, id, rle }: Record<string, unknown>, before: Said | undefined, wrong: Wrong): Omit<Said, 'frame'> {
+function withObject({ frame, id, rle }: Record<string, unknown>, before: LabelledFrame | undefined, wrong: Wrong): Omit<LabelledFrame, 'frame'> {
   if (!isObjectNumber(id)) throw wrong(`must have an id, ${RANGE}`);
   const { size, counts } = Object(rle) as Record<string, unknown>;
   const [height, width] = Array.isArray(size) && size.length === 2 ? (size as unknown[]) : [];

@@ -3,7 +3,7 @@
 import type { ClipFrame } from '../../../types/index.js';
 import { cancelled } from '../../common/errors.js';
 import type { ClipEnd } from '../messages.js';
-import type { Asked, Stream } from './asked.js';
+import type { CheckedOptions, Stream } from './options.js';
 import type { Frames } from './frames.js';
 import type { PlacedClip } from './place.js';
 import type { Tracks } from './tracks.js';
@@ -12,7 +12,7 @@ import type { Tracks } from './tracks.js';
 export async function* streamed(
   clip: PlacedClip,
   frames: Frames,
-  { source, signal, transfer, onProgress }: Asked,
+  { source, signal, transfer, onProgress }: CheckedOptions,
   tracks: Tracks,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const { each, length: of } = source as Stream;

@@ -6,18 +6,18 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Annotating, Annotations, ClipSummary } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
-import type { Asked, Whole } from './asked.js';
+import type { CheckedOptions, Whole } from './options.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
-import { isWithin, type Prompt, type Said } from './said.js';
+import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
 /** The options, with masks that are checked as well. */
-type Task = Omit<Asked, 'masks'> & { masks: readonly Said[] };
+type Task = Omit<CheckedOptions, 'masks'> & { masks: readonly LabelledFrame[] };
 
 /** If the source fails, the frames before come first. */
-export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: Asked, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
+export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: CheckedOptions, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
   const { transfer, onProgress } = asked;
   const task = { ...asked, masks: asked.masks === undefined ? [] : await masksOf(asked) };
   const { read, length: of } = task.source as Whole;
@@ -41,7 +41,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: A
   if (failed) throw failed.thrown;
 }
 
-async function masksOf({ masks, source }: Asked): Promise<Said[]> {
+async function masksOf({ masks, source }: CheckedOptions): Promise<LabelledFrame[]> {
   const { checkedMasks } = await import('./given-masks.js');
   return checkedMasks(masks, source.length as number);
 }
@@ -127,7 +127,7 @@ function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }:
   const isThere = ({ frame }: { frame: number }) => frame < length;
   const maps = [...masks, ...corrections].filter(({ object, propagate }) => object === undefined && propagate !== undefined);
   const ways = new Map(maps.map(({ frame, propagate }) => [frame, propagate]));
-  const spread = <T extends Said | Prompt>(said: readonly T[]) => said.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
+  const spread = <T extends LabelledFrame | Prompt>(said: readonly T[]) => said.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
   return {
     masks: spread(masks),
     corrections: spread(corrections),
@@ -145,7 +145,7 @@ function* upTo(length: number): Generator<number, void, undefined> {
 }
 
 function checkSizes({ masks, corrections, prompts, accepted = [] }: Task, size: { width: number; height: number }): void {
-  for (const [option, said] of Object.entries({ masks, corrections, accepted }) as [string, readonly Partial<Said>[]][]) {
+  for (const [option, said] of Object.entries({ masks, corrections, accepted }) as [string, readonly Partial<LabelledFrame>[]][]) {
     for (const { frame, labels, width = size.width } of said) {
       if (labels === undefined || (labels.length === size.width * size.height && width === size.width)) continue;
       const sentence = `that of frame ${frame} has ${labels.length} labels, a frame has ${size.width}×${size.height} pixels`;

@@ -24,7 +24,7 @@ pub(crate) struct Given<'a, 'py> {
 
 /// Annotations that are given together.
 #[derive(Default)]
-pub(crate) struct Said {
+pub(crate) struct FrameAnnotations {
     pub(crate) annotations: Annotations,
     /// Of each image of labels the option, the frame, width and height.
     images: Vec<(&'static str, usize, [usize; 2])>,
@@ -47,9 +47,9 @@ struct Reader {
     images: Vec<(&'static str, usize, [usize; 2])>,
 }
 
-impl Said {
+impl FrameAnnotations {
     /// Checks all that needs no frame.
-    pub(crate) fn of(given: &Given<'_, '_>, length: usize) -> PyResult<Said> {
+    pub(crate) fn of(given: &Given<'_, '_>, length: usize) -> PyResult<FrameAnnotations> {
         let mut reader = Reader { length, ..Reader::default() };
         if let Some(masks) = given.masks {
             reader.read("masks", &["Mask"], masks)?;
@@ -191,7 +191,7 @@ impl Reader {
     }
 
     /// Without a direction of its own it spreads as the label map of its frame.
-    fn said(self, rest: Annotations) -> Said {
+    fn said(self, rest: Annotations) -> FrameAnnotations {
         let maps = self.masks.iter().chain(&self.corrections).filter(|(painted, _)| painted.object.is_none());
         let ways: BTreeMap<usize, Spread> = maps.filter_map(|(map, spread)| Some((map.frame, (*spread)?))).collect();
         let of_frame = |frame: usize| ways.get(&frame).copied().unwrap_or_default();
@@ -203,7 +203,7 @@ impl Reader {
         let prompts =
             prompts.map(|(of, spread)| Prompt { spread: spread.unwrap_or_else(|| of_frame(of.frame)), ..of }).collect();
         let (masks, corrections) = (painted(self.masks), painted(self.corrections));
-        Said { annotations: Annotations { masks, corrections, prompts, ..rest }, images: self.images }
+        FrameAnnotations { annotations: Annotations { masks, corrections, prompts, ..rest }, images: self.images }
     }
 }
 

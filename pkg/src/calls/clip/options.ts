@@ -7,7 +7,7 @@ import type { Settings } from '../messages.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
 import { type Edits, editsOf, isObjectNumber, RANGE, withMerged } from './edits.js';
-import { checkedSaid, checkUnlocked, type SaidOfFrames } from './said.js';
+import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './annotations.js';
 
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
@@ -29,7 +29,7 @@ export interface Whole {
   length: number;
 }
 
-export interface Asked extends SaidOfFrames, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
+export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
@@ -37,13 +37,13 @@ export interface Asked extends SaidOfFrames, Pick<ClipOptions, 'signal' | 'onCha
   /** Not looked at yet, but the call's own. */
   masks: unknown;
   edits: Edits;
-  /** Undefined if nobody says. */
+  /** Undefined if not given. */
   locked: Uint8Array | undefined;
   state: Uint8Array | undefined;
   changesOnly: boolean;
 }
 
-export function asked(frames: unknown, options: unknown): Asked {
+export function checkedOptions(frames: unknown, options: unknown): CheckedOptions {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
   const { masks, corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
@@ -54,26 +54,26 @@ export function asked(frames: unknown, options: unknown): Asked {
     if (listener !== undefined && typeof listener !== 'function') throw invalidOption(name, 'a function', listener);
   }
   const known = editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`));
-  const said = checkedSaid({ corrections, prompts, accepted }, source.length ?? 0);
+  const annotations = checkedAnnotations({ corrections, prompts, accepted }, source.length ?? 0);
   const all = lockedOf(locked, known);
   // In a state, the object may be gone already.
   if (state === undefined) checkUnlocked(all, known.numbers);
   return {
     source,
     signal: call.signal,
-    onProgress: call.onProgress as Asked['onProgress'],
+    onProgress: call.onProgress as CheckedOptions['onProgress'],
     transfer,
     settings: { lookAhead: 'read' in source ? 'all' : LOOK_AHEAD_OF_STREAMS, ...settings },
     masks: structuredClone(masks),
-    ...said,
+    ...annotations,
     edits: known,
     locked: all,
     state: state === undefined ? undefined : (taken([checkedBytes('the state', state)], false)[0] as Uint8Array),
     changesOnly,
-    onChange: onChange as Asked['onChange'],
-    knownPairs: knownPairs as Asked['knownPairs'],
-    onPairs: onPairs as Asked['onPairs'],
-    onPreview: onPreview as Asked['onPreview'],
+    onChange: onChange as CheckedOptions['onChange'],
+    knownPairs: knownPairs as CheckedOptions['knownPairs'],
+    onPairs: onPairs as CheckedOptions['onPairs'],
+    onPreview: onPreview as CheckedOptions['onPreview'],
   };
 }
 

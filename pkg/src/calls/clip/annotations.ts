@@ -8,7 +8,7 @@ import { taken } from '../taking.js';
 import { isObjectNumber, RANGE } from './edits.js';
 
 /** Labels painted in a frame. */
-export interface Said extends Painted {
+export interface LabelledFrame extends Painted {
   /** Of masks that say how wide they are. */
   width?: number | undefined;
 }
@@ -24,15 +24,15 @@ export const PROPAGATIONS = ['both', 'forward', 'backward', 'none'] as const;
 /** Makes an error about an entry of a list. */
 export type Wrong = (reason: string) => VeroneseError;
 
-export interface SaidOfFrames {
-  corrections: Said[];
+export interface FrameAnnotations {
+  corrections: LabelledFrame[];
   prompts: Prompt[];
-  /** Undefined if nobody says. */
+  /** Undefined if not given. */
   accepted: Annotations['accepted'];
 }
 
-/** Checks what is said of frames, whose size is not known yet. */
-export function checkedSaid({ corrections: painting = [], prompts: pointing = [], accepted }: { [option in keyof SaidOfFrames]: unknown }, length: number): SaidOfFrames {
+/** Checks annotations of frames, whose size is not known yet. */
+export function checkedAnnotations({ corrections: painting = [], prompts: pointing = [], accepted }: { [option in keyof FrameAnnotations]: unknown }, length: number): FrameAnnotations {
   const form = '{ frame, object, clicks, box }';
   const prompts: Prompt[] = [];
   const read = (option: Prompt['option']) => (entry: Record<string, unknown>, wrong: Wrong) => {
@@ -49,7 +49,7 @@ export function checkedSaid({ corrections: painting = [], prompts: pointing = []
   return { corrections, prompts, accepted: accepted === undefined ? undefined : checkedAccepted(accepted, length) };
 }
 
-function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omit<Said, 'frame'> {
+function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omit<LabelledFrame, 'frame'> {
   const own = bytesOf(labels, 'labels', wrong);
   if (object === undefined) return { labels: own };
   if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}, or none`);
@@ -97,7 +97,7 @@ export function isWithin({ clicks, box }: Pointed, { width, height }: { width: n
   return x + columns <= width && y + rows <= height && clicks.every((place, at) => at % 3 === 2 || place < (at % 3 === 0 ? width : height));
 }
 
-function checkedAccepted(list: unknown, length: number): NonNullable<SaidOfFrames['accepted']> {
+function checkedAccepted(list: unknown, length: number): NonNullable<FrameAnnotations['accepted']> {
   const isFrame = (entry: unknown): entry is number => typeof entry === 'number';
   const isEntry = (entry: unknown): entry is number | Record<string, unknown> => isFrame(entry) || isObject(entry);
   if (!isListOf(list, isEntry)) throw invalidOption('accepted', 'a list of frames or { frame, labels }', list);
@@ -119,16 +119,16 @@ export function checkUnlocked(locked: Uint8Array | undefined, numbers: ReadonlyM
   if (object !== undefined) throw new VeroneseError('object-locked', `object ${object} is locked: unlock it to change it`);
 }
 
-/** `read` reads what an entry says, unless it is kept elsewhere; `before` is what an earlier one says of the same frame. */
+/** `read` reads the labels of an entry, unless they are kept elsewhere; `before` is an earlier entry of the same frame. */
 export function checkedList(
   option: string,
   form: string,
   list: unknown,
   length: number,
-  read: (entry: Record<string, unknown>, wrong: Wrong, before: Said | undefined) => Omit<Said, 'frame'> | undefined,
-): Said[] {
+  read: (entry: Record<string, unknown>, wrong: Wrong, before: LabelledFrame | undefined) => Omit<LabelledFrame, 'frame'> | undefined,
+): LabelledFrame[] {
   if (!isListOf(list, isObject)) throw invalidOption(option, `a list of ${form}`, list);
-  const all = new Map<string, Said>();
+  const all = new Map<string, LabelledFrame>();
   for (const [at, entry] of list.entries()) {
     const wrong = (reason: string) => new VeroneseError('invalid-option', `option '${option}': number ${at} ${reason}`);
     const { frame, object, propagate } = entry;
