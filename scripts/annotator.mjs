@@ -1,4 +1,4 @@
-// npm run annotator: scores what an annotator gets for what he says of a clip; `-- --help` lists the options, `-- fit` fits the constants,
+// npm run annotator: scores what an annotator gets for annotations of a clip; `-- --help` lists the options, `-- fit` fits the constants,
 // `-- --page` has an expert annotate clips in the page.
 // First OpenCV's baseline runs on the real clips, then the program measures them and generated clips.
 

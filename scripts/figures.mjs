@@ -1,4 +1,4 @@
-// npm run figures: measures everything that the tables of docs/*.md say and writes it there, dated. It takes about an hour on two cores, on
+// npm run figures: measures everything in the tables of docs/*.md and writes it there, dated. It takes about an hour on two cores, on
 // which nothing else should run. Real pairs and clips are measured if they lie in ../shared/data.
 //   --tables   measures nothing: writes the tables from the figures in docs/figures
 
@@ -10,7 +10,7 @@ import { root } from './lib/project.mjs';
 import { Stop, command, must } from './lib/run.mjs';
 
 const PAIRS = 'out/annotator/pairs';
-/** In this order: the pairs of the clips are solved once, and the annotator goes on with what they told. */
+/** In this order: the pairs of the clips are solved once, and the annotator goes on with their results. */
 const PROGRAMS = [
   ['bench', 'masks'],
   ['bench', 'masks', '--ablation'],

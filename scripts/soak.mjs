@@ -52,7 +52,7 @@ await command(async (args) => {
     try {
       await go(part, state, until, { ...options, setup });
     } catch (error) {
-      // The parts after it say something of their own.
+      // The parts after it are independent of it.
       console.error(`${part} FAILED: ${error instanceof Stop ? error.message : error.stack}`);
       failed += 1;
     }

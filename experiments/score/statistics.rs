@@ -7,7 +7,7 @@ const DRAWS: usize = 10_000;
 const SEED: u64 = 1;
 /// Share of the draws outside of the interval, half of it on either side.
 const OUTSIDE: f64 = 0.05;
-/// With fewer sequences than this a bootstrap says little, and there is no interval.
+/// With fewer sequences than this there is no interval: a bootstrap would mean little.
 const LEAST_SEQUENCES: usize = 5;
 
 /// A mean, and where it lies in 95 % of the draws.
@@ -53,7 +53,7 @@ pub(crate) enum Verdict {
     Unclear,
 }
 
-/// The mean change of a figure, each change with its sequence, and what it says.
+/// The mean change of a figure, each change with its sequence, and the verdict.
 pub(crate) fn verdict(changes: &[(&str, f64)]) -> Option<(Estimate, Verdict)> {
     let change = estimate(changes)?;
     let verdict = match change.interval {

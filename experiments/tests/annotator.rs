@@ -88,7 +88,7 @@ fn the_robot_adds_what_is_missing_and_takes_away_what_is_wrong_where_it_may() {
     let at = |said: &[u8], x: usize| said[12 * WIDTH + x];
     assert_eq!([3, 8, 12, 19, 25, 31].map(|x| at(&said, x)), [255, 7, 255, 255, 0, 255]);
     assert_eq!(said[0], 9, "what was said before stays");
-    // The wrong pixels are another object's: nothing is said of them.
+    // The wrong pixels are another object's, and stay unmarked.
     let mut said = vec![NOTHING_SAID; WIDTH * HEIGHT];
     view.draw(7, |p| p % WIDTH < 20, &mut said);
     assert_eq!([8, 25].map(|x| at(&said, x)), [7, 255]);

@@ -35,7 +35,7 @@ fn whole_sequences_are_drawn() {
     let values = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
     let once: Vec<(&str, f64)> = NAMES.into_iter().zip(values).collect();
     let (one, two) = (estimate(&once).unwrap(), estimate(&twice(values)).unwrap());
-    // A second pair that is like the first of its sequence says nothing new.
+    // A second pair that is like the first of its sequence adds nothing.
     let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
     let ([low, high], [low_of_two, high_of_two]) = (one.interval.unwrap(), two.interval.unwrap());
     assert!(close(one.mean, 0.45) && close(low, low_of_two) && close(high, high_of_two));

@@ -1,4 +1,4 @@
-//! The bytes of a clip that somebody has changed: they are refused, or there is a clip that gives frames and takes what a person says.
+//! The bytes of a clip that somebody has changed: they are refused, or there is a clip that gives frames and takes annotations.
 //! The sum over the bytes is not checked in this build (see src/clip/saved.rs), or no change would come further.
 #![no_main]
 

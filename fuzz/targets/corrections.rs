@@ -14,7 +14,7 @@ enum Action<'a> {
     Save,
 }
 
-/// One thing that is said.
+/// One annotation.
 #[derive(Arbitrary, Debug)]
 enum Word<'a> {
     Mask(Paint<'a>),
@@ -38,7 +38,7 @@ struct Paint<'a> {
 enum Labels<'a> {
     /// As they are; rarely as many as there are pixels.
     Raw(&'a [u8]),
-    /// Rectangles on a frame of which nothing is said.
+    /// Rectangles on a frame without labels.
     Boxes(Vec<([u8; 4], u8)>),
 }
 

@@ -41,7 +41,7 @@ fuzz_target!(|input: Input<'_>| {
     if let Ok(found) = relabel(&film.frame(0), &film.frame(1), &correction, &choices.pair(), &mut |_| {}) {
         assert_eq!(found.motions.len(), n);
         for (&label, &set) in found.labels.iter().zip(allowed) {
-            // A set of all motions says nothing either.
+            // A set of all motions is no evidence either.
             let free = set == 0 || set.count_ones() as usize == n;
             assert!(free || (label != UNLABELLED && set >> label & 1 == 1), "label {label} of the set {set:b}");
         }

@@ -21,7 +21,7 @@ function say(text) {
   try {
     writeSync(2, text);
   } catch {
-    // Nobody listens: the exit code says it.
+    // Nobody reads the error: the exit code is left.
   }
 }
 

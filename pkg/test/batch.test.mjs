@@ -347,7 +347,7 @@ describe('veronese video', () => {
     assert.equal(status, 0, String(stderr));
     const whole = readFileSync(file);
     assert.equal((await veronese(['video', file, '--quality', 'fast'])).stderr, '', 'a whole one');
-    // Within a frame, and between two: nothing of that is in what ffmpeg says.
+    // Within a frame, and between two, of which ffmpeg reports nothing.
     const end = whole.indexOf('00dc', whole.indexOf('movi')) + 4 * (8 + 64 * 48 * 3);
     for (const [cut, reason] of [[end - 1000, 'Invalid'], [end, 'it should have \\d+ bytes and has \\d+']]) {
       writeFileSync(file, whole.subarray(0, cut));

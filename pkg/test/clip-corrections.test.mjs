@@ -30,7 +30,7 @@ function clip(t, count = COUNT, picture = clipFrame) {
   return { ...folder, corrections: path('said'), said, masks: path('masks'), given };
 }
 
-/** The square in frame 3 as an object 9; nothing is said of the rest. */
+/** The square in frame 3 as an object 9; the rest is ground. */
 const LABELS = Uint8Array.from({ length: PIXELS }, (_, p) => {
   const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
   return x >= 27 && x < 63 && y >= 20 && y < 56 ? 9 : 0;
@@ -216,7 +216,7 @@ describe('veronese clip --corrections', () => {
 });
 
 describe('veronese clip --masks', () => {
-  /** A corner of the ground as an object 1; nothing is said of the rest. */
+  /** A corner of the ground as an object 1; the rest is unlabelled. */
   const CORNER = Uint8Array.from({ length: PIXELS }, (_, p) => (p % SIZE.width >= 78 && p >= 58 * SIZE.width ? 1 : 255));
 
   test('objects keep the numbers of their masks, with corrections and edits as the call has them', async (t) => {

@@ -27,7 +27,7 @@ const square = (index) => {
   });
 };
 const labelled = (index, inside, outside = 0) => Uint8Array.from(square(index), (isInside) => (isInside ? inside : outside));
-/** A corner of the ground, in which nothing moves, and around it nothing said. */
+/** A corner of the ground, in which nothing moves, unlabelled around it. */
 const corner = (label, outside = 255) =>
   Uint8Array.from({ length: PIXELS }, (_, p) => (p % SIZE.width >= 78 && p >= 58 * SIZE.width ? label : outside));
 
@@ -85,7 +85,7 @@ for (const [way, segment] of WAYS) {
         assert.deepEqual(one.objects.map(({ id }) => id), [7], `frame ${one.index}: it took over what was found`);
         assert.ok(iou(one, 7) > 0.85, `frame ${one.index}: ${iou(one, 7)}`);
       }
-      // From a state it is the same, and said again it changes nothing.
+      // From a state it is the same, and given again it changes nothing.
       const again = segment(source, { state, masks: [{ frame: 1, labels: labelled(1, 7) }] });
       assert.deepEqual(await all(again), frames);
       assert.deepEqual(await run(segment, { state: await again.state(), masks: [{ frame: 1, labels: labelled(1, 7) }] }), frames);
@@ -106,7 +106,7 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(await said({ id: 7, rle: encodeCocoRleCounts(mask, width, height) }), expected, 'run lengths');
       assert.deepEqual(await said({ png: encodeDavis(labels, width, height) }), expected, 'an indexed PNG');
       assert.deepEqual(await said({ png: await encodeGreyPng(width, height, labels) }), expected, 'a grey PNG');
-      // Where a picture is transparent, nothing is said.
+      // Where a picture is transparent, it is unlabelled.
       const open = { ...SIZE, data: Uint8ClampedArray.from([...labels].flatMap((label) => (label ? [7, 7, 7, 255] : [1, 2, 3, 0]))) };
       assert.deepEqual(await said({ labels: open }), await said({ labels: labelled(3, 7, 255) }), 'transparent');
       // Two objects of one frame.

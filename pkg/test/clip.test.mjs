@@ -39,7 +39,7 @@ function after(milliseconds) {
   return controller.signal;
 }
 
-/** A source that counts what is taken from it and says whether it was closed. */
+/** A source that counts what is taken from it and knows whether it was closed. */
 function source(list) {
   const taken = { count: 0, closed: false };
   taken.frames = (function* () {

@@ -74,7 +74,7 @@ test('a frame that was annotated elsewhere, and the clip again with it', async (
   await run('clip', folder.path('frames'), '--quality', 'fast', '--out', folder.path('out'));
   await run('convert', folder.path('out'), '--to', 'coco', '--out', folder.path('coco'));
   const document = json(folder.path('coco'), 'coco.json');
-  // Somebody draws another object in frame 2, and deletes what is said of the other frames.
+  // Somebody draws another object in frame 2, and deletes the annotations of the other frames.
   document.categories.push({ id: 99, name: 'thing' });
   const square = [60, 10, 90, 10, 90, 40, 60, 40];
   document.annotations = [{ id: 1, image_id: 3, category_id: 99, segmentation: [square], attributes: { track_id: 9 } }];

@@ -1,4 +1,4 @@
-// custom-elements.json, which the build writes from the types, says what the element has: no more and no less.
+// custom-elements.json, which the build writes from the types, has what the element has: no more and no less.
 
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
@@ -22,7 +22,7 @@ test('its members and events are in the types', () => {
 });
 
 test('its attributes are those that the element has', () => {
-  // A disabled control is told by the browser, not by the attribute.
+  // The browser reports a disabled control, not the attribute.
   assert.deepEqual(names(element.attributes), [...VeroneseSegmenterElement.observedAttributes, 'disabled'].sort());
   for (const { fieldName } of element.attributes) if (fieldName) assert.ok(names(element.members).includes(fieldName), fieldName);
 });

@@ -1,4 +1,4 @@
-// Golden hashes, in the module that is shipped: tests/golden.json says what is asked, and which bits the answers have. tests/golden.rs asks
+// Golden hashes, in the module that is shipped: tests/golden.json has the calls, and the bits of their answers. tests/golden.rs asks
 // the crate for the same natively.
 
 import assert from 'node:assert/strict';
@@ -64,7 +64,7 @@ function filled(array, { width, height }, [left, top, across, down], inside, out
   });
 }
 
-/** The bytes of an answer, and what else it has; not what the package says of the call itself. */
+/** The bytes of an answer, and the rest of it, without what the package adds about the call itself. */
 function answered({ labels, confidence, version, milliseconds, settings, ...rest }) {
   return { bytes: [labels, ...(confidence ? [confidence] : [])], rest };
 }

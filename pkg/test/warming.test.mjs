@@ -15,7 +15,7 @@ const module = new WebAssembly.Module(readFileSync(new URL('../wasm/veronese_bg.
 const WARM_UP = { call: 'warmUp' };
 const PAIR = { call: 'segmentPair', frames: pair(), settings: {} };
 
-/** A pool of one worker that only writes down what it is told, and what answers in its name. */
+/** A pool of one worker that only writes down its requests, and what answers in its name. */
 function told({ supplied = Promise.resolve(module), size = 1 } = {}) {
   const requests = [];
   const replies = [];

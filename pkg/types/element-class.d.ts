@@ -85,7 +85,7 @@ export class VeroneseSegmenterElement extends HTMLElement {
   src: string;
   /** Number of frames of a clip that are done. */
   readonly frameCount: number;
-  /** Index of the frame of a clip that is shown, or will be once it is read: `show` tells. Kept within the frames that are done. */
+  /** Index of the frame of a clip that is shown, or will be once it is read, which the event `show` reports. Kept within the frames that are done. */
   currentFrame: number;
   /** The chosen object (or mask of two frames), null for none. Set by a script, it raises no event. */
   selected: number | null;

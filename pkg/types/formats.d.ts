@@ -388,7 +388,7 @@ export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'mo
 export interface AnnotatedFrame {
   width: number;
   height: number;
-  /** Draws its labels, anew in each call: 0 is the ground, 255 where nothing is said. Throws what {@link readAnnotations} throws. */
+  /** Draws its labels, anew in each call: 0 is the ground, 255 is unlabelled. Throws what {@link readAnnotations} throws. */
   read(): Uint8Array;
 }
 

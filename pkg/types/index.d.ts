@@ -208,7 +208,7 @@ export interface ClipProgress {
   stage: 'pairs' | 'corrections' | 'labels';
 }
 
-/** Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere. */
+/** Where the annotations of a frame spread: to the frames before and after it, to one side alone, or nowhere. */
 export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
 
 /** Labels of one frame of a clip that a person is certain of. */
@@ -216,7 +216,7 @@ export interface ClipCorrection {
   /** Index of the frame, from 0. Each frame has one correction of each object at most, and one label map. */
   frame: number;
   /**
-   * The object that it is about, 1 to 254; nothing is said of others. Without it the labels are a map: it is about the objects that it names,
+   * The object that it is about, 1 to 254, and no other. Without it the labels are a map: it is about the objects that it names,
    * and what it calls background is none of these. A map that names none says of all objects where they are not, as an eraser does.
    */
   object?: number | undefined;
@@ -236,7 +236,7 @@ export type ClipClick = readonly [x: number, y: number, sign: 1 | -1];
 /**
  * Points to an object in one frame of a clip: its mask there is found at once, and the object is followed through the clip. Clicks and a box
  * together describe one object; it needs a box or a click that is its own. A prompt stays one: the next of the same object and frame
- * replaces it, and one without clicks and box takes it back. It says nothing of other objects.
+ * replaces it, and one without clicks and box takes it back. It is about no other object.
  */
 export type ClipPrompt = {
   /** Index of the frame, from 0. Each frame has one prompt of each object at most. */
@@ -281,9 +281,9 @@ export type ClipMask = {
 } & (
   | {
       /**
-       * One label per pixel, row by row: 0 for the background, 1 to 254 for an object, 255 where nothing is said. Or a picture, such as
+       * One label per pixel, row by row: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled. Or a picture, such as
        * `ImageData`: if all its pixels are grey, the grey level is the label; otherwise all colours must be of the DAVIS palette
-       * ({@link davisPalette}), and their index is the label, the lower one where there are two. Fully transparent pixels say nothing.
+       * ({@link davisPalette}), and their index is the label, the lower one where there are two. Fully transparent pixels are unlabelled.
        */
       labels: Uint8Array | Pixels;
     }
@@ -359,7 +359,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   locked?: readonly number[] | undefined;
   /**
    * The bytes that {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
-   * `motions`, `quality` and `lookAhead` are those of the state. What was said stays until it is replaced or taken back;
+   * `motions`, `quality` and `lookAhead` are those of the state. Annotations stay until they are replaced or taken back;
    * corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */
@@ -367,14 +367,14 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   /** Returns only the frames that `masks`, `corrections`, `prompts`, `accepted` and `edits` change. Default: false. */
   changesOnly?: boolean | undefined;
   /**
-   * Called with the index of each frame that masks, corrections, prompts and edits change, as soon as they do: the frame that is spoken of first, then
+   * Called with the index of each frame that masks, corrections, prompts and edits change, as soon as they do: the annotated frame first, then
    * those to which it spreads. A frame may change again before it is returned; the clip returns frames in order, afterwards. `segmented`
    * gives the frame as it is now, until what the call returns is settled, and the clip waits for that. If it throws, the clip ends with that
    * exception.
    */
   onChange?: ((frame: number, segmented: () => Promise<ClipFrame>) => void | Promise<void>) | undefined;
   /**
-   * Called with what the pairs of each frame have told, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
+   * Called with the results of the pairs of each frame, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
    * that was interrupted continue with the same results. Several workers solve frames in any order; calls may then overlap.
    */
   onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
@@ -423,7 +423,7 @@ export interface ClipFrame {
 /** One object through a clip. */
 export interface ClipTrack {
   id: number;
-  /** As {@link ClipEdits} says. */
+  /** As in {@link ClipEdits}. */
   name?: string;
   /** Index of the first frame that shows it. */
   first: number;
@@ -443,7 +443,7 @@ export interface ClipTracks {
   dropped: number;
 }
 
-/** Pixels of an object in a frame that what was said has changed. */
+/** Pixels of an object in a frame that annotations have changed. */
 export interface ClipChange {
   /** Index of the frame, from 0. */
   frame: number;

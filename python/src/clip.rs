@@ -1,6 +1,6 @@
 //! Clips: frames in, labelled frames and tracks out.
 //!
-//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where what is said needs them, and once for their
+//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where annotations need them, and once for their
 //! labels. Each step is done in the thread that keeps the clip; frames are read between the steps.
 
 mod annotations;
@@ -181,7 +181,7 @@ impl Clip {
         self.say(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
     }
 
-    /// The objects that only what is said of themselves changes, besides those of which something was said.
+    /// The objects that only annotations of their own change, besides those that have some.
     fn name(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
         self.say(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
     }
@@ -295,7 +295,7 @@ impl Clip {
         Ok(self.read(py, index)?.ok_or_else(gone)?)
     }
 
-    /// [`read`](Self::read), where what goes wrong is told after the frames before.
+    /// [`read`](Self::read), where an error comes after the frames before.
     fn read_or_fail(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
         match self.read(py, index) {
             // Not what is to end the program, such as KeyboardInterrupt.
@@ -445,7 +445,7 @@ impl Clip {
         self.annotate(py, Annotations { numbers, ..Annotations::default() })
     }
 
-    /// Applies what is said. Returns the frames that have changed, in order. What ends it early leaves everything as it was.
+    /// Applies annotations. Returns the frames that have changed, in order. What ends it early leaves everything as it was.
     fn annotate(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<Vec<usize>> {
         let done = self.annotate_through(py, annotations);
         if let Some(worker) = &self.worker {

@@ -1,4 +1,4 @@
-"""Clips: whole ones and streams, what is said of their frames, and what happens when something goes wrong."""
+"""Clips: whole ones and streams, their annotations, and what happens when something goes wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Types: what callers write passes `mypy --strict`, and the stubs say what there is."""
+"""Types: what callers write passes `mypy --strict`, and the stubs are those of the module."""
 
 from __future__ import annotations
 

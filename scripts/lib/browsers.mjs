@@ -81,7 +81,7 @@ function miniBrowser() {
   return folders.map((folder) => join(folder, 'webkit2gtk-4.1', 'MiniBrowser')).find(existsSync);
 }
 
-/** Drives the built page and the explainer in each of the browsers; those that have a problem are skipped, and it is said. */
+/** Drives the built page and the explainer in each of the browsers; those that have a problem are skipped with a message. */
 export async function testInBrowsers(browsers) {
   const problems = browsers.flatMap(({ problem }) => problem ?? []);
   for (const problem of problems) say(problem);

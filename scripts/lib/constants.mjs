@@ -14,7 +14,7 @@ const PLAIN = new Set([0, 0.5, 1, 2, 255]);
 const GUARD = 1e-5;
 const LITERAL = /(?<![\w.])\d[\d_]*(?:\.[\d_]+(?:e-?\d+)?|e-?\d+)/g;
 
-/** Whether every number says in a comment where it comes from. Prints those that do not. */
+/** Whether every number has a comment with its source. Prints those that have none. */
 export function constantsAreExplained() {
   const problems = sources().flatMap((file) => unexplained(file, projectText(file)));
   for (const problem of problems) say(problem);

@@ -13,7 +13,7 @@ const running = new Set();
 const parts = new AsyncLocalStorage();
 
 /**
- * Runs `main` as a part of the work: what it says and what its programs show goes to `write`, where that is given, and its programs get this
+ * Runs `main` as a part of the work: its messages and the output of its programs go to `write`, where that is given, and its programs get this
  * `niceness` (0 to 19; where cores are short, those with less go first).
  */
 export function inPart({ write, niceness = 0 }, main) {

@@ -140,7 +140,7 @@ async function cargoInstall(tool) {
   );
 }
 
-/** Whether a program says that it has this version, and those that come with it are there too. */
+/** Whether a program reports this version, and those that come with it are there too. */
 async function isPresent({ program, version, companions = [], ask = ['--version'] }) {
   const { code, text } = await run(program, ask, { output: 'collect' });
   return code === 0 && text.trim().split(' ')[1] === version && companions.every(which);

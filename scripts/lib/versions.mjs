@@ -13,7 +13,7 @@ const NAMED = [
   ['fuzz/Cargo.lock', /name = "veronese"\r?\nversion = "([^"]+)"/g],
 ];
 
-/** Every file that has the version, and what it says there. */
+/** Every file that has the version, and the version there. */
 export async function versions() {
   // Loaded when it is needed: this file is also imported before npm has installed anything.
   const { parse } = await import('smol-toml');

@@ -4,7 +4,7 @@ import type { ClipChange, ClipFrame, ClipPropagation, MotionFit, Pixels, PointMe
 import type { ErrorMessage } from '../common/errors.js';
 import { buffersOf } from './taking.js';
 
-/** Options as the core takes them, all plain values; it says which of them it cannot use. */
+/** Options as the core takes them, all plain values; it refuses those that it cannot use. */
 export type Settings = Record<string, unknown>;
 
 export type Frames = readonly [first: Pixels, second: Pixels];
@@ -26,7 +26,7 @@ export type CallTask =
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
-/** The steps of a clip from its first frame on; wasm/src/clip.rs says what each step returns. */
+/** The steps of a clip from its first frame on; wasm/src/clip.rs has the results of each step. */
 export type ClipStep =
   | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
@@ -58,7 +58,7 @@ export interface ClipSummary {
   dropped: number;
 }
 
-/** All that a person says of a clip at one time; what is undefined is as before. */
+/** Annotations of a clip that are given together; those that are undefined are as before. */
 export interface Annotations {
   masks: readonly Painted[];
   corrections: readonly Painted[];

@@ -1,4 +1,4 @@
-// The calls as tasks: what callers hand in, checked and taken. The same for direct calls and for workers, so that both say the same.
+// The calls as tasks: what callers hand in, checked and taken. The same for direct calls and for workers, so that both refuse the same.
 
 import type {
   CallOptions,
@@ -100,7 +100,7 @@ interface Asked {
   settings: Settings;
 }
 
-/** Parts what concerns the call from what goes to the core, which says which values it takes. */
+/** Parts what concerns the call from what goes to the core, which checks its values. */
 export function parted(options: unknown, known: readonly string[]): Asked {
   const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
   if (signal !== undefined && !isSignal(signal)) throw new VeroneseError('invalid-option', "option 'signal': must be an AbortSignal");
@@ -164,7 +164,7 @@ function checkedArray(which: string, array: unknown, kind: string, of: string): 
 
 /** A segmentation as the flat arrays of the core, and the rest of it. Whether labels and motions fit is the core's question. */
 function checkedSegmentation(segmentation: unknown) {
-  // How sure the labels were says nothing about those of now.
+  // The confidence was that of the labels before.
   const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
   const { motions, labels, junctions, settings, evidence } = whole;
   const quality = isObject(settings) ? settings.quality : undefined;

@@ -10,7 +10,7 @@ import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFram
 interface PairFolder {
   index: number;
   name: string;
-  /** The part of the name that says which frame it was. */
+  /** The part of the name that is that of the frame. */
   frame: string;
 }
 
@@ -31,7 +31,7 @@ function foldersIn(folder: string): string[] {
   }
 }
 
-/** A label is a motion of one pair: nothing says which motion of the next pair is the same thing. */
+/** A label is a motion of one pair: it has no counterpart in the next pair. */
 export function openBatch(folder: string, range: Range, background: boolean, grouped: boolean): Sequence {
   const all = pairFolders(folder);
   const until = lastOf(range, all.at(-1)?.index ?? 0);

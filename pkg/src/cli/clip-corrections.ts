@@ -1,4 +1,4 @@
-// Folders of what a person says: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
+// Folders of annotations: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
 
 import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
@@ -17,7 +17,7 @@ export const EDITS = 'edits.json';
 interface Edits {
   edits: ClipEdits;
   prompts: FullPrompt[];
-  /** Frames, if it says anything of that. */
+  /** Frames, where there is a list of them. */
   accepted: number[] | undefined;
   /** By frame. */
   propagate: Map<number, ClipPropagation>;
@@ -41,11 +41,11 @@ export interface Corrections {
   edits: ClipEdits;
   /** The files of all. */
   paths: string[];
-  /** Hash of the content of each folder that says something. */
+  /** Hash of the content of each folder that has annotations. */
   hashes: { masks?: string; corrections?: string };
 }
 
-/** Undefined if nothing is said. Throws an error that names the file. */
+/** Undefined without annotations. Throws an error that names the file. */
 export async function readCorrections(folders: { [folder in 'masks' | 'corrections']: string | undefined }, frames: ClipFrames): Promise<Corrections | undefined> {
   const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames);
   const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames);
@@ -75,7 +75,7 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
   };
 }
 
-/** Undefined if it says nothing. */
+/** Undefined without annotations. */
 async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | undefined> {
   const names = namesIn(folder).sort();
   const said: ClipCorrection[] = [];
@@ -125,7 +125,7 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
-  // One after another: what was said first keeps its pixels.
+  // One after another: the first keeps its pixels.
   const prompts: FullPrompt[] = [];
   const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
     const pointed = promptOf(entry, bad);

@@ -36,7 +36,7 @@ interface Sighting {
   matrix: Matrix | null;
 }
 
-/** Reads tracks.json at once, each frame when it is asked for. `frameRate` goes before what tracks.json says. */
+/** Reads tracks.json at once, each frame when it is asked for. `frameRate` goes before that of tracks.json. */
 export async function openClip(folder: string, range: Range, background: boolean, frameRate?: number): Promise<Sequence> {
   const path = join(folder, TRACKS);
   const tracks = tracksOf(await readJson(path), path);

@@ -22,7 +22,7 @@ export async function convert(command: ConvertCommand, output: Output): Promise<
 
 type Kind = 'pair' | 'batch' | 'clip';
 
-/** Which command the folder is of; one that is of none is taken for a pair's, to be told what is missing there. */
+/** Which command the folder is of; one that is of none is taken for a pair's, whose error names what is missing. */
 function kindOf(folder: string): Kind {
   const has = (name: string) => statusOf(join(folder, name));
   if (has(TRACKS)) return 'clip';
@@ -37,11 +37,11 @@ function statusOf(path: string): Stats | undefined {
   try {
     return statSync(path);
   } catch {
-    return undefined; // Whoever reads it is told why that is not possible.
+    return undefined; // Reading it gives the error.
   }
 }
 
-/** Throws where an option or a format says nothing of this kind of folder. */
+/** Throws where an option or a format is not for this kind of folder. */
 function checkOptions(command: ConvertCommand, kind: Kind): void {
   const { folder, to, grouped, image, range, shapes, video, frameRate } = command;
   const given: [name: string, given: boolean, kinds: readonly Kind[]][] = [

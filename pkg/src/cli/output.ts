@@ -78,7 +78,7 @@ export class Output {
   }
 
   /**
-   * Writes what `work` writes: all of it, and nothing before that is done. Files of an earlier run go if `isOld` says so, otherwise those
+   * Writes what `work` writes: all of it, and nothing before that is done. Files of an earlier run go if `isOld` is true of them, otherwise those
    * in folders that are written. Returns names, those of folders with a `/`. Rejects with what `work` rejects with, leaving nothing
    * half-written.
    */
@@ -196,7 +196,7 @@ export function idsOf(paths: readonly string[]): Set<string> {
   return new Set(paths.map(idOf).filter((id) => id !== undefined));
 }
 
-/** Undefined where nothing can be found: whoever reads it says what is wrong. */
+/** Undefined where nothing can be found: reading it gives the error. */
 function idOf(path: string): string | undefined {
   try {
     const { dev, ino } = statSync(path, { bigint: true });

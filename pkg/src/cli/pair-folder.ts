@@ -47,7 +47,7 @@ export interface Pair {
   motions: SegmentedMotion[];
   /** Whether these are groups. */
   grouped: boolean;
-  /** Names of the frames' files, where the report says. */
+  /** Names of the frames' files, where the report has them. */
   inputs: string[];
 }
 

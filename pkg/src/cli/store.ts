@@ -1,4 +1,4 @@
-// Results of many pairs in one folder: a folder for each pair, which is there as a whole or not at all, and says what it was made of.
+// Results of many pairs in one folder: a folder for each pair, which is there as a whole or not at all, and names its inputs.
 
 import { readdirSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -48,7 +48,7 @@ export class ProgressBar {
   readonly #started: number;
   #drawn = -Infinity;
 
-  /** `total`: the number of pairs (or of what `unit` says), where it is known. `title`: what is done with them. */
+  /** `total`: the number of pairs (or of `unit`), where it is known. `title`: what is done with them. */
   constructor(total: number | undefined, stream: Stderr, { unit = 'pairs', title = '', now = () => performance.now() } = {}) {
     this.#total = total;
     this.#unit = unit;

@@ -12,7 +12,7 @@ import { warn } from './terminal.js';
 
 /** Longest side of a frame that is read at all; larger ones than the core takes are its own error. */
 const LONGEST_SIDE = 32_768;
-/** How much of what ffmpeg says is kept, characters. */
+/** How much of the messages of ffmpeg is kept, characters. */
 const KEPT = 4_000;
 /** How much of what was decoded last is kept to be read again, bytes. */
 const WINDOW = 256 * 1024 * 1024;
@@ -38,7 +38,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
   const input = ['-nostdin', '-v', 'error', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
   const chosen = every === 1 ? [] : ['-vf', `select=not(mod(n\\,${every}))`];
-  // Each frame that is in the file, and none twice, whatever its time says.
+  // Each frame that is in the file, and none twice, whatever its time is.
   const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
   const ffmpeg = spawn('ffmpeg', [...input, ...chosen, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', 'pipe:1'], {
     stdio: ['ignore', 'pipe', 'pipe'],
@@ -169,7 +169,7 @@ function reasonIn(said: string): string | undefined {
   return line && `cannot be read: ${line}`;
 }
 
-/** Of a file that says how long it is (RIFF, as AVI): what is missing. A cut between two frames is no error to ffmpeg. */
+/** The missing bytes of a file that states its length (RIFF, as AVI). A cut between two frames is no error to ffmpeg. */
 async function missingEnd(file: string, size: number): Promise<string | undefined> {
   const handle = await open(file);
   try {

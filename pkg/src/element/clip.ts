@@ -212,7 +212,7 @@ async function sourceOf(given: ClipFrames | string, place: Place): Promise<Sourc
       yield pixels;
     }
   }
-  // `segmentClip` says what is wrong with frames that are no source.
+  // `segmentClip` refuses frames that are no source.
   return { frames: isIterable ? once() : (given as never), picture: async (index) => decoded(index, await (pictures[index] as Promise<Blob>)), size };
 }
 

@@ -21,7 +21,7 @@ export class VeroneseSegmenterElement extends Base {
 
   readonly #internals: ElementInternals;
   readonly #view: View;
-  /** By a script, instead of what attributes say. */
+  /** Set by a script, instead of the attributes. */
   #given: { first?: Kept; second?: Kept; frames?: ClipFrames } = {};
   #segmenter: InstanceType<typeof SegmenterPool> | undefined;
   #request: AbortController | undefined;
@@ -253,7 +253,7 @@ export class VeroneseSegmenterElement extends Base {
     queueMicrotask(() => {
       if (!this.#planned) return;
       this.#planned = false;
-      if (this.isConnected) this.segment().catch(() => undefined); // said by the event
+      if (this.isConnected) this.segment().catch(() => undefined); // the event has the error
     });
   }
 
@@ -384,7 +384,7 @@ export class VeroneseSegmenterElement extends Base {
     if (this.#segmenter === undefined) {
       // One processor is left for the page; more than eight workers are not worth their memory.
       this.#segmenter = new SegmenterPool({ jobs: Math.min(navigator.hardwareConcurrency - 1 || 1, 8) });
-      this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker says why there is none
+      this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker gives the error
     }
     return this.#segmenter;
   }
@@ -452,7 +452,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#internals.setValidity(flags, sentence, this.#view.objects);
   }
 
-  /** A request has ended well: validity says so before the event. */
+  /** A request has ended well: the validity changes before the event. */
   #end(): void {
     this.#request = undefined;
     this.#view.status.textContent = '';

@@ -5,7 +5,7 @@ import { packageFor } from './package.js';
 
 export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
 
-// Never fetched: an address only says that there is a module, so that nothing is unpacked before it is needed.
+// Never fetched: the address only stands for a module, so that nothing is unpacked before it is needed.
 const FRAMES = new URL('veronese:frames');
 const POINTS = new URL('veronese:points');
 const INSIDE = new Map([[FRAMES.href, frames], [POINTS.href, points]]);

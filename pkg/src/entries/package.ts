@@ -19,7 +19,7 @@ export { davisPalette } from '../common/palette.js';
 /** The differences between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
 interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
   read?: Read;
-  /** Where the core module lies if the caller does not say. */
+  /** Where the core module lies by default. */
   frames?: URL;
   /** The same for the module of measurements. */
   points?: URL;

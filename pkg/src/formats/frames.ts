@@ -43,7 +43,7 @@ export interface Gathering<Document> {
 
 type Start<Document> = () => { add: (frame: LabelFrame) => void; finish: () => Document };
 
-/** Frames per second where nobody says and a format wants to know. */
+/** Frames per second where none are given and a format has to have them. */
 const USUAL_RATE = 25;
 
 /**

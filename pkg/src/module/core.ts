@@ -22,7 +22,7 @@ export class Core<G extends Glue> {
   #module: Promise<WebAssembly.Module> | undefined;
   #instance: Promise<unknown> | undefined;
 
-  /** `place`: where the module lies if nobody says otherwise. */
+  /** `place`: where the module lies by default. */
   constructor(glue: G, read: Read, place?: URL) {
     this.#glue = glue;
     this.#read = read;

@@ -37,7 +37,7 @@ export interface Host {
   newPoints: () => Core<Glue>;
   /** Makes a worker where the caller does not. */
   worker: () => WorkerLike;
-  /** Number of workers where the caller does not say. */
+  /** Default number of workers. */
   jobs: () => number;
 }
 
@@ -96,7 +96,7 @@ export function segmenters(host: Host) {
     ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
       const { signal, onProgress, ...rest } = reading(() => checkedPairsOptions(pairs, options));
       if (signal?.aborted) throw cancelled(signal);
-      // Ends what is under way when the reader stops early or the caller's signal says so.
+      // Ends what is under way when the reader stops early or the caller's signal is aborted.
       const ending = new AbortController();
       const end = () => ending.abort(signal?.reason);
       signal?.addEventListener('abort', end);

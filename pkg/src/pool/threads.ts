@@ -21,7 +21,7 @@ interface WebThread extends Thread {
   addEventListener(type: string, listener: (event: never) => void): void;
 }
 
-/** Starts workers with `make`; `transferred` says what of a task is handed over to them instead of copied. */
+/** Starts workers with `make`; `transferred` lists the buffers of a task that are handed over to them instead of copied. */
 export function spawnWith<Task, Result>(
   make: () => WorkerLike,
   transferred: (task: Task) => ArrayBuffer[] = () => [],

@@ -10,7 +10,7 @@ import { frame, pair } from '../support/moving.mjs';
 
 export const frames = pair();
 
-/** Frames of a clip: a square moves over a background that is at rest, or moves as `options` say. */
+/** Frames of a clip: a square moves over a background that is at rest, or moves by `options`. */
 export function clip(length = 8, options) {
   return Array.from({ length }, (_, k) => frame(k, { width: 96, height: 72, ...options }));
 }
@@ -79,7 +79,7 @@ export async function files(t) {
   return { origin, asked };
 }
 
-/** Asks a server for what `body` says; a text is sent as it is. */
+/** Sends a server this `body`; a text is sent as it is. */
 export async function post(address, body, headers = {}) {
   const text = typeof body === 'string' ? body : JSON.stringify(body);
   const response = await fetch(address, { method: 'POST', headers: { 'Content-Type': 'application/json', ...headers }, body: text });

@@ -262,7 +262,7 @@ describe('work', { timeout: 120_000 }, () => {
     header.writeUInt32BE(4000, 16);
     header.writeUInt32BE(4000, 20);
     const large = [header, png(frames[0]), ppm(frames[0]), bmp(frames[0])];
-    // A header that says less than the decoder finds: a comment longer than it is looked for.
+    // A header with a smaller size than the decoder finds: a comment longer than it is looked for.
     large.push(Buffer.concat([Buffer.from(`P6\n#${'.'.repeat(300_000)}\n64 48\n255\n`), Buffer.alloc(64 * 48 * 3)]));
     const [studio, function_] = [await backend(t, { pixels }), await cvat(t, { pixels })];
     for (const file of large) {

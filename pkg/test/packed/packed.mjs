@@ -9,7 +9,7 @@ import { pair } from '../support/moving.mjs';
 
 const here = (path) => fileURLToPath(new URL(path, import.meta.url));
 
-/** Runs a program to its end; throws with what it said where it fails. */
+/** Runs a program to its end; throws with its messages where it fails. */
 export function run(program, args, options = {}) {
   const { status, stdout, stderr, error } = spawnSync(program, args, { encoding: 'utf8', timeout: 120_000, ...options });
   if (status !== 0) throw new Error(`${program} ${args.join(' ')}: ${error?.message ?? `code ${status}`}\n${stdout}\n${stderr}`);

@@ -154,7 +154,7 @@ def cvat_polygons(clip):
 
 
 def cvat_tracks(clip, name):
-    """The shapes that are not outside. Those that are say where a track leaves: once, in the frame after its last one."""
+    """The shapes that are not outside. Those that are mark where a track leaves: once, in the frame after its last one."""
     data = CvatBase(str(clip.path(name)))
     names = [label.name for label in list(data.categories().values())[0].items]
     shapes, left = {}, set()

@@ -78,7 +78,7 @@ export const VALUES = {
   'bytes that are called something else': Object.defineProperty(new Uint8Array(16), Symbol.toStringTag, { value: 'Float64Array' }),
 };
 export const named = (fits) => Object.keys(VALUES).filter((name) => !/throwing|proxy/.test(name) && fits(VALUES[name]));
-/** Objects that say nothing. */
+/** Objects without entries. */
 export const EMPTY = named((value) => typeof value === 'object' && value !== null && !Array.isArray(value) && Object.keys(value).length === 0);
 export const OPTIONS = ['undefined', ...EMPTY];
 export const FINITE = named(Number.isFinite);
@@ -167,7 +167,7 @@ export async function all(outcomes) {
 const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
 const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
 
-/** Labels of a frame that say nothing. */
+/** Labels of a frame that are all unlabelled. */
 const NOTHING = new Uint8Array(256).fill(255);
 
 /** The arguments of a clip, as those of the other calls. */

@@ -151,7 +151,7 @@ async function eventually(holds, what, workers) {
   }
 }
 
-/** The jobs that a worker says it has finished. */
+/** The jobs that a worker has reported as finished. */
 function doneBy({ text }) {
   return text.split('\n').slice(0, -1).map((line) => JSON.parse(line));
 }

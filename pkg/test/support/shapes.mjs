@@ -78,7 +78,7 @@ export function checkPair(result, width, height) {
   assert.match(result.settings.software, /^veronese \d+\.\d+\.\d+/);
 }
 
-/** Labels agree with what the JSON says of them. */
+/** Labels agree with the JSON. */
 export function checkLabels(labels, result) {
   assert.equal(labels.length, result.width * result.height);
   const counts = new Map();

@@ -47,6 +47,6 @@ export function box(square, index) {
 }
 export const middle = (square, index) => at(square, index).map((side) => Math.floor(side) + SIDE / 2);
 
-/** Pixels, over all frames, that an object has in one of two lists of labels alone; those that `isFree` says may. */
+/** Pixels, over all frames, that an object has in one of two lists of labels alone; those of `isFree` may. */
 export const changedOf = (before, after, id, isFree = () => false) =>
   before.reduce((sum, labels, k) => sum + labels.filter((label, p) => (label === id) !== (after[k][p] === id) && !isFree(label, after[k][p])).length, 0);

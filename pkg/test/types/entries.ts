@@ -1,4 +1,4 @@
-// The entries are what the hand-written types say; compiled, never run.
+// The entries have the hand-written types; compiled, never run.
 
 import * as codecs from '../../src/entries/codecs.js';
 import { VeroneseSegmenterElement } from '../../src/element/element-class.js';

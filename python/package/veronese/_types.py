@@ -22,7 +22,7 @@ Click = Tuple[int, int, Literal[1, -1]]
 """Column and row of a pixel, and 1 if it belongs to an object, -1 if it does not."""
 
 Propagation = Literal["both", "forward", "backward", "none"]
-"""Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere."""
+"""Where the annotations of a frame spread: to the frames before and after it, to one side alone, or nowhere."""
 
 
 class VeroneseError(Exception):
@@ -240,7 +240,7 @@ class ClipTracks:
 
 @dataclass(frozen=True, eq=False)
 class Mask:
-    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 where nothing is said."""
+    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled."""
 
     frame: int
     labels: Labels
@@ -262,7 +262,7 @@ class Correction:
     propagate: Optional[Propagation] = None
     """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
     object: Optional[int] = None
-    """The object that it is about, 1 to 254: the labels are its number, 0 where it is not, and 255. Nothing is said of others."""
+    """The object that it is about, 1 to 254: the labels are its number, 0 where it is not, and 255. It is about no other object."""
 
 
 @dataclass(frozen=True)
@@ -295,7 +295,7 @@ class Accepted:
 
 @dataclass(frozen=True)
 class ClipChange:
-    """Pixels of an object in a frame that what was said has changed."""
+    """Pixels of an object in a frame that annotations have changed."""
 
     frame: int
     object: int

@@ -30,10 +30,10 @@ pub(crate) struct FrameAnnotations {
     images: Vec<(&'static str, usize, [usize; 2])>,
 }
 
-/// The label of a pixel of which nothing is said.
+/// The label of an unlabelled pixel.
 const NOTHING: u8 = u8::MAX;
 
-/// Something with where it spreads, if that is said.
+/// Something with where it spreads, if that is given.
 type Spreading<T> = (T, Option<Spread>);
 
 /// Reads one thing after another.

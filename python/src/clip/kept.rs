@@ -29,7 +29,7 @@ pub(crate) struct Summary {
     pub(crate) dropped: usize,
 }
 
-/// How far what is said has taken effect.
+/// How far annotations have taken effect.
 pub(crate) enum Step {
     /// The frame that is needed next.
     Wants(usize),
@@ -97,7 +97,7 @@ impl Kept {
         }
     }
 
-    /// Begins to apply what is said.
+    /// Begins to apply annotations.
     pub(crate) fn annotate(&mut self, annotations: Annotations) -> Result<Step, Failure> {
         match self {
             Kept::Segmented { clip, job, .. } => {
@@ -117,7 +117,7 @@ impl Kept {
         Ok(step(job))
     }
 
-    /// Ends what was said last. It holds, or nobody has said it.
+    /// Ends the last annotations: they hold, or are taken back.
     pub(crate) fn settle(&mut self, holds: bool) {
         if let Kept::Segmented { clip, job, .. } = self
             && let Some((_, before)) = job.take()

@@ -9,7 +9,7 @@ import { isObjectNumber, RANGE } from './edits.js';
 
 /** Labels painted in a frame. */
 export interface LabelledFrame extends Painted {
-  /** Of masks that say how wide they are. */
+  /** Of masks that have a width of their own. */
   width?: number | undefined;
 }
 

@@ -7,7 +7,7 @@ export interface Edits {
   /** Each object that gets another number, 0 for the background, and that number. */
   numbers: Map<number, number>;
   names: Map<number, string>;
-  /** With what is merged into them, which these numbers are of as well. Undefined if nobody says. */
+  /** With what is merged into them, which these numbers are of as well. Undefined if not given. */
   named: Uint8Array | undefined;
   locked: Uint8Array | undefined;
 }

@@ -33,7 +33,7 @@ export class Frames {
     this.#ask();
   }
 
-  /** Frames up to the first failure, the next one not before it is asked for. Throws only if the signal says so. */
+  /** Frames up to the first failure, the next one not before it is asked for. Throws only if the signal is aborted. */
   async *each(
     source: Iterable<unknown> | AsyncIterable<unknown>,
     { indices, transfer = false }: TakeOptions = {},

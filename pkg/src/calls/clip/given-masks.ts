@@ -32,7 +32,7 @@ function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): 
   }
 }
 
-/** Grey levels if there is nothing else, otherwise indices of colours in the DAVIS palette. What is transparent says nothing. */
+/** Grey levels if there is nothing else, otherwise indices of colours in the DAVIS palette. Transparent pixels have no label. */
 function labelsOfImage(data: unknown, width: unknown, height: unknown, wrong: Wrong): Uint8Array {
   const rgba = bytesOf(data, 'pixels', wrong);
   if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE) || rgba.length !== 4 * width * height) {

@@ -10,7 +10,7 @@ import type { PlacedClip, Workers } from './place.js';
 /** Pairs that a worker solves in a row where it can: of each block one frame is prepared by two workers. */
 const BLOCK = 2;
 
-/** A frame of the clip, and what its pairs have told if that is known. */
+/** A frame of the clip, and the result of its pairs if that is known. */
 export interface Looked {
   index: number;
   frame: Pixels;
@@ -63,7 +63,7 @@ export class SharedPairs {
     this.#notify();
   }
 
-  /** The frames in their order, with what their pairs have told. `onPairs` hears of those that were solved, as soon as they are. */
+  /** The frames in their order, with the results of their pairs. `onPairs` hears of those that were solved, as soon as they are. */
   async *solved(
     frames: AsyncIterable<Looked>,
     // Given, not imported: bundlers put what this file imports into the worker, which has no use for it.

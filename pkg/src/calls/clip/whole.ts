@@ -97,7 +97,7 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
   return summary;
 }
 
-/** Applies all that is said; returns the indices of the frames that change, and what objects gain and lose. */
+/** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
 async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<{ changed: Set<number>; changes: ClipChange[] }> {
   const { source, onProgress, onChange } = task;
   const { read } = source as Whole;
@@ -122,7 +122,7 @@ async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: n
   }
 }
 
-/** The source may have failed before it came to a frame of which something is said. */
+/** The source may have failed before it came to an annotated frame. */
 function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }: Task, length: number): Annotations {
   const isThere = ({ frame }: { frame: number }) => frame < length;
   const maps = [...masks, ...corrections].filter(({ object, propagate }) => object === undefined && propagate !== undefined);

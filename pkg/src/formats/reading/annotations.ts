@@ -126,7 +126,7 @@ function nothingIn(files: readonly Source[]): string {
   return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks, veronese`;
 }
 
-/** The index is the number of the object, and 255 says nothing. */
+/** The index is the number of the object, and 255 is unlabelled. */
 function readPng({ name, bytes }: Source): ReadFrame {
   const { width, height } = decoding('it', () => headOf(bytes));
   const indices = () => decoding('it', () => decodeIndices(bytes, { foreign: true })).indices;

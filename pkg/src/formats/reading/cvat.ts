@@ -18,7 +18,7 @@ import {
 
 type Draw = (canvas: Canvas, label: number) => void;
 
-/** Elements that say nothing of pixels. */
+/** Elements without pixels. */
 const REMARKS = ['attribute', 'tag'];
 
 /** Images, and frames of a video, without shapes are left out: files also list those at which nobody has looked. */

@@ -16,7 +16,7 @@ export interface Known {
 export interface ReadFrame {
   /** Its name, without folder and extension. */
   name: string;
-  /** The file that says something of it. */
+  /** The file that annotates it. */
   file: string;
   width: number;
   height: number;
@@ -75,7 +75,7 @@ export function wrong(file: string, what: string): VeroneseError {
   return invalidInput(`'${file}' ${what}`);
 }
 
-/** Runs what reads a file: the sentences that it throws say which. */
+/** Runs a reader of a file: its errors name the file. */
 export function naming<T>(file: string, read: () => T): T {
   try {
     return read();

@@ -25,7 +25,7 @@ export function isMots(text: string): boolean {
   return LINE.test(/^.*/.exec(text)?.[0].trimEnd() ?? '');
 }
 
-/** Frames without objects are left out: nothing tells whether anybody has looked at them. */
+/** Frames without objects are left out: they may not have been annotated. */
 export function readMots(source: Source, text: string, { nameOf, classesOf }: Context): ReadFrame[] {
   const names = classesOf(source);
   const frames = new Map<number, { width: number; height: number; shapes: Shape[] }>();
