@@ -10,9 +10,9 @@ import { command } from './lib/run.mjs';
 const PICTURES = ['figure-1.svg', 'leader-follower.png', 'paper-two-cars.png'];
 
 await command(async (args) => {
-  const { writeDocs, rest } = withoutDocs(args, ['--table']);
+  const { writeDocs, rest } = withoutDocs(args, []);
   const code = await experiment('paper', rest);
-  if (code !== 0 || wantsHelp(rest) || rest.includes('--table')) return code;
+  if (code !== 0 || wantsHelp(rest)) return code;
   const out = outOf(rest, 'out/paper');
   const measured = JSON.parse(readFileSync(join(out, 'experiments.json'), 'utf8'));
   if (writeDocs) showPictures(out, PICTURES);

@@ -1,10 +1,12 @@
 //! Figure 1: the error of the motions as a function of the noise, for two, three and four motions and 600 measurements.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use serde::Serialize;
 use veronese::stages::{Figure1Trial, TrialError, figure_1_trial};
+
+use crate::Failure;
+use crate::parallel::in_parallel;
 
 /// The methods compared, in the order of [`Cell::methods`].
 pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear", "ours", "oracle"];
@@ -38,15 +40,16 @@ pub(crate) struct Errors {
 }
 
 /// All cells of the figure.
-pub(crate) fn measure(trials: usize, seed: u64) -> veronese::Result<Vec<Cell>> {
+pub(crate) fn measure(trials: usize, seed: u64) -> Result<Vec<Cell>, Failure> {
     let mut cells = Vec::new();
     for motions in [2, 3, 4] {
         for noise in 0..=5 {
             let start = Instant::now();
             // Every trial has its own seed, so results do not depend on the threads.
             let first_seed = (seed << 32) + ((motions * 10 + noise) as u64) * 1_000_000;
-            let trial = |k| figure_1_trial(motions, 0.01 * noise as f64, first_seed + k as u64);
-            let results: Vec<Figure1Trial> = in_parallel(trials, trial).into_iter().collect::<veronese::Result<_>>()?;
+            let seeds: Vec<u64> = (0..trials as u64).map(|k| first_seed + k).collect();
+            let results: Vec<Figure1Trial> =
+                in_parallel(&seeds, |&seed| Ok(figure_1_trial(motions, 0.01 * noise as f64, seed)?))?;
             let seconds = start.elapsed().as_secs_f64();
             eprintln!("Figure 1: {motions} motions, {noise} % noise: {trials} trials in {seconds:.1} s");
             cells.push(summary(motions, noise, &results));
@@ -78,26 +81,4 @@ fn summary(motions: usize, noise: usize, trials: &[Figure1Trial]) -> Cell {
         }),
         count_right: [share(&|trial| trial.rule_right), share(&|trial| trial.best_right)],
     }
-}
-
-/// The results of `work(0)` … `work(count − 1)`, in that order, computed on all cores.
-fn in_parallel<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let worker = || {
-        let mut own = Vec::new();
-        loop {
-            let k = next.fetch_add(1, Ordering::Relaxed);
-            if k >= count {
-                return own;
-            }
-            own.push((k, work(k)));
-        }
-    };
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut results: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(worker)).collect();
-        threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect()
-    });
-    results.sort_by_key(|(k, _)| *k);
-    results.into_iter().map(|(_, result)| result).collect()
 }

@@ -1,12 +1,13 @@
 //! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. Run it with `npm run paper`.
 
+#[path = "../panels.rs"]
+mod panels;
+#[path = "../parallel.rs"]
+mod parallel;
 #[path = "../program.rs"]
 mod program;
-#[path = "../../tests/synthetic/mod.rs"]
-mod synthetic;
 
 mod figure_1;
-mod further;
 mod pictures;
 mod plot;
 
@@ -22,20 +23,16 @@ const HELP: &str = "\
 Repeats the paper's experiments with its method and with ours.
 
   --trials N   trials per noise level of Figure 1, 1 to 100000; default 1000
-  --table T    print a further table instead, with 50 trials by default: limit (the estimator beside the statistical limit) or
-               rank-rule
   --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
   --out DIR    output folder; default out/paper
   --write-docs also write the figures to docs/figures, the plot and the pictures to docs/images, and docs/experiments.md from them
 ";
 
-/// A further table, printed for a number of trials and a seed.
-type Table = fn(usize, u64) -> Result<(), Box<dyn Error>>;
+type Failure = Box<dyn Error + Send + Sync>;
 
 struct Options {
-    trials: Option<usize>,
+    trials: usize,
     seed: u64,
-    table: Option<Table>,
     out: PathBuf,
 }
 
@@ -55,12 +52,12 @@ fn main() {
 
 /// The options; `None` if help was requested.
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
-    let mut options = Options { trials: None, seed: 1, table: None, out: PathBuf::from("out/paper") };
+    let mut options = Options { trials: 1000, seed: 1, out: PathBuf::from("out/paper") };
     while let Some(name) = arguments.next() {
         if name == "--help" || name == "-h" {
             return Ok(None);
         }
-        if !["--trials", "--seed", "--table", "--out"].contains(&name.as_str()) {
+        if !["--trials", "--seed", "--out"].contains(&name.as_str()) {
             return Err(format!("There is no option '{name}'."));
         }
         let value = arguments.next().ok_or(format!("{name} needs a value."))?;
@@ -69,33 +66,25 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             _ => Err(format!("{name} must be a whole number from {low} to {high}, not '{value}'.")),
         };
         match name.as_str() {
-            "--trials" => options.trials = Some(number(1, 100_000)? as usize),
+            "--trials" => options.trials = number(1, 100_000)? as usize,
             "--seed" => options.seed = number(0, u64::from(u32::MAX))?,
-            "--table" => {
-                let table = further::TABLES.into_iter().find(|(table, _)| *table == value);
-                options.table = Some(table.ok_or(format!("There is no table '{value}'."))?.1);
-            }
             _ => options.out = PathBuf::from(&value),
         }
     }
     Ok(Some(options))
 }
 
-fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    if let Some(table) = options.table {
-        return table(options.trials.unwrap_or(50), options.seed);
-    }
-    let trials = options.trials.unwrap_or(1000);
-    let out = &options.out;
+fn run(options: &Options) -> Result<(), Failure> {
+    let Options { trials, seed, ref out } = *options;
     let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
     fs::create_dir_all(out).map_err(cannot)?;
-    let (files, pairs) = pictures::pictures(options.seed)?;
+    let (files, pairs) = pictures::pictures(seed)?;
     for (name, file) in files {
         fs::write(out.join(name), file).map_err(cannot)?;
     }
-    let cells = figure_1::measure(trials, options.seed)?;
+    let cells = figure_1::measure(trials, seed)?;
     fs::write(out.join("figure-1.svg"), plot::svg(&cells)?).map_err(cannot)?;
-    let figures = Figures { trials, seed: options.seed, methods: METHODS, cells: &cells, pairs: &pairs };
+    let figures = Figures { trials, seed, methods: METHODS, cells: &cells, pairs: &pairs };
     fs::write(out.join("experiments.json"), serde_json::to_string(&figures)?).map_err(cannot)?;
     eprintln!("The results are in {}.", out.display());
     Ok(())

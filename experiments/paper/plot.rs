@@ -1,10 +1,9 @@
 //! Figure 1 as a plot: a panel for each number of motions, errors on a logarithmic scale.
 
-use std::error::Error;
-
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use crate::Failure;
 use crate::figure_1::{Cell, METHODS};
 
 const SIZE: (u32, u32) = (1080, 440);
@@ -19,7 +18,7 @@ const GRID: RGBColor = RGBColor(215, 215, 215);
 const STATED: [(usize, usize, f64); 4] = [(2, 0, 6.0), (2, 1, 2.1), (3, 1, 8.2), (4, 1, 13.3)];
 
 /// The plot as an SVG file.
-pub(crate) fn svg(cells: &[Cell]) -> Result<String, Box<dyn Error>> {
+pub(crate) fn svg(cells: &[Cell]) -> Result<String, Failure> {
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -37,7 +36,7 @@ pub(crate) fn svg(cells: &[Cell]) -> Result<String, Box<dyn Error>> {
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
-fn draw_panel(area: &Area<'_>, motions: usize, cells: &[&Cell]) -> Result<(), Box<dyn Error>> {
+fn draw_panel(area: &Area<'_>, motions: usize, cells: &[&Cell]) -> Result<(), Failure> {
     let mut chart = ChartBuilder::on(area)
         .caption(format!("n = {motions}"), ("sans-serif", 18))
         .margin(10)
@@ -74,7 +73,7 @@ fn draw_panel(area: &Area<'_>, motions: usize, cells: &[&Cell]) -> Result<(), Bo
     Ok(())
 }
 
-fn draw_legend(area: &Area<'_>) -> Result<(), Box<dyn Error>> {
+fn draw_legend(area: &Area<'_>) -> Result<(), Failure> {
     let style = ("sans-serif", 14).into_text_style(area).pos(Pos::new(HPos::Left, VPos::Center));
     let mut left = 60;
     for (method, colour) in METHODS.iter().zip(COLOURS) {
