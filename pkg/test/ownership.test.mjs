@@ -43,54 +43,59 @@ const HOSTS = {
   },
 };
 
-const scribble = (...arrays) => arrays.forEach((array) => array.fill(77));
+const scribble = (arrays) => arrays.forEach((array) => array.fill(77));
 
 /** Copies that may be written to. */
 const own = ({ data, ...rest }) => ({ ...rest, data: new Uint8Array(data) });
 const [first, second] = pair();
-const expected = timeless(await segmentPair(first, second));
+const found = await segmentPair(first, second);
 
-describe('arrays that are written to after the call change nothing', () => {
-  for (const [title, make] of Object.entries(HOSTS)) {
-    test(`segmentPair, ${title}`, async (t) => {
-      const frames = [own(first), own(second)];
-      const result = make(t).segmentPair(...frames);
-      frames.forEach((each) => {
-        scribble(each.data);
-        each.width = 3;
-      });
-      assert.deepEqual(timeless(await result), expected);
-    });
-
-    test(`relabel, ${title}`, async (t) => {
-      const found = await segmentPair(first, second);
-      const evidence = new Uint16Array(found.labels.length).fill(0b01, 1000, 1200);
-      const wanted = timeless(await relabel(first, second, found, evidence));
-      const frames = [own(first), own(second)];
-      const given = structuredClone(found);
-      const result = make(t).relabel(...frames, given, evidence);
-      scribble(...frames.map(({ data }) => data), given.labels, evidence);
-      for (const motion of given.motions) {
-        scribble(motion.matrix);
-        motion.group = 9;
-      }
-      for (const junction of given.junctions) {
-        scribble(junction.labels);
-        junction.likelihood = 7;
-      }
+/** Arguments of each call, the arrays in them that can be given away, and what writes to the rest. */
+const CALLS = {
+  segmentPair() {
+    const frames = [own(first), own(second)];
+    return { args: frames, arrays: frames.map(({ data }) => data), spoil: () => frames.forEach((frame) => (frame.width = 3)) };
+  },
+  relabel() {
+    const [frames, given, evidence] = [[own(first), own(second)], structuredClone(found), new Uint16Array(found.labels.length).fill(0b01, 1000, 1200)];
+    const spoil = () => {
+      scribble([given.labels, ...given.motions.map(({ matrix }) => matrix), ...given.junctions.map(({ labels }) => labels)]);
+      for (const motion of given.motions) motion.group = 9;
+      for (const junction of given.junctions) junction.likelihood = 7;
       given.evidence.candidates.length = 0;
       given.settings.quality = 'fast';
       given.width = 5;
-      assert.deepEqual(timeless(await result), wanted);
-    });
+    };
+    return { args: [...frames, given, evidence], arrays: [...frames.map(({ data }) => data), evidence], spoil };
+  },
+  fitMotions() {
+    const measurements = points(80, 1, 2);
+    return { args: [measurements], arrays: Object.values(measurements), spoil() {} };
+  },
+};
+const WANTED = {
+  segmentPair: timeless(found),
+  relabel: timeless(await relabel(...CALLS.relabel().args)),
+  fitMotions: timeless(await fitMotions(points(80, 1, 2))),
+};
 
-    test(`fitMotions, ${title}`, async (t) => {
-      const measurements = points(80, 1, 2);
-      const wanted = timeless(await fitMotions(points(80, 1, 2)));
-      const result = make(t).fitMotions(measurements);
-      scribble(measurements.positions, measurements.derivatives);
-      assert.deepEqual(timeless(await result), wanted);
-    });
+describe('arguments that are written to after the call, or given away, change nothing', () => {
+  for (const [title, make] of Object.entries(HOSTS)) {
+    for (const [name, prepare] of Object.entries(CALLS)) {
+      test(`${name}, ${title}`, async (t) => {
+        const { args, arrays, spoil } = prepare();
+        const result = make(t)[name](...args);
+        scribble(arrays);
+        spoil();
+        assert.deepEqual(timeless(await result), WANTED[name]);
+
+        const given = prepare();
+        const again = make(t)[name](...given.args, { transfer: true });
+        assert.deepEqual(given.arrays.map(({ length }) => length), given.arrays.map(() => 0), 'at once');
+        if (name === 'relabel') assert.deepEqual(given.args[2], found, 'the segmentation stays whole');
+        assert.deepEqual(timeless(await again), WANTED[name]);
+      });
+    }
   }
 
   test('segmentPairs, from a generator that has one buffer for each frame', async () => {
@@ -121,14 +126,14 @@ describe('arrays that are written to after the call change nothing', () => {
     const picture = frame(0, { width: 37, height: 21 });
     const file = Uint8Array.from(png(picture));
     const decoded = decodeImage(file);
-    scribble(file);
+    scribble([file]);
     assert.deepEqual(new Uint8Array((await decoded).data), new Uint8Array(picture.data));
     const palette = Array.from({ length: 256 }, (_, k) => [k, 255 - k, 7]);
     for (const [encoder, channels] of [[encodeGreyPng, 1], [encodeColourPng, 3], [encodeIndexedPng, 1]]) {
       const bytes = Uint8Array.from({ length: 15 * channels }, (_, k) => k);
       const wanted = [...bytes];
       const encoded = encoder(5, 3, bytes, palette);
-      scribble(bytes);
+      scribble([bytes]);
       assert.deepEqual([...decode(await encoded).data], wanted, encoder.name);
     }
   });
@@ -144,7 +149,7 @@ describe('arrays that are written to after the call change nothing', () => {
     const labels = Uint8Array.of(0, 1, 1, 0);
     let painted;
     const done = paintLabels({ putImageData: ({ data }) => (painted = [...data]) }, { labels, width: 2, height: 2 }, { palette: [[0, 0, 0, 0], [9, 9, 9]], opacity: 1 });
-    scribble(labels);
+    scribble([labels]);
     await done;
     const [none, nine] = [[0, 0, 0, 0], [9, 9, 9, 255]];
     assert.deepEqual(painted, [none, nine, nine, none].flat());
@@ -190,7 +195,6 @@ describe('what goes to a worker', () => {
   test('is what the views show, not the whole buffer', async (t) => {
     const { segmenter, posted } = watched(t);
     await segmenter.segmentPair(...views());
-    const found = await segmentPair(first, second);
     const room = new ArrayBuffer(2 ** 20);
     const evidence = new Uint16Array(room, 1024, found.labels.length);
     const labels = new Uint8Array(room, 2 ** 18, found.labels.length).fill(0);
@@ -206,13 +210,12 @@ describe('what goes to a worker', () => {
 
   test('may be shared or resizable memory', async (t) => {
     const { segmenter } = watched(t);
-    const wanted = timeless(await segmentPair(first, second));
     for (const frames of [views(SharedArrayBuffer), views(ArrayBuffer, { maxByteLength: 128 * size }), views(SharedArrayBuffer, { maxByteLength: 128 * size })]) {
       for (const transfer of [false, true]) {
         const again = frames.map(({ data, ...rest }) => ({ ...rest, data }));
         const call = transfer && frames[0].data.buffer instanceof ArrayBuffer ? frames.map(own) : again;
-        assert.deepEqual(timeless(await segmenter.segmentPair(...call, { transfer })), wanted);
-        assert.deepEqual(timeless(await segmentPair(...again)), wanted);
+        assert.deepEqual(timeless(await segmenter.segmentPair(...call, { transfer })), WANTED.segmentPair);
+        assert.deepEqual(timeless(await segmentPair(...again)), WANTED.segmentPair);
       }
     }
   });
@@ -238,30 +241,7 @@ describe('what goes to a worker', () => {
   });
 });
 
-describe('transfer: true gives the buffers away', () => {
-  for (const [title, make] of Object.entries(HOSTS)) {
-    test(title, async (t) => {
-      const calls = make(t);
-      const frames = [own(first), own(second)];
-      const result = calls.segmentPair(...frames, { transfer: true });
-      assert.deepEqual(frames.map(({ data }) => data.length), [0, 0], 'at once');
-      assert.deepEqual(timeless(await result), expected);
-
-      const measurements = points(80, 1, 2);
-      const fit = calls.fitMotions(measurements, { transfer: true });
-      assert.deepEqual([measurements.positions.length, measurements.derivatives.length], [0, 0]);
-      assert.deepEqual(timeless(await fit), timeless(await fitMotions(points(80, 1, 2))));
-
-      const found = await segmentPair(first, second);
-      const evidence = new Uint16Array(found.labels.length);
-      const given = [own(first), own(second)];
-      const again = calls.relabel(...given, found, evidence, { transfer: true });
-      assert.deepEqual([...given.map(({ data }) => data.length), evidence.length], [0, 0, 0]);
-      assert.equal(found.labels.length, 64 * 48, 'the segmentation stays whole');
-      assert.deepEqual((await again).labels, found.labels);
-    });
-  }
-
+describe('transfer: true', () => {
   test('both frames in one buffer, and one frame twice', async (t) => {
     const worker = pool(t);
     const size = first.data.length;
@@ -271,9 +251,8 @@ describe('transfer: true gives the buffers away', () => {
       both.set(second.data, size + 3);
       return [{ ...first, data: both.subarray(3, size + 3) }, { ...second, data: both.subarray(size + 3) }];
     };
-    const wanted = timeless(await segmentPair(first, second));
     for (const calls of [{ segmentPair }, worker]) {
-      assert.deepEqual(timeless(await calls.segmentPair(...twoIn(), { transfer: true })), wanted);
+      assert.deepEqual(timeless(await calls.segmentPair(...twoIn(), { transfer: true })), WANTED.segmentPair);
       const still = own(first);
       assert.equal((await calls.segmentPair(still, still, { transfer: true })).count, 1);
     }
