@@ -52,11 +52,11 @@ const found = await segmentPair(first, second);
 
 /** Arguments of each call, the arrays in them that can be given away, and what writes to the rest. */
 const CALLS = {
-  segmentPair() {
+  segmentPair: () => {
     const frames = [own(first), own(second)];
     return { args: frames, arrays: frames.map(({ data }) => data), spoil: () => frames.forEach((frame) => (frame.width = 3)) };
   },
-  relabel() {
+  relabel: () => {
     const [frames, given, evidence] = [[own(first), own(second)], structuredClone(found), new Uint16Array(found.labels.length).fill(0b01, 1000, 1200)];
     const spoil = () => {
       scribble([given.labels, ...given.motions.map(({ matrix }) => matrix), ...given.junctions.map(({ labels }) => labels)]);
@@ -68,9 +68,9 @@ const CALLS = {
     };
     return { args: [...frames, given, evidence], arrays: [...frames.map(({ data }) => data), evidence], spoil };
   },
-  fitMotions() {
+  fitMotions: () => {
     const measurements = points(80, 1, 2);
-    return { args: [measurements], arrays: Object.values(measurements), spoil() {} };
+    return { args: [measurements], arrays: Object.values(measurements), spoil: () => {} };
   },
 };
 const WANTED = {
