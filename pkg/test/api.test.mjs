@@ -1,5 +1,5 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { davisPalette, fitMotions, groupLabels, paintLabels, segmentPair, VeroneseError } from 'veronese';
 import { api as codecsApi, decodeImage } from '../dist/codecs.js';
@@ -310,8 +310,10 @@ describe('paintLabels', () => {
 
 test('the codes in the types are those of the Rust side and of the sources', () => {
   const read = (path) => readFileSync(new URL(path, import.meta.url), 'utf8');
-  const declared = new Set(read('../types/index.d.ts').match(/ErrorCode =[^;]+;/)[0].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1)));
-  const rust = read('../../src/error.rs').match(/=> "([a-z-]+)"/g).map((text) => text.slice(4, -1));
-  assert.ok(rust.length >= 8);
-  for (const code of rust) assert.ok(declared.has(code), `${code} is missing in types/index.d.ts`);
+  const declared = read('../types/index.d.ts').match(/ErrorCode =[^;]+;/)[0];
+  const sources = readdirSync(new URL('../src/', import.meta.url), { recursive: true }).filter((name) => name.endsWith('.ts'));
+  const thrown = sources.flatMap((name) => Array.from(read(`../src/${name}`).matchAll(/new VeroneseError\('([a-z-]+)'/g), ([, code]) => code));
+  const rust = Array.from(read('../../src/error.rs').matchAll(/=> "([a-z-]+)"/g), ([, code]) => code);
+  assert.ok(rust.length >= 8 && thrown.length > 0);
+  for (const code of [...rust, ...thrown]) assert.ok(declared.includes(`'${code}'`), `${code} is missing in types/index.d.ts`);
 });

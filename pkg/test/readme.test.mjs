@@ -70,17 +70,4 @@ describe('README.md', () => {
     assert.equal(groups[2], groups[3]);
     assert.equal(new Set(groups).size, 3);
   });
-
-  test('every error code has its place in the types', async () => {
-    const types = readFileSync(new URL('../types/index.d.ts', import.meta.url), 'utf8');
-    const known = new Set([...types.matchAll(/^ {2}\| '([a-z-]+)'/gm)].map(([, code]) => code));
-    const sources = new URL('../src/', import.meta.url);
-    const files = readdirSync(sources, { recursive: true }).filter((name) => name.endsWith('.ts'));
-    const used = files.flatMap((name) => {
-      const text = readFileSync(new URL(name, sources), 'utf8');
-      return [...text.matchAll(/new VeroneseError\('([a-z-]+)'/g)].map(([, code]) => ({ name, code }));
-    });
-    assert.ok(used.length > 0, 'the sources are found');
-    for (const { name, code } of used) assert.ok(known.has(code), `${name}: ${code}`);
-  });
 });
