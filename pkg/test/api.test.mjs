@@ -59,12 +59,6 @@ describe('segmentPair', () => {
     }
   });
 
-  test('an option that is undefined is an option not given', async () => {
-    const options = { motions: undefined, quality: undefined, markUnknown: undefined };
-    const result = await segmentPair(...pair(), { ...options, signal: undefined, onProgress: undefined });
-    assert.deepEqual(result.settings, (await segmentPair(...pair())).settings);
-  });
-
   test('is plain data that survives a structured clone', async () => {
     const result = await segmentPair(...pair());
     assert.deepEqual(structuredClone(result), result);

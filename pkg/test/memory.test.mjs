@@ -35,14 +35,6 @@ describe('after some calls, further ones take no more memory', () => {
   const small = pair();
   const larger = pair({ width: 160, height: 120 });
   const { positions, derivatives } = points(320, 1, 0.5);
-  const sweep = {
-    fast: () => segment(larger, { quality: 'fast' }),
-    best: () => segment(larger, { quality: 'best' }),
-    'frames of two sizes by turns': () => {
-      segment(larger, { quality: 'fast' });
-      segment(small, { quality: 'best' });
-    },
-  };
   const calls = {
     'with everything that can be asked for': () => {
       segment(small, { quality: 'best', confidence: true, markUnknown: true });
@@ -53,7 +45,7 @@ describe('after some calls, further ones take no more memory', () => {
       assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
     },
   };
-  for (const [title, call] of Object.entries(soaking ? { ...sweep, ...calls } : calls)) {
+  for (const [title, call] of Object.entries(calls)) {
     test(title, async () => {
       const size = await freshMemory();
       // The allocator needs some calls of different needs in turn until its free pieces fit all of them.
