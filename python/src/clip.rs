@@ -71,7 +71,7 @@ pub(crate) fn segment_clip(
         }
         (length, _) => length.unwrap_or(0),
     };
-    let whole = needed.is_some() || (source.length().is_some() && look_ahead == LookAhead::Unsaid);
+    let whole = needed.is_some() || (source.length().is_some() && look_ahead == LookAhead::Usual);
     let look_ahead = match look_ahead {
         LookAhead::Frames(frames) => Some(frames),
         _ if whole => None,
@@ -86,7 +86,7 @@ pub(crate) fn segment_clip(
         source,
         progress,
         mark_unknown,
-        asked: Some(Asked { said, state }),
+        options: Some(Options { said, state }),
         size: None,
         place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false } },
         changes: Vec::new(),
@@ -96,7 +96,7 @@ pub(crate) fn segment_clip(
 }
 
 /// The options of a whole clip.
-struct Asked {
+struct Options {
     said: FrameAnnotations,
     state: Option<Vec<u8>>,
 }
@@ -125,7 +125,7 @@ pub(crate) struct Clip {
     source: Source,
     progress: Option<Py<PyAny>>,
     mark_unknown: bool,
-    asked: Option<Asked>,
+    options: Option<Options>,
     /// Width and height of all frames, once known.
     size: Option<[usize; 2]>,
     place: Place,
@@ -149,7 +149,7 @@ impl Clip {
         let next =
             if matches!(self.place, Place::Stream { .. }) { self.next_of_stream(py) } else { self.next_of_whole(py) };
         match next {
-            Ok(Some(frame)) => self.told(py, frame).map(Some),
+            Ok(Some(frame)) => self.returned(py, frame).map(Some),
             Ok(None) => {
                 if matches!(self.place, Place::Stream { .. }) {
                     self.tracks.end();
@@ -167,7 +167,7 @@ impl Clip {
     fn frame<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
         self.prepare(py)?;
         let frame = self.labelled(py, index)?;
-        self.told(py, frame)
+        self.returned(py, frame)
     }
 
     /// Says what is certain in frames of a whole clip, or points to objects there. Returns the indices of the frames that change.
@@ -308,7 +308,7 @@ impl Clip {
     }
 
     /// A frame to return.
-    fn told<'py>(&mut self, py: Python<'py>, frame: ClipFrame) -> PyResult<Bound<'py, PyAny>> {
+    fn returned<'py>(&mut self, py: Python<'py>, frame: ClipFrame) -> PyResult<Bound<'py, PyAny>> {
         self.tracks.add(&frame);
         results::clip_frame(py, frame, self.size.unwrap_or_default())
     }
@@ -384,31 +384,31 @@ impl Clip {
             let sentence = "this needs a whole clip, and the frames of this one come once".into();
             return Err(Failure::input(sentence).into());
         }
-        let Some(asked) = self.asked.take() else { return Ok(()) };
-        let prepared = self.prepare_as(py, asked);
+        let Some(options) = self.options.take() else { return Ok(()) };
+        let prepared = self.prepare_as(py, options);
         if prepared.is_err() {
             self.close();
         }
         prepared
     }
 
-    fn prepare_as(&mut self, py: Python<'_>, mut asked: Asked) -> PyResult<()> {
-        let summary = match asked.state.take() {
-            Some(state) => self.restored(py, &asked, state)?,
-            None => self.solved(py, &asked)?,
+    fn prepare_as(&mut self, py: Python<'_>, mut options: Options) -> PyResult<()> {
+        let summary = match options.state.take() {
+            Some(state) => self.restored(py, &options, state)?,
+            None => self.solved(py, &options)?,
         };
         self.tracks.dropped = summary.dropped;
         self.place = Place::Segmented { length: summary.length, next: 0 };
         // The source may have failed before it came to a frame.
-        self.annotate(py, asked.said.of_first(summary.length)).map(drop)
+        self.annotate(py, options.said.of_first(summary.length)).map(drop)
     }
 
     /// Solves all pairs. Of a source that fails, the frames before are a clip.
-    fn solved(&mut self, py: Python<'_>, asked: &Asked) -> PyResult<Summary> {
+    fn solved(&mut self, py: Python<'_>, options: &Options) -> PyResult<Summary> {
         let mut index = 0;
         while let Some(frame) = self.read_or_fail(py, index)? {
             if let (0, Some(size)) = (index, self.size) {
-                asked.said.check(size)?;
+                options.said.check(size)?;
             }
             self.report(py, "pairs", index)?;
             self.call(py, move |kept| kept.push(frame))?;
@@ -417,7 +417,7 @@ impl Clip {
         self.call(py, Kept::conclude)
     }
 
-    fn restored(&mut self, py: Python<'_>, asked: &Asked, state: Vec<u8>) -> PyResult<Summary> {
+    fn restored(&mut self, py: Python<'_>, options: &Options, state: Vec<u8>) -> PyResult<Summary> {
         let mark_unknown = self.mark_unknown;
         let summary = self.call(py, move |kept| kept.restore(&state, mark_unknown))?;
         let (found, wanted) = (summary.length, self.source.length().unwrap_or(0));
@@ -426,7 +426,7 @@ impl Clip {
         }
         if found > 0 {
             self.size = Some(summary.size);
-            asked.said.check(summary.size)?;
+            options.said.check(summary.size)?;
         }
         Ok(summary)
     }

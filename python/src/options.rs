@@ -35,13 +35,13 @@ const MAX_SEED: u64 = (1 << 53) - 1;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LookAhead {
     /// Chosen by the frames.
-    Unsaid,
+    Usual,
     All,
     Frames(usize),
 }
 
 pub(crate) fn look_ahead(given: Option<&Bound<'_, PyAny>>) -> Result<LookAhead, Failure> {
-    let Some(given) = given else { return Ok(LookAhead::Unsaid) };
+    let Some(given) = given else { return Ok(LookAhead::Usual) };
     match (text(given).as_deref(), whole(given)) {
         (Some("all"), _) => Ok(LookAhead::All),
         (_, Some(frames)) if frames <= MAX_LOOK_AHEAD => Ok(LookAhead::Frames(frames)),

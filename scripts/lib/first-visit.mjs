@@ -1,4 +1,4 @@
-// The waiting of a first visitor: the page is opened anew with nothing kept, until its clip is found.
+// How long a first visitor waits: the page is opened anew with nothing kept, until its clip is found.
 
 /** How often it is opened. */
 const VISITS = 3;

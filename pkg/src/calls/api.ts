@@ -32,7 +32,7 @@ export class Api {
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
-  /** Arguments that were checked and taken, here or on the other side of a worker. */
+  /** Performs a task that was checked and taken, here or on the other side of a worker. */
   readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
     if (task.call === 'fitMotions') {
       const { positions, derivatives } = task.measurements;

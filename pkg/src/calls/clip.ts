@@ -7,44 +7,44 @@ import { checkedOptions } from './clip/options.js';
 import { Frames } from './clip/frames.js';
 import { type Place, PlacedClip } from './clip/place.js';
 import { streamed } from './clip/stream.js';
-import { type Told, Tracks } from './clip/tracks.js';
+import { type ClipResults, Tracks } from './clip/tracks.js';
 import { segmentedTwice } from './clip/whole.js';
 
 /** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
 export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {
-  const told: Told = { tracks: new Tracks() };
-  const rest = { tracks: () => told.tracks.value(), state: async () => told.state?.slice(), changes: async () => structuredClone(told.changes ?? []) };
-  const clip = Object.assign(segmented(frames, options, reserve, told), rest);
-  dropped.register(clip, told);
+  const results: ClipResults = { tracks: new Tracks() };
+  const rest = { tracks: () => results.tracks.value(), state: async () => results.state?.slice(), changes: async () => structuredClone(results.changes ?? []) };
+  const clip = Object.assign(segmented(frames, options, reserve, results), rest);
+  dropped.register(clip, results);
   return clip;
 }
 
 /** Ends clips whose iterators were dropped before their end. */
-const dropped = new FinalizationRegistry<Told>(({ clip }) => void clip?.end());
+const dropped = new FinalizationRegistry<ClipResults>(({ clip }) => void clip?.end());
 
 async function* segmented(
   frames: ClipSource,
   options: ClipOptions | undefined,
   reserve: (signal?: AbortSignal) => Promise<Place>,
-  told: Told,
+  results: ClipResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const task = reading(() => checkedOptions(frames, options));
   const { signal } = task;
   if (signal?.aborted) throw cancelled(signal);
   const place = await reserve(signal);
   const clip = new PlacedClip(place, signal);
-  told.clip = clip;
+  results.clip = clip;
   try {
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
     const taken = new Frames(signal);
-    for await (const frame of whole ? segmentedTwice(clip, taken, task, told) : streamed(clip, taken, task, told.tracks)) {
+    for await (const frame of whole ? segmentedTwice(clip, taken, task, results) : streamed(clip, taken, task, results.tracks)) {
       place.pause?.(true);
       yield frame;
       place.pause?.(false);
     }
   } finally {
-    delete told.clip;
+    delete results.clip;
     // Nobody waits for that.
     void clip.end();
   }

@@ -115,8 +115,8 @@ function exists(path: string, asFile: boolean): boolean {
 }
 
 /**
- * The status of a file, if it is there. One that cannot be looked at (a link that leads to itself, something in a locked folder) counts as a file:
- * whoever reads it is told why it cannot be read, and the other pairs go on.
+ * The kind of a path, if anything is there. One that cannot be looked at (a link that leads to itself, something in a locked folder) counts
+ * as a file: reading it gives the error, and the other pairs go on.
  */
 function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | undefined {
   try {

@@ -11,7 +11,7 @@ import { lookAt, makeFolder, readWritten, sha256, taken } from './files.js';
 const NAME = '.veronese';
 /** A mark of this machine, so that two of them may write into one shared folder. */
 export const HOST = sha256(hostname()).slice(0, 8);
-/** Names of this run for files that are not complete. */
+/** The name of this run for files that are not complete. */
 export const RUN = `${NAME}-${HOST}-${process.pid}`;
 const HEADER = '# What veronese wrote here: SHA-256 and path. It replaces and deletes no other files, and none that were changed since.\n';
 /** In place of a hash: a folder of files that are recognised otherwise. */
@@ -25,7 +25,7 @@ export class Manifest {
   /** By path the hashes of what this program wrote there, the newest last. While a file is replaced there are two. */
   readonly #hashes = new Map<string, string[]>();
   readonly #paths = new Map<string, string>();
-  /** The separator before the next line. */
+  /** The text before the next line. */
   #start = HEADER;
   /** Whether something else is in its place. */
   #isTaken: boolean;

@@ -20,7 +20,7 @@ export type Write = (path: string, content: Content) => Promise<void>;
 /** The folder of a run for what is not complete. */
 const PART = `${RUN}.part`;
 const PARTS = /^\.veronese-([0-9a-f]{8})-(\d+)\.(?:part|list)$/;
-/** Files of another machine that are older were left behind, milliseconds. */
+/** Age from which files of another machine were left behind, milliseconds. */
 const LEFT = 86_400_000;
 
 export class Output {

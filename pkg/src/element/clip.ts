@@ -128,10 +128,10 @@ export class ElementClip {
 
   /** The objects of the frames that are done. */
   tracks(): ClipTracks {
-    const told = this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
-    if (!this.takesCorrections) return told;
+    const found = this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
+    if (!this.takesCorrections) return found;
     const tracks = new Tracks();
-    tracks.dropped = told.dropped;
+    tracks.dropped = found.dropped;
     for (const found of this.#found) tracks.add(found);
     return tracks.value();
   }

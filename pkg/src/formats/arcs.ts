@@ -38,7 +38,7 @@ export class Borders {
   readonly #regions: Uint16Array;
   readonly #stride: number;
   readonly #nodes: Uint8Array;
-  /** The part of the tolerance in the reach, by region. */
+  /** The length that the tolerance adds to the reach, by region. */
   readonly #added: Float64Array;
 
   constructor({ masks, width, height }: Masks, tolerance: number) {
@@ -165,7 +165,7 @@ function shortest(corners: readonly number[], borders: Borders): number[] {
     const [cornerX, cornerY] = [corners[at] as number, corners[at + 1] as number];
     x[at] = 2 * (cornerX - originX);
     y[at] = 2 * (cornerY - originY);
-    // Exactly at its reach is too far.
+    // A corner exactly at its reach is too far.
     if (at > 0 && at < last) reach[at] = 2 * borders.reach(cornerX, cornerY) * (1 - 1e-9);
   }
   for (let at = 1; at < last; at += 2) {

@@ -12,7 +12,7 @@ export interface Glue {
   forgetInstance(): void;
 }
 
-/** A module with an instance to call. Entries that are loaded together share their glue. */
+/** Glue that has an instance to call. Entries that are loaded together share it. */
 const live = new WeakSet<Glue>();
 
 export class Core<G extends Glue> {

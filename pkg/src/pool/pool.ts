@@ -65,11 +65,11 @@ export type Module = () => Promise<WebAssembly.Module>;
 /** A place for one worker, which is started when there is work for it and replaced when it was ended. */
 interface Lane<Task, Result> {
   thread: Thread<Task> | undefined;
-  /** The requests that its worker has been given. */
+  /** The modules that its worker has been given. */
   modules: Set<Module>;
   job: Job<Task, Result> | undefined;
   /** Whether its worker knows of the job. */
-  told: boolean;
+  isKnown: boolean;
   /** The claim on its worker. */
   claim: Claiming | undefined;
 }
@@ -87,7 +87,7 @@ export class WorkerPool<Task, Result> {
   constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
     this.#spawn = spawn;
     this.#supply = supply;
-    const free = { thread: undefined, job: undefined, told: false, claim: undefined };
+    const free = { thread: undefined, job: undefined, isKnown: false, claim: undefined };
     this.#lanes = Array.from({ length: size }, () => ({ ...free, modules: new Set() }));
   }
 
@@ -200,8 +200,8 @@ export class WorkerPool<Task, Result> {
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
     // A reserved worker finishes the task, because its state would be lost.
-    if (lane?.told && !lane.claim) this.#end(lane);
-    else if (lane && !lane.told) lane.job = undefined;
+    if (lane?.isKnown && !lane.claim) this.#end(lane);
+    else if (lane && !lane.isKnown) lane.job = undefined;
     else if (!lane) this.#waiting.splice(this.#waiting.indexOf(job), 1);
     this.#settle(job, () => job.reject(reason));
     this.#next();
@@ -222,7 +222,7 @@ export class WorkerPool<Task, Result> {
     lane.thread = undefined;
     lane.modules.clear();
     lane.job = undefined;
-    lane.told = false;
+    lane.isKnown = false;
     lane.claim = undefined;
     if (!claim || !reason) return;
     claim.lost = reason;
@@ -245,7 +245,7 @@ export class WorkerPool<Task, Result> {
       this.#waiting.splice(this.#waiting.indexOf(job), 1);
       if (left) this.#settle(left, () => left.resolve(undefined as Result));
       lane.job = job;
-      lane.told = false;
+      lane.isKnown = false;
       void this.#start(lane, job);
     }
   }
@@ -258,7 +258,7 @@ export class WorkerPool<Task, Result> {
       if (lane.job !== job) return; // cancelled while the module loaded
       lane.thread ??= this.#spawnThread(lane);
       lane.modules.add(module);
-      lane.told = true;
+      lane.isKnown = true;
       lane.thread.hold(true);
       lane.thread.post(request);
     } catch (thrown) {

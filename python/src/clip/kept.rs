@@ -92,7 +92,7 @@ impl Kept {
         work: impl FnOnce(&mut SegmentedClip) -> veronese::Result<R>,
     ) -> Result<R, Failure> {
         match self {
-            Kept::Segmented { clip, restored, .. } => work(clip).map_err(|error| told(error, *restored)),
+            Kept::Segmented { clip, restored, .. } => work(clip).map_err(|error| failure_of(error, *restored)),
             _ => Err(ended()),
         }
     }
@@ -113,7 +113,7 @@ impl Kept {
     /// Takes the frame that is wanted.
     pub(crate) fn take(&mut self, frame: &Frame) -> Result<Step, Failure> {
         let Kept::Segmented { clip, job: Some((job, _)), restored } = self else { return Err(ended()) };
-        job.take(clip, frame).map_err(|error| told(error, *restored))?;
+        job.take(clip, frame).map_err(|error| failure_of(error, *restored))?;
         Ok(step(job))
     }
 
@@ -135,7 +135,7 @@ fn step(job: &ClipJob) -> Step {
     }
 }
 
-fn told(error: Error, restored: bool) -> Failure {
+fn failure_of(error: Error, restored: bool) -> Failure {
     match error {
         Error::OtherFrame { .. } if restored => Failure::option("state", &error.to_string()),
         error => error.into(),

@@ -4,10 +4,10 @@ import type { ClipChange, ClipFrame, ClipTrack, ClipTracks } from '../../../type
 import type { PlacedClip } from './place.js';
 
 /** The results of a clip besides its frames, and where they are kept until it ends. */
-export interface Told {
+export interface ClipResults {
   tracks: Tracks;
   state?: Uint8Array;
-  /** Annotations have changed. */
+  /** The changes by annotations. */
   changes?: ClipChange[];
   clip?: PlacedClip;
 }

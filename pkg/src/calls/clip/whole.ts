@@ -11,23 +11,23 @@ import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
-import type { Told } from './tracks.js';
+import type { ClipResults } from './tracks.js';
 
 /** The options, with masks that are checked as well. */
 type Task = Omit<CheckedOptions, 'masks'> & { masks: readonly LabelledFrame[] };
 
 /** If the source fails, the frames before come first. */
-export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: CheckedOptions, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
+export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: CheckedOptions, results: ClipResults): AsyncGenerator<ClipFrame, void, undefined> {
   const { transfer, onProgress } = asked;
   const task = { ...asked, masks: asked.masks === undefined ? [] : await masksOf(asked) };
   const { read, length: of } = task.source as Whole;
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
   const { changed, changes } = await annotated(clip, frames, task, length);
-  told.state = await clip.step<Uint8Array>({ call: 'saveClip' });
-  told.changes = changes;
-  told.tracks.dropped = dropped;
-  told.tracks.names = task.edits.names;
+  results.state = await clip.step<Uint8Array>({ call: 'saveClip' });
+  results.changes = changes;
+  results.tracks.dropped = dropped;
+  results.tracks.names = task.edits.names;
   const indices = [...upTo(length)].filter((index) => !task.changesOnly || changed.has(index));
   let done = 0;
   for await (const frame of frames.each(reads(read, indices), { indices, transfer })) {
@@ -35,7 +35,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
     onProgress?.({ frame: index, of, stage: 'labels' });
     const step = clip.step<ClipFrame>({ call: 'clipFrame', index, frame });
     frames.ahead();
-    yield told.tracks.add(await step);
+    yield results.tracks.add(await step);
   }
   const failed = frames.failure ?? failure;
   if (failed) throw failed.thrown;
