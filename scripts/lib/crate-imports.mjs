@@ -14,10 +14,8 @@ const ORDER = `error exponential hash lanes model motion order random frame line
 /** Whether no files use each other, and top modules only those before them. Prints what differs. */
 export function crateImportsAgree() {
   const uses = usesOf(sources());
-  const circles = circlesOf(uses);
-  const within = (file, circle) => [...uses.get(file)].filter((other) => circle.includes(other)).join(' ');
-  const said = (circle) => ['These files of src use each other:', ...circle.map((file) => `  ${file} → ${within(file, circle)}`)].join('\n');
-  const problems = circles.map(said);
+  const circle = inCircles(uses);
+  const problems = circle.map((file) => `${file} is in a circle with ${[...uses.get(file)].filter((other) => circle.includes(other)).join(' ')}.`);
   const top = (file) => file.split('/')[0].replace('.rs', '');
   for (const [file, others] of uses) {
     for (const other of file === 'lib.rs' ? [] : others) {
@@ -100,22 +98,9 @@ function expanded(tree, before = []) {
   return parts.filter((part) => part.trim() !== '').flatMap((part) => expanded(part, segments));
 }
 
-/** The sets of files that reach each other, sorted: the strongly connected components. */
-export function circlesOf(uses) {
-  const [index, low, stack, found] = [new Map(), new Map(), [], []];
-  const visit = (file) => {
-    index.set(file, index.size);
-    low.set(file, index.get(file));
-    stack.push(file);
-    for (const other of uses.get(file)) {
-      if (!index.has(other)) visit(other);
-      if (stack.includes(other)) low.set(file, Math.min(low.get(file), low.get(other)));
-    }
-    if (low.get(file) === index.get(file)) {
-      const own = stack.splice(stack.indexOf(file));
-      if (own.length > 1) found.push(own.sort());
-    }
-  };
-  for (const file of uses.keys()) if (!index.has(file)) visit(file);
-  return found;
+/** The files that use themselves by way of others, sorted. */
+export function inCircles(uses) {
+  const reaches = (file, wanted, seen = new Set()) =>
+    [...uses.get(file)].some((other) => other === wanted || (!seen.has(other) && seen.add(other) && reaches(other, wanted, seen)));
+  return [...uses.keys()].filter((file) => reaches(file, file)).sort();
 }

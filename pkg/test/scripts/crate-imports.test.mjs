@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { circlesOf, usesOf } from '../../../scripts/lib/crate-imports.mjs';
+import { inCircles, usesOf } from '../../../scripts/lib/crate-imports.mjs';
 
 const uses = (files) => Object.fromEntries([...usesOf(new Map(Object.entries(files)))].map(([path, others]) => [path, [...others].sort()]));
 
@@ -26,5 +26,5 @@ test('what a parent passes on is no use of its own, and leads to where it is', (
   };
   assert.deepEqual(uses(files)['a.rs'], []);
   assert.deepEqual(uses(files)['b.rs'], ['a/inner.rs']);
-  assert.deepEqual(circlesOf(usesOf(new Map(Object.entries(files)))), [['a/inner.rs', 'b.rs']]);
+  assert.deepEqual(inCircles(usesOf(new Map(Object.entries(files)))), ['a/inner.rs', 'b.rs']);
 });
