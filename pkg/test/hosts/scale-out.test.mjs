@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { Segmenter, SegmenterPool } from 'veronese';
-import { blockJobOf, missingBlocks, performBlock } from '../../../examples/scale-out/block.mjs';
+import { blockJobOf, performBlock } from '../../../examples/scale-out/block.mjs';
 import { clipJobOf, clipPlaceOf, clipResultOf, framesOf, hashesOf, pairsPlaceOf, performClip } from '../../../examples/scale-out/clip.mjs';
 import { jobOf, perform, placeOf, resultOf, sha256 } from '../../../examples/scale-out/job.mjs';
 import { frame, pair, png } from '../support/frames.mjs';
@@ -90,37 +90,6 @@ test('a clip whose worker is lost goes on at the last frame solved, to the same 
   assert.deepEqual(files(clipPlaceOf(out, job)), found);
 });
 
-test('the pairs of a clip are solved in blocks; those that are missing or damaged are solved again', async (t) => {
-  const folder = temporaryFolder(t);
-  const { frames, options, job, hashes } = await clipOf(folder, 12);
-  const [out, straight] = [folder.path('out'), folder.path('straight')];
-  const segmenter = new Segmenter();
-  t.after(() => segmenter.close());
-  const blockOf = ({ from, to }) => ({ job: blockJobOf(job, hashes.slice(from, to + 1)), clip: job, folder: frames, from, to, out, options });
-  const blocks = await missingBlocks(out, job, 12, 4);
-  assert.deepEqual(blocks, [{ from: 0, to: 4 }, { from: 4, to: 8 }, { from: 8, to: 11 }]);
-  for (const block of blocks.toReversed()) assert.deepEqual(await performBlock(segmenter, blockOf(block)), { did: true, known: 0 });
-  assert.deepEqual(readdirSync(pairsPlaceOf(out, job)).map(Number).toSorted((one, other) => one - other), Array.from({ length: 11 }, (_, k) => k + 1));
-
-  const pairs = (index) => `${pairsPlaceOf(out, job)}/${index}`;
-  const bytes = readFileSync(pairs(6));
-  rmSync(pairs(6));
-  assert.deepEqual(await missingBlocks(out, job, 12, 4), [blocks[1]]);
-  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[1])), { did: true, known: 3 });
-  assert.deepEqual(readFileSync(pairs(6)), bytes);
-  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[1])), { did: false, known: 4 });
-  await assert.rejects(performBlock(segmenter, { ...blockOf(blocks[1]), from: 5, to: 9 }), /has changed/);
-
-  rmSync(pairs(2));
-  writeFileSync(pairs(5), bytes.subarray(0, -1));
-  writeFileSync(pairs(7), bytes); // of another frame
-  // And the first frame, which has no pair.
-  assert.deepEqual(await performClip(segmenter, { job, folder: frames, options, out }), { did: true, known: 8, solved: 4 });
-  await performClip(segmenter, { job, folder: frames, options, out: straight });
-  assert.deepEqual(files(clipPlaceOf(out, job)), files(clipPlaceOf(straight, job)));
-  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[0])), { did: false, known: 4 }, 'the clip is done');
-});
-
 test('a frame that cannot be read is told by the job of its clip, not by that of its block', async (t) => {
   const folder = temporaryFolder(t);
   const { frames, options } = await clipOf(folder, 6);
@@ -141,7 +110,7 @@ async function clipOf(folder, count) {
   mkdirSync(frames);
   for (let k = 0; k < count; k++) folder.file(`frames/${String(k).padStart(2, '0')}.png`, Buffer.from(png(frame(k, { width: 64, height: 48 }))));
   const [options, hashes] = [{ quality: 'fast' }, await hashesOf(frames, await framesOf(frames))];
-  return { frames, options, hashes, job: clipJobOf(hashes, options) };
+  return { frames, options, job: clipJobOf(hashes, options) };
 }
 
 function files(place) {
