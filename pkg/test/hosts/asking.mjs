@@ -5,6 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
 import { frame, pair } from '../support/moving.mjs';
 
@@ -47,6 +48,13 @@ export function video(pictures, { rate = 10, format = 'matroska' } = {}) {
 /** A request of Label Studio for the boxes of one video. */
 export function videoTask(address, data = { fps: 10 }) {
   return { tasks: [{ data: { video: address, ...data } }], label_config: VIDEO_CONFIG };
+}
+
+/** The address of a Label Studio backend that ends with the test. */
+export async function backend(t, options = {}) {
+  const started = await startBackend({ jobs: 1, ...options });
+  t.after(() => started.close());
+  return started.address;
 }
 
 /** A server on loopback that ends with the test, and its origin. */

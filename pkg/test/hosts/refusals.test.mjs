@@ -5,15 +5,8 @@ import { describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { startFunction } from '../../../examples/hosts/cvat.mjs';
 import { createFetch } from '../../../examples/hosts/fetch-file.mjs';
-import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { bmp, png, ppm } from '../support/frames.mjs';
-import { files, frames, listen, post, postAs, task } from './asking.mjs';
-
-async function backend(t, options = {}) {
-  const started = await startBackend({ jobs: 1, ...options });
-  t.after(() => started.close());
-  return started.address;
-}
+import { backend, files, frames, listen, post, postAs, task } from './asking.mjs';
 
 async function cvat(t, options = {}) {
   const started = await startFunction({ jobs: 1, ...options });

@@ -5,17 +5,10 @@ import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
 import { detect, end, handler, startFunction } from '../../../examples/hosts/cvat.mjs';
-import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
-import { CONFIG, files, frames, post, task } from './asking.mjs';
+import { CONFIG, backend, files, frames, post, task } from './asking.mjs';
 
 describe('the Label Studio backend', () => {
-  async function backend(t, options = {}) {
-    const started = await startBackend({ jobs: 1, ...options });
-    t.after(() => started.close());
-    return started.address;
-  }
-
   test('health, set-up, versions, webhook', async (t) => {
     const address = await backend(t);
     assert.equal((await (await fetch(`${address}/health`)).json()).status, 'UP');

@@ -7,19 +7,12 @@ import { describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { segmentClip } from 'veronese';
 import { boxesOf, rateOf } from '../../../examples/hosts/boxes.mjs';
-import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { createFollow } from '../../../examples/hosts/video.mjs';
 import { png } from '../support/frames.mjs';
-import { clip, frames, listen, post, video, videoTask, withoutVideos } from './asking.mjs';
+import { backend, clip, frames, listen, post, video, videoTask, withoutVideos } from './asking.mjs';
 
 const film = clip();
 const bytes = withoutVideos ? undefined : video(film);
-
-async function backend(t, options = {}) {
-  const started = await startBackend({ jobs: 1, ...options });
-  t.after(() => started.close());
-  return started.address;
-}
 
 /** A server that has one file, and a backend that may fetch it. */
 async function served(t, content, { type = 'video/x-matroska', ...options } = {}) {
