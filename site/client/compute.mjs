@@ -5,7 +5,7 @@ const at = (name) => new URL(name, import.meta.url);
 
 /**
  * Asks a worker of its own: what computes for long must not keep others waiting. The function returns the result of the module's call
- * `name`, see module.d.ts, or rejects with the module's error, whose `code` is stable. A worker that ends is replaced.
+ * `name`, or rejects with the module's error, whose `code` is stable. A worker that ends is replaced.
  */
 export function computer(script = at('worker.js')) {
   let worker;
