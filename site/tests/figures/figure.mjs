@@ -1,12 +1,22 @@
 // Shared by the tests of figures.
 
-import { expect } from '@playwright/test';
+import { test as base, expect } from '@playwright/test';
 
 import { watch } from '../site.mjs';
 
+export { expect };
+
+/** A test that fails if its page complains. */
+export const test = base.extend({
+  page: async ({ page }, use) => {
+    const { problems } = watch(page);
+    await use(page);
+    expect(problems).toEqual([]);
+  },
+});
+
 /** Opens the explainer at a figure and waits until it is computed. Nothing moves by itself unless `motion` is asked for. */
 export async function open(page, name, { motion = false } = {}) {
-  const { problems } = watch(page);
   await page.emulateMedia({ reducedMotion: motion ? 'no-preference' : 'reduce' });
   await page.goto(`method/#${name}`);
   const figure = page.locator(`figure#${name}`);
@@ -14,7 +24,7 @@ export async function open(page, name, { motion = false } = {}) {
   await expect(figure).toHaveAttribute('data-ready', '');
   const reading = figure.locator('.reading');
   await expect(reading).not.toBeEmpty();
-  return { figure, reading, problems };
+  return { figure, reading };
 }
 
 /** Drags a point by pixels of the screen. */

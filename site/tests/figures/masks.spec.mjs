@@ -56,21 +56,6 @@ test('every picture of every stage is another one', async () => {
   }
 });
 
-test('the camera rests, and the cars go up and down', async () => {
-  await stage(1).check();
-  await expect(reading()).toContainText('The background is at rest');
-  await stage(7).check();
-  const motions = (await rows()).slice(2).map(([, share, entries]) => ({ share: Number.parseFloat(share), entries: entries.split(/[\n,]/).map((entry) => Number(entry.replace('−', '-'))) }));
-  expect(motions[0].share).toBeGreaterThan(60);
-  expect(motions[0].entries).toEqual([0, 0, 0, 0, 0, 0]);
-  // Where the cars are: one on the left, one in the middle.
-  const vertical = ({ entries: [, , , a21, a22, a23] }, [x, y]) => a21 * x + a22 * y + a23;
-  const two = motions.slice(1, 3).map((motion) => [vertical(motion, [170, 220]), vertical(motion, [400, 300])]);
-  expect(two.some(([left]) => left > 8), JSON.stringify(two)).toBe(true);
-  expect(two.some(([, middle]) => middle < -8), JSON.stringify(two)).toBe(true);
-  expect(motions.reduce((sum, { share }) => sum + share, 0)).toBeCloseTo(100, 0);
-});
-
 test('things have one colour each, and so have motions, in the picture and in the table', async () => {
   await stage(7).check();
   const swatches = () => figure.locator('tbody .swatch').evaluateAll((all) => all.map((one) => getComputedStyle(one.querySelector('rect')).fill));
@@ -91,16 +76,6 @@ test('things have one colour each, and so have motions, in the picture and in th
     const row = (await rows()).find(([name]) => name.toLowerCase() === choice);
     expect(coloured.size, choice).toBe(Number(row[1]) - 1);
   }
-});
-
-test('selected motions explain all pixels, and labels drop those of single pixels', async () => {
-  await stage(4).check();
-  const selected = await rows();
-  expect(selected.reduce((sum, [, share]) => sum + Number.parseFloat(share), 0)).toBeCloseTo(100, 0);
-  await stage(6).check();
-  const labelled = (await rows()).slice(2);
-  expect(labelled.length).toBeLessThan(selected.length);
-  expect(Number.parseFloat(labelled[0][1])).toBeGreaterThan(Number.parseFloat(selected[0][1]));
 });
 
 test('another pair, and one of the reader’s own, which is the same', async () => {

@@ -1,6 +1,4 @@
-import { expect, test } from '@playwright/test';
-
-import { changes, open } from './figure.mjs';
+import { changes, expect, open, test } from './figure.mjs';
 
 test.setTimeout(240_000);
 
@@ -9,7 +7,7 @@ const table = (figure) =>
   figure.locator('tbody tr').evaluateAll((rows) => rows.map((row) => [...row.querySelectorAll('td')].map((cell) => (cell.textContent.includes('/') ? cell.textContent.split('/').map(Number) : Number(cell.textContent)))));
 
 test('trials accumulate, pause and go on; ours lies on the limit, the paper above', async ({ page }) => {
-  const { figure, reading, problems } = await open(page, 'noise');
+  const { figure, reading } = await open(page, 'noise');
   await expect(reading).toContainText('2 motions, 1 trial for each noise level.');
   const first = await table(figure);
   expect(first).toHaveLength(6);
@@ -35,11 +33,10 @@ test('trials accumulate, pause and go on; ours lies on the limit, the paper abov
   await changes(reading, () => figure.getByRole('radio', { name: 'means' }).check());
   await expect(reading).toContainText('Mean errors at 5 % noise');
   expect(await table(figure)).not.toEqual(rested);
-  expect(problems).toEqual([]);
 });
 
 test('another number of motions has trials of its own, and the page answers meanwhile', async ({ page }) => {
-  const { figure, reading, problems } = await open(page, 'noise');
+  const { figure, reading } = await open(page, 'noise');
   await figure.getByRole('radio', { name: '3' }).press('Space');
   await expect(reading).toContainText('3 motions: not yet a trial for each noise level.');
   const lasted = await page.evaluate(async () => {
@@ -54,5 +51,4 @@ test('another number of motions has trials of its own, and the page answers mean
   expect(lasted).toBeLessThan(500);
   await expect(reading).toContainText('3 motions, 1 trial for each noise level.');
   await expect(figure.locator('.plot .series .stated')).toHaveCount(1);
-  expect(problems).toEqual([]);
 });
