@@ -361,7 +361,6 @@ function boxesIn(labels: Uint8Array): number[][] {
   return [...boxes.values()];
 }
 
-
 test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 

@@ -7,7 +7,7 @@ import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 import type { Page } from '@playwright/test';
-import type { ClipTracks } from 'veronese';
+import type { ClipTracks, Segmentation } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import type { VeroneseSegmenterElement } from 'veronese/element';
 
@@ -126,6 +126,47 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
     });
     expect(found).toMatchObject({ same: [true, true], again: true, last: 3 });
     expect(found.error).toBeLessThan(8);
+  });
+
+  await test.step('two frames are copied; events tell of them, and they can be cancelled', async () => {
+    const found = await page.evaluate(async () => {
+      const element = document.createElement('veronese-segmenter');
+      element.setAttribute('quality', 'fast');
+      document.body.append(element);
+      const events: string[] = [];
+      for (const type of ['progress', 'result', 'error']) element.addEventListener(type, (event) => events.push(`${type} ${(event as CustomEvent<{ code?: string }>).detail.code ?? ''}`.trim()));
+      const code = (promise: Promise<unknown>): Promise<string> => promise.then(() => 'answered', ({ code }: { code: string }) => code);
+      const [first, second] = clip(2) as [ImageData, ImageData];
+      const expected = (await element.setFrames(first, second)).labels;
+      const bitmaps = await Promise.all(clip(2).map((frame) => createImageBitmap(frame)));
+      const answers: Uint8Array[] = [];
+      for (const [one, other] of [clip(2), bitmaps] as [ImageData | ImageBitmap, ImageData | ImageBitmap][]) {
+        const answer = element.setFrames(one, other);
+        for (const frame of [one, other]) frame instanceof ImageData ? frame.data.fill(7) : frame.close();
+        answers.push((await answer).labels);
+        // The element segments them again when an attribute changes.
+        answers.push(((await element.segment()) as Segmentation).labels);
+      }
+      const same = answers.map((labels) => String(labels) === String(expected));
+      const cancelled = code(element.setFrames(first, second));
+      element.abort();
+      const gone = clip(1)[0]!;
+      structuredClone(gone.data.buffer, { transfer: [gone.data.buffer] });
+      const codes = [await cancelled];
+      for (const wrong of [null, undefined, 5, {}, [], { data: [1], width: 16, height: 16 }, gone, bitmaps[0], new Blob(['text'])]) {
+        codes.push(await code(element.setFrames(first, wrong as ImageData)));
+      }
+      for (const [name, value] of [['motions', 'two'], ['motions', '99'], ['quality', 'good']] as const) {
+        element.setAttribute(name, value);
+        codes.push(await code(element.setFrames(first, second)));
+        element.removeAttribute(name);
+      }
+      const { length } = (await element.setFrames(first, second)).labels;
+      element.remove();
+      return { events: [...new Set(events)], same, codes, length };
+    });
+    const wrong = [...Array<string>(7).fill('invalid-input'), 'unreadable-image', 'unreadable-image', ...Array<string>(3).fill('invalid-option')];
+    expect(found).toEqual({ events: ['progress', 'result', ...[...new Set(wrong)].map((code) => `error ${code}`)], same: [true, true, true, true], codes: ['cancelled', ...wrong], length: 96 * 64 });
   });
 
   await test.step('frames that cannot be used are errors with a code', async () => {
@@ -260,8 +301,6 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
     for (const [png, labels] of pictures) expect(await coloursOf(png)).toEqual(await davis(labels));
   });
 });
-
-
 
 test('a clip takes corrections: the host may stop them, and undo them', async ({ page }) => {
   await openEmpty(page);
@@ -411,7 +450,6 @@ test('the keyboard steps through frames and chooses objects', async ({ page }) =
   await list.click({ position: { x: 4, y: 4 } });
   expect(await state()).toMatchObject({ selected: null });
 });
-
 
 /** The colours of a PNG, pixel by pixel. */
 async function coloursOf(png: readonly number[]): Promise<string> {

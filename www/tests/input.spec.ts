@@ -28,7 +28,6 @@ async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise
   );
 }
 
-
 /** Drops files and folders from the disk. */
 async function dropPaths(page: Page, paths: string[]): Promise<void> {
   const cdp = await page.context().newCDPSession(page);
