@@ -1,33 +1,10 @@
 //! Exports of whole clips: files are downloaded and compared with what the package writes of the same masks in Node.
 
-import { readFile } from 'node:fs/promises';
-
-import { type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
-import { decodeImage } from 'veronese/codecs';
-import { davisPalette } from 'veronese';
 
-import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, expect, openClip, openExport, openSegmented, pixelsOfPicture, segmentClip, test } from './support.js';
-
-async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
-  await openExport(page);
-  await page.getByLabel('Format of the clip').selectOption({ label: format });
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
-  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
-}
+import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, enter, expect, labelsInPalette, labelsOfDavis, openClip, openExport, openSegmented, pixelsOfPicture, savedClip, segmentClip, test } from './support.js';
 
 const text = (bytes: Uint8Array | undefined): string => new TextDecoder().decode(bytes);
-
-/** The labels of a PNG in the DAVIS palette. */
-async function labelsIn(bytes: Uint8Array): Promise<Uint8Array> {
-  return labelsFromColours((await decodeImage(bytes)).data);
-}
-
-function labelsFromColours(data: Uint8Array | Uint8ClampedArray): Uint8Array {
-  const number = (colours: ArrayLike<number>, at: number): number => (colours[at]! << 16) | (colours[at + 1]! << 8) | colours[at + 2]!;
-  const byColour = new Map(davisPalette().map((colour, label) => [number(colour, 0), label]));
-  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get(number(data, 4 * p)) ?? -1);
-}
 
 test('a clip is exported in the formats of annotation tools, with the objects that are ticked; the preview shows one frame as its file has it', async ({ page }) => {
   const files = await clipFrames(4);
@@ -45,17 +22,15 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     const formats = page.getByLabel('Format of the clip');
     await formats.selectOption({ label: 'DAVIS' });
     await expect(listed).toHaveText(['davis/Annotations/480p/f00-f03/f00.png … f03.png, 4 files', 'davis/ImageSets/2017/val.txt']);
-    const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
+    const davis = unzipSync((await savedClip(page, 'DAVIS')).bytes);
     const own = davis['davis/Annotations/480p/f00-f03/f03.png']!;
     await expect(caption).toHaveText(`f03.png: ${(own.length / 1000).toFixed(1)} kB`);
-    const shown = async (): Promise<Uint8Array> => {
-      return labelsFromColours(await pixelsOfPicture(preview.locator('img')));
-    };
+    const shown = async (): Promise<Uint8Array> => labelsInPalette(await pixelsOfPicture(preview.locator('img')));
     expect(differences(await shown(), found[3]!)).toBe(0);
 
     await formats.selectOption({ label: 'YOLO segmentation' });
     await expect(listed).toHaveText(['yolo/labels/f00.txt … f03.txt, 4 files', 'yolo/names.txt']);
-    const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+    const yolo = unzipSync((await savedClip(page, 'YOLO segmentation')).bytes);
     const beginning = (await preview.locator('pre').textContent())!.replace(/…$/, '');
     expect(beginning.length).toBeGreaterThan(40);
     expect(text(yolo['yolo/labels/f03.txt']).startsWith(beginning)).toBe(true);
@@ -89,16 +64,15 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   for (const object of [1, 2]) await page.getByLabel(`Show Object ${object}`).check();
 
   const name = page.locator('#objects .motion-name').nth(1);
-  await name.fill('Ball');
-  await name.press('Enter');
+  await enter(name, 'Ball');
 
   // An indexed PNG for each frame, under the frame's name.
-  const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
+  const davis = unzipSync((await savedClip(page, 'DAVIS')).bytes);
   const folder = 'davis/Annotations/480p/f00-f03';
   expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
-  for (const [index, file] of files.entries()) expect(differences(await labelsIn(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
+  for (const [index, file] of files.entries()) expect(differences(await labelsOfDavis(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
 
-  const vis = JSON.parse((await savedAs(page, 'YouTube-VIS')).bytes.toString()) as {
+  const vis = JSON.parse((await savedClip(page, 'YouTube-VIS')).bytes.toString()) as {
     videos: { file_names: string[] }[];
     categories: { name: string }[];
     annotations: { areas: (number | null)[] }[];
@@ -111,24 +85,24 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   // Objects that are not ticked are left out.
   await page.keyboard.press('Escape');
   await page.getByLabel('Show Object 2').uncheck();
-  const cvat = (await savedAs(page, 'CVAT, tracks')).bytes.toString();
+  const cvat = (await savedClip(page, 'CVAT, tracks')).bytes.toString();
   expect([...cvat.matchAll(/<track [^>]*label="([^"]*)"/g)].map(([, label]) => label)).toEqual(['Ball']);
   expect([...cvat.matchAll(/<polygon frame="(\d+)"[^>]*outside="0"/g)].map(([, frame]) => Number(frame))).toEqual([0, 1, 2, 3]);
 
-  const mots = unzipSync((await savedAs(page, 'MOTS')).bytes);
+  const mots = unzipSync((await savedClip(page, 'MOTS')).bytes);
   expect(text(mots['mots/gt/labels.txt'])).toBe('Ball\n');
   expect(text(mots['mots/gt/gt.txt']).trim().split('\n')).toHaveLength(4);
 
-  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  const yolo = unzipSync((await savedClip(page, 'YOLO segmentation')).bytes);
   expect(Object.keys(yolo)).toEqual([...files.map((file) => `yolo/labels/${file.name.replace('.png', '.txt')}`), 'yolo/names.txt']);
   expect(text(yolo['yolo/labels/f03.txt'])).toMatch(/^0( \d[\d.e-]*){6,}\n$/);
 
-  const tasks = JSON.parse((await savedAs(page, 'Label Studio')).bytes.toString()) as { data: { image: string }; predictions: { result: unknown[] }[] }[];
+  const tasks = JSON.parse((await savedClip(page, 'Label Studio')).bytes.toString()) as { data: { image: string }; predictions: { result: unknown[] }[] }[];
   expect(tasks.map(({ data }) => data.image.replace(/^.*\//, ''))).toEqual(files.map((file) => file.name));
   expect(tasks.map(({ predictions }) => predictions[0]!.result.length)).toEqual([1, 1, 1, 1]);
   await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 4 frames.');
 
-  const coco = JSON.parse((await savedAs(page, 'COCO, RLE')).bytes.toString()) as { images: unknown[]; annotations: { attributes: { track_id: number } }[] };
+  const coco = JSON.parse((await savedClip(page, 'COCO, RLE')).bytes.toString()) as { images: unknown[]; annotations: { attributes: { track_id: number } }[] };
   expect(coco.images).toHaveLength(4);
   expect(coco.annotations.map(({ attributes }) => attributes.track_id)).toEqual([1, 1, 1, 1]);
 
@@ -189,8 +163,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
     }
     field.dispatchEvent(new Event('change', { bubbles: true }));
   });
-  await names.nth(2).fill('the cube');
-  await names.nth(2).press('Enter');
+  await enter(names.nth(2), 'the cube');
   await give('1', 'ball');
   await give('2', 'crate');
   const own = page.locator('#objects .class');
@@ -216,22 +189,21 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await expect(own.nth(2)).toHaveValue('crate');
 
   const numbered = ['person', 'box', 'ball', 'crate'].map((name, k) => ({ id: k + 1, name }));
-  const coco = await savedAs(page, 'COCO, RLE');
+  const coco = await savedClip(page, 'COCO, RLE');
   const { categories: written, annotations } = JSON.parse(coco.bytes.toString()) as { categories: unknown; annotations: { category_id: number }[] };
   expect(written).toEqual(numbered);
   expect(new Set(annotations.map(({ category_id }) => category_id))).toEqual(new Set([3, 4]));
-  expect((JSON.parse((await savedAs(page, 'YouTube-VIS')).bytes.toString()) as { categories: unknown }).categories).toEqual(numbered);
-  const cvat = (await savedAs(page, 'CVAT, tracks')).bytes.toString();
+  expect((JSON.parse((await savedClip(page, 'YouTube-VIS')).bytes.toString()) as { categories: unknown }).categories).toEqual(numbered);
+  const cvat = (await savedClip(page, 'CVAT, tracks')).bytes.toString();
   expect([...cvat.matchAll(/<label><name>(\w+)/g)].map(([, name]) => name)).toEqual(['person', 'box', 'ball', 'crate']);
   expect([...cvat.matchAll(/<track [^>]*label="([^"]*)"/g)].map(([, label]) => label)).toEqual(['ball', 'crate']);
-  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  const yolo = unzipSync((await savedClip(page, 'YOLO segmentation')).bytes);
   expect([text(yolo['yolo/names.txt']), text(yolo['yolo/labels/f00.txt']).match(/^\d+/gm)]).toEqual(['person\nbox\nball\ncrate\n', ['2', '3']]);
   await page.keyboard.press('Escape');
 
   // The classes of a file are those of its objects.
   await page.keyboard.press('1');
-  await own.nth(1).fill('');
-  await own.nth(1).press('Enter');
+  await enter(own.nth(1), '');
   await expect(names.nth(1)).toHaveValue('Object 1');
   await dropOn(page, [file('coco.json', coco.bytes.toString())]);
   await clipDone(page);

@@ -1,23 +1,14 @@
 //! Clips exported as videos: played by the browser, and compared with the masks that the package finds in Node.
 
-import { readFile } from 'node:fs/promises';
-
 import { type Page } from '@playwright/test';
 import { ALL_FORMATS, BufferSource, EncodedPacketSink, Input } from 'mediabunny';
 import { decodeImage } from 'veronese/codecs';
 
-import { clipDone, clipFrames, clipInNode, done, expect, openEmpty, openExport, openSegmented, pixelsOfPicture, test, upload } from './support.js';
+import { clipDone, clipFrames, clipInNode, done, expect, openEmpty, openExport, openSegmented, pixelsOfPicture, savedClip, test, upload } from './support.js';
 import { video } from './video.js';
 
 /** Odd, which H.264 cannot be. */
 const [WIDTH, HEIGHT] = [201, 141];
-
-async function savedVideo(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
-  await openExport(page);
-  await page.getByLabel('Format of the clip').selectOption({ label: format });
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
-  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
-}
 
 /** The RGBA bytes of these moments, as a `<video>` element shows them, and its size and duration. */
 async function played(page: Page, bytes: Buffer, type: string, times: readonly number[]): Promise<{ width: number; height: number; duration: number; frames: Uint8Array[] }> {
@@ -86,7 +77,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   const at = [0, 3];
   const times = at.map((k) => (k + 0.5) / 25);
 
-  const transparent = await savedVideo(page, 'Video, transparent');
+  const transparent = await savedClip(page, 'Video, transparent');
   expect(transparent.name).toBe('f00-f03-transparent.webm');
   const cut = await played(page, transparent.bytes, 'video/webm', times);
   expect([cut.width, cut.height]).toEqual([WIDTH, HEIGHT]);
@@ -100,7 +91,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
     expect(off.reduce((sum, one) => sum + one, 0) / off.length).toBeLessThan(12);
   }
 
-  const green = await savedVideo(page, 'Video, green screen');
+  const green = await savedClip(page, 'Video, green screen');
   expect(green.name).toMatch(/^f00-f03-green\.(mp4|webm)$/);
   const screen = await played(page, green.bytes, green.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
   expect([screen.width, screen.height]).toEqual(green.name.endsWith('mp4') ? [WIDTH - 1, HEIGHT - 1] : [WIDTH, HEIGHT]);
@@ -109,7 +100,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
     expect(share(screen.frames[i]!, screen.width, found[k]!, (rgba) => !isGreen(rgba), wanted)).toBeLessThan(0.03);
   }
 
-  const matte = await savedVideo(page, 'Video, matte');
+  const matte = await savedClip(page, 'Video, matte');
   const white = await played(page, matte.bytes, matte.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
   for (const [i, k] of at.entries()) expect(share(white.frames[i]!, white.width, found[k]!, ([r]) => r! > 127, wanted)).toBeLessThan(0.005);
   await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 4 frames.');
@@ -144,7 +135,7 @@ test('a video of the frames between the in point and the out point has their tim
   const { starts } = await timesIn(file.buffer);
   const wanted = starts.slice(2, 7).map((start) => start - starts[2]!);
   for (const format of ['Video, transparent', 'Video, green screen']) {
-    const saved = await savedVideo(page, format);
+    const saved = await savedClip(page, format);
     const written = await timesIn(saved.bytes);
     expect(written.starts).toHaveLength(5);
     // Containers round to a millisecond or finer.

@@ -1,11 +1,10 @@
 //! The first minute of a later visit: work that the browser keeps is seen, and one click goes on with it; and what the page tells of it.
 
-import { readFile } from 'node:fs/promises';
 import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, rename, test, upload, withoutStorage } from './support.js';
+import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -49,9 +48,7 @@ function sizes(page: Page, name: 'projects' | 'frames'): Promise<number[]> {
 }
 
 /** How many copies of frames the browser has. */
-async function copies(page: Page): Promise<number> {
-  return (await sizes(page, 'frames')).length;
-}
+const copies = async (page: Page): Promise<number> => (await sizes(page, 'frames')).length;
 
 /** Where the parts of the panel and of the bar are, from the top and from the left. */
 function places(page: Page): Promise<number[]> {
@@ -233,8 +230,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
   await expect(saving).toBeVisible();
   expect(await page.evaluate(() => (window as unknown as { said: string[] }).said)).toEqual(['Your work is saved in this browser.']);
   expect((await places(page)).slice(4)).toEqual(before.slice(4));
-  const [download] = await Promise.all([page.waitForEvent('download'), saving.click()]);
-  expect(gunzipSync(await readFile(await download.path())).toString('latin1')).toContain('"Disc"');
+  expect(gunzipSync((await saved(page, saving)).bytes).toString('latin1')).toContain('"Disc"');
 });
 
 test('work that the browser refuses to keep is shown as not saved', async ({ page }) => {
@@ -245,7 +241,6 @@ test('work that the browser refuses to keep is shown as not saved', async ({ pag
   await expect(saving).toHaveText(/^Not saved: the browser refused/);
   await expect(page.getByRole('alert')).toContainText('save the project before you leave');
   await expect(page.locator('#saving [role=status]')).toHaveText('');
-  const [download] = await Promise.all([page.waitForEvent('download'), saving.click()]);
-  expect(download.suggestedFilename()).toBe('f00-f03.veronese');
+  expect((await saved(page, saving)).name).toBe('f00-f03.veronese');
   expect(await leaves(page)).toBe(true);
 });

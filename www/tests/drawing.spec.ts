@@ -1,13 +1,9 @@
 //! Drawing by hand: exactly, as polygons, and with the outlines of the frames beside for comparison.
 
-import { readFile } from 'node:fs/promises';
-
 import { type Locator, type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
-import { davisPalette } from 'veronese';
-import { decodeImage } from 'veronese/codecs';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, openEmpty, openExport, openSegmented, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, openEmpty, openExport, openSegmented, savedClip, savedProject, shown, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -67,14 +63,9 @@ async function press(page: Page, ...places: readonly Place[]): Promise<Place[]> 
 
 /** The labels of a frame in the archive of DAVIS masks that the page saves. */
 async function exported(page: Page, name: string): Promise<Uint8Array> {
-  await openExport(page);
-  await page.getByLabel('Format of the clip').selectOption({ label: 'DAVIS' });
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
-  const files = unzipSync(await readFile(await download.path()));
+  const files = unzipSync((await savedClip(page, 'DAVIS')).bytes);
   await page.keyboard.press('Escape');
-  const { data } = await decodeImage(Object.entries(files).find(([path]) => path.endsWith(name))![1]);
-  const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
-  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([...data.subarray(4 * p, 4 * p + 3)].join())!);
+  return labelsOfDavis(Object.entries(files).find(([path]) => path.endsWith(name))![1]);
 }
 
 /** Over the disc of `clipFrames` in frame 4, and over the background beside it. */
@@ -296,8 +287,7 @@ test('on the masks of a pair, too, what is drawn exactly is what is kept', async
   const line = [[0.7, 0.2], [0.8, 0.25]] as const;
   await openEmpty(page);
   await upload(page, await Promise.all([0, 1].map((k) => square(`f${k}.png`, width, height, 3 * k, k))));
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
-  await done(page);
+  await shown(page, 'second', 'f1.png');
   const found = await labelsOnCanvas(page);
   await page.locator('#motions > li').nth(1).locator('.motion-words').click();
   await page.keyboard.press('p');
@@ -328,10 +318,7 @@ test('on the masks of a pair, too, what is drawn exactly is what is kept', async
   expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
 
   // It belongs to the frames: it is there when they are opened again.
-  await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save project' }).click()]);
-  const project = { name: download.suggestedFilename(), mimeType: '', buffer: await readFile(await download.path()) };
-  await page.keyboard.press('Escape');
+  const project = await savedProject(page);
   await page.keyboard.press('Control+z');
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await upload(page, [project]);

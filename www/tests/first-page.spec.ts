@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, clipPhase, done, expect, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
+import { axe, clipDone, clipFrames, clipPhase, done, enter, expect, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -58,8 +58,7 @@ test('the page opens with a clip, shows what is found, and keeps nothing of it; 
   expect(await leaves(page)).toBe(true);
   expect(await isAnythingKept(page)).toBe(false);
   const name = page.locator('#objects .motion-name').first();
-  await name.fill('White car');
-  await name.press('Enter');
+  await enter(name, 'White car');
   await page.getByRole('button', { name: 'Accept all' }).click();
   await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
   await openExport(page);

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { done, expect, openEmpty, test, upload } from './support.js';
+import { done, expect, openEmpty, shown, test, upload } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -43,8 +43,7 @@ test('three steps through a clip and choosing a tool shift nothing, on a desktop
     const shift = await watchShifts(page);
     for (let k = from + 1; k <= from + 3; k++) {
       await page.getByRole('button', { name: 'Step both forward' }).click();
-      await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${k},`);
-      await done(page);
+      await shown(page, 'first', `#${k},`);
     }
     expect(await shift(), `${width} × ${height}`).toBeLessThanOrEqual(0.01);
     await page.evaluate(() => scrollTo(0, 0));

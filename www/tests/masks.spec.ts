@@ -1,11 +1,8 @@
 //! The page shows exactly what the package computes.
 
-import { readFile } from 'node:fs/promises';
-
-import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, openEmpty, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
+import { MOTIONS_IN_SAMPLE, PAIR, chooseMotions, differences, done, expect, labelsOfDavis, labelsOnCanvas, openEmpty, openExport, pixelsOf, sample, saved, segmentedInNode, square, test, upload } from './support.js';
 
 for (const quality of ['fast', 'best'] as const) {
   test(`the sample pair is segmented as in Node, ${quality}`, { tag: quality === 'best' ? '@soak' : [] }, async ({ page }) => {
@@ -66,14 +63,10 @@ test('frames, masks and files of two uploaded files are those of Node, and are s
 
   // The labels PNG holds the labels.
   await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
-  expect(download.suggestedFilename()).toBe('labels.png');
-  const file = await readFile(await download.path());
-  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // 8 bits, indexed
-  const { data } = await decodeImage(file);
-  const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
-  const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
-  expect(differences(labels, expected.labels)).toBe(0);
+  const { name, bytes } = await saved(page, page.getByRole('button', { name: 'Labels PNG' }));
+  expect(name).toBe('labels.png');
+  expect([...bytes.subarray(24, 26)]).toEqual([8, 3]); // 8 bits, indexed
+  expect(differences(await labelsOfDavis(bytes), expected.labels)).toBe(0);
   await page.keyboard.press('Escape');
 
   // The second frame is shown by a switch and while a key is held.
@@ -103,8 +96,7 @@ test('frames, masks and files of two uploaded files are those of Node, and are s
   await page.getByLabel('Best').check();
   await done(page);
   await openExport(page);
-  const [json] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
-  const report: unknown = JSON.parse(await readFile(await json.path(), 'utf8'));
+  const report: unknown = JSON.parse((await saved(page, page.getByRole('button', { name: 'Result JSON' }))).bytes.toString());
   expect(report).toMatchObject({ version: 1, width: 161, height: 97, settings: { motions: 2, quality: 'best', markUnknown: false } });
   expect(report).not.toHaveProperty('labels');
   const two = await segmentedInNode(second, first, { motions: 2, quality: 'best' });

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { PAIR, square, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, test, unwatched, upload, withSamples } from './support.js';
+import { PAIR, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, shown, square, test, unwatched, upload, withSamples } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
@@ -117,8 +117,7 @@ test('a first visit loads at most 550 KB, compressed, until it shows masks', asy
 test('memory does not grow over 100 segmentations', { tag: '@soak' }, async ({ page }) => {
   await openEmpty(page);
   await upload(page, [await square('first.png', 200, 150, 0, 0), await square('second.png', 200, 150, 4, 2)]);
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
-  await done(page);
+  await shown(page, 'second', 'second.png');
   const cdp = await page.context().newCDPSession(page);
   const heap = async (): Promise<number> => {
     await cdp.send('HeapProfiler.collectGarbage');

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { PAIR, type Upload, clipFrames, done, expect, openEmpty, square, test, upload, withSamples } from './support.js';
+import { type Upload, PAIR, clipFrames, done, expect, openEmpty, shown, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -16,8 +16,7 @@ async function openClip(page: Page, count: number): Promise<void> {
 /** The clip can still be stepped through. */
 async function expectToStep(page: Page, first: number): Promise<void> {
   await page.getByRole('button', { name: 'Step both forward' }).click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${first},`);
-  await done(page);
+  await shown(page, 'first', `#${first},`);
 }
 
 test('the worker starts and warms up while the first frames are on their way; a broken file does not lose strokes that are being applied', async ({ page, context }) => {
@@ -92,8 +91,7 @@ test('a step can be cancelled; a sample that cannot be read leaves the clip open
   await expectToStep(page, 1);
   await expect(page.locator('#clip-first-at')).toHaveText('#1, 0.033 s');
   await page.getByRole('button', { name: 'Step both back' }).click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
-  await done(page);
+  await shown(page, 'first', '#0,');
 
   // An unreadable sample leaves the clip open.
   await withSamples(page);

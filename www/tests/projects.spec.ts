@@ -1,15 +1,10 @@
 //! Projects: what is done with a clip or a pair is kept in the browser and as a file, and is there when the same frames are opened again.
 
-import { readFile } from 'node:fs/promises';
 import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipInNode, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, rename, reopen, segmentClip, smallFrames, square, test, upload, withoutStorage } from './support.js';
-
-async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
-  return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
-}
+import { type Upload, clipInNode, differences, done, drag, enter, expect, goTo, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, square, test, upload, withoutStorage } from './support.js';
 
 /** Waits until the panel says that the work is kept, and nothing is left to write. */
 async function kept(page: Page): Promise<void> {
@@ -49,13 +44,6 @@ async function hide(page: Page): Promise<void> {
   });
 }
 
-async function savedProject(page: Page): Promise<Upload> {
-  await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save project' }).click()]);
-  await page.keyboard.press('Escape');
-  return { name: download.suggestedFilename(), mimeType: '', buffer: await readFile(await download.path()) };
-}
-
 /** A segmented clip with a name and a correction. */
 async function correctedClip(page: Page, files: Upload[]): Promise<void> {
   await openSegmented(page, files);
@@ -73,7 +61,7 @@ async function isContinued(page: Page, files: readonly Upload[]): Promise<void> 
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
   for (const index of [0, last]) {
     await goTo(page, index);
-    expect(differences(await numbersOnCanvas(page), found[index]!)).toBe(0);
+    expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
   }
 }
 
@@ -99,10 +87,10 @@ test('a corrected clip is there after a reload, and can be corrected further', a
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Box' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0]));
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0]));
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 });
 
 test('classes are those of the project, and their list is there for the next clip', async ({ page }) => {
@@ -110,8 +98,7 @@ test('classes are those of the project, and their list is there for the next cli
   await openSegmented(page, files);
   const own = page.getByLabel(/^Class of .* 1$/);
   await page.keyboard.press('1');
-  await own.fill('ball');
-  await own.press('Enter');
+  await enter(own, 'ball');
   await page.getByRole('button', { name: 'Classes…' }).click();
   await page.getByRole('textbox', { name: 'Classes' }).fill('person\nball');
   await page.keyboard.press('Escape');
@@ -167,8 +154,7 @@ test('strokes and names of a pair are there after a reload', async ({ page }) =>
   await openEmpty(page, 'groups');
   await upload(page, pair);
   await done(page);
-  await page.locator('#motions .motion-name').nth(1).fill('Square');
-  await page.locator('#motions .motion-name').nth(1).press('Enter');
+  await enter(page.locator('#motions .motion-name').nth(1), 'Square');
   await page.locator('#tools [value=brush]').check();
   await drag(page, [0.1, 0.2], [0.2, 0.25]);
   await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke/);

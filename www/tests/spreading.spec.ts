@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
+import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, enter, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
 
 /** The masks of a frame, shown. */
 async function masksOf(page: Page, index: number): Promise<Uint8Array> {
@@ -194,8 +194,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   expect(await taken(3)).toBeGreaterThan(40);
 
   // The row of a new object that was not painted goes; the one where a name is typed or a button pressed stays.
-  await row.locator('.motion-name').fill('Disc');
-  await row.locator('.motion-name').press('Enter');
+  await enter(row.locator('.motion-name'), 'Disc');
   await expect(lock).toHaveAccessibleName('Lock Disc');
   await expect(lock).toHaveAttribute('aria-pressed', 'false');
   expect(await taken(1)).toBe(0);

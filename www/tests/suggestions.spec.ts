@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { encodeColourPng } from 'veronese/codecs';
-import { type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, openEmpty, segmentedInNode, test, upload } from './support.js';
+import { type Upload, axe, differences, enter, expect, labelsOnCanvas, mergeWith, openEmpty, segmentedInNode, shown, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [320, 240];
 
@@ -26,8 +26,7 @@ async function parts(name: string, t: number): Promise<Upload> {
 async function openParts(page: Page): Promise<void> {
   await openEmpty(page, 'groups');
   await upload(page, [await parts('first.png', 0), await parts('second.png', 1)]);
-  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
-  await done(page);
+  await shown(page, 'second', 'second.png');
 }
 
 /** Where the list of masks ends: it stays where it is when a suggestion is dismissed. */
@@ -57,8 +56,7 @@ test('two parts of one object are joined by a suggestion, with undo; it uses the
 
   await page.locator('#undo').click();
   const name = page.locator('#motions > li').nth(1).locator('.motion-name');
-  await name.fill('Robot');
-  await name.press('Enter');
+  await enter(name, 'Robot');
   await expect(suggestions).toHaveText([/^Object 2 may belong to Robot/]);
   await page.locator('#look [value=motions]').check({ force: true });
   await expect(suggestions).toHaveCount(0);

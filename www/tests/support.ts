@@ -6,7 +6,7 @@ import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
-import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip as segmentFrames, segmentPair } from 'veronese';
+import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
@@ -307,11 +307,41 @@ export async function motionsChosen(page: Page, motions: number | 'Automatic'): 
   await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
 }
 
+/** Types a value into a field, and Enter. */
+export async function enter(field: Locator, value: string): Promise<void> {
+  await field.fill(value);
+  await field.press('Enter');
+}
+
 /** Names the mask of a row. */
-export async function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
-  const input = page.locator(`${list} .motion-name`).nth(row);
-  await input.fill(name);
-  await input.press('Enter');
+export function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
+  return enter(page.locator(`${list} .motion-name`).nth(row), name);
+}
+
+/** Waits until a frame of the pair is another one, and the pair is segmented. */
+export async function shown(page: Page, slot: 'first' | 'second', name: string): Promise<void> {
+  await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(name);
+  await done(page);
+}
+
+/** Clicks what saves a file. */
+export async function saved(page: Page, button: Locator): Promise<{ name: string; bytes: Buffer }> {
+  const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+/** Saves the clip in a format. */
+export async function savedClip(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
+  await openExport(page);
+  await page.getByLabel('Format of the clip').selectOption({ label: format });
+  return saved(page, page.getByRole('button', { name: 'Save clip' }));
+}
+
+export async function savedProject(page: Page): Promise<Upload> {
+  await openExport(page);
+  const { name, bytes } = await saved(page, page.getByRole('button', { name: 'Save project' }));
+  await page.keyboard.press('Escape');
+  return { name, mimeType: '', buffer: bytes };
 }
 
 /** Merges the mask of a row of the list, whose details are open, with another. */
@@ -444,6 +474,16 @@ export function labelsOfColours(data: Uint8Array): Uint8Array {
 
 /** By red, green, blue and 255 as one number. */
 const LABEL_BY_COLOUR = new Map([...PALETTE.entries(), [255, UNKNOWN_COLOUR] as const].slice(1).map(([label, [r, g, b]]) => [((r << 24) | (g << 16) | (b << 8) | 255) >>> 0, label]));
+
+/** The labels of a picture in the palette of DAVIS, of its file or its RGBA bytes. */
+export async function labelsOfDavis(png: Uint8Array): Promise<Uint8Array> {
+  return labelsInPalette((await decodeImage(png)).data);
+}
+
+export function labelsInPalette(data: ArrayLike<number>): Uint8Array {
+  const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
+  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([data[4 * p], data[4 * p + 1], data[4 * p + 2]].join()) ?? -1);
+}
 
 /** The number of elements that differ: more readable in a failure than two large arrays. */
 export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number {

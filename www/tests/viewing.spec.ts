@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { chooseMotions, differences, done, expect, labelsOnCanvas, open, pixelsOf, segmentedInNode, sample, test, motionsChosen } from './support.js';
+import { chooseMotions, differences, done, enter, expect, labelsOnCanvas, motionsChosen, open, pixelsOf, sample, segmentedInNode, test } from './support.js';
 
 async function zoomShown(page: Page): Promise<number> {
   return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
@@ -139,8 +139,7 @@ test('masks are groups by default, and single motions on request, and can be nam
   await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
   await page.keyboard.press('g');
   await expect(page.locator('#motions > li')).toHaveCount(new Set(groups).size);
-  await row.locator('.motion-name').fill('White car');
-  await row.locator('.motion-name').press('Enter');
+  await enter(row.locator('.motion-name'), 'White car');
   await expect(row.getByRole('button', { name: 'Solo: show only White car' })).toBeVisible();
   await row.locator('[type=color]').fill('#123456');
   const fill = await pixelsOf(page, '#fill');

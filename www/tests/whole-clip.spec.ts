@@ -1,12 +1,10 @@
 //! Whole clips: objects that keep their numbers, segmented in the background; moving through the frames.
 
-import { readFile } from 'node:fs/promises';
-
 import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, expect, goTo, labelsOnCanvas, leaves, mergeWith, openClip, openEmpty, openExport, openSegmented, reopen, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, labelsOnCanvas, leaves, mergeWith, openClip, openEmpty, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -45,8 +43,7 @@ test('the objects of a clip keep number, name and colour in all frames, also whe
 
   const names = page.locator('#objects .motion-name');
   await expect(names).toHaveCount(3);
-  await names.nth(1).fill('Ball');
-  await names.nth(1).press('Enter');
+  await enter(names.nth(1), 'Ball');
   await expect(page.locator('#lane-names button')).toHaveText(['Ball', 'Object 2']);
 
   // The keys of a slider go to any frame, the last one too.
@@ -178,8 +175,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(kept);
   // A name given meanwhile is kept at once when the page is hidden.
   const name = page.locator('#objects .motion-name').nth(1);
-  await name.fill('Early');
-  await name.press('Enter');
+  await enter(name, 'Early');
   expect(await leaves(page)).toBe(false);
   await page.evaluate(() => {
     Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
@@ -237,16 +233,10 @@ test('only the frames from the in point to the out point are segmented and expor
   expect(new Set(await labelsOnCanvas(page))).toContain(3);
   await page.getByRole('button', { name: 'Undo' }).click();
 
-  const saved = async (format: string): Promise<Buffer> => {
-    await openExport(page);
-    await page.getByLabel('Format of the clip').selectOption({ label: format });
-    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
-    return readFile(await download.path());
-  };
-  const vis = JSON.parse((await saved('YouTube-VIS')).toString()) as { videos: { file_names: string[] }[] };
+  const vis = JSON.parse((await savedClip(page, 'YouTube-VIS')).bytes.toString()) as { videos: { file_names: string[] }[] };
   expect(vis.videos[0]!.file_names).toEqual(files.slice(2, 5).map((file) => file.name));
   // Tracks count the frames of the whole video.
-  const frames = [...(await saved('CVAT, tracks')).toString().matchAll(/<polygon frame="(\d+)"[^>]*outside="0"/g)].map(([, frame]) => Number(frame));
+  const frames = [...(await savedClip(page, 'CVAT, tracks')).bytes.toString().matchAll(/<polygon frame="(\d+)"[^>]*outside="0"/g)].map(([, frame]) => Number(frame));
   expect(new Set(frames)).toEqual(new Set([2, 3, 4]));
 });
 
@@ -332,8 +322,7 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
   await rows.nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await expect(rows).toHaveCount(2);
-  await rows.nth(1).locator('.motion-name').fill('Box');
-  await rows.nth(1).locator('.motion-name').press('Enter');
+  await enter(rows.nth(1).locator('.motion-name'), 'Box');
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 
   // Another pair, and the clip again.
@@ -369,8 +358,7 @@ test('corrections are applied again when the clip is segmented again, which leav
   await drag(page, ...OVER_DISC);
   await expect.poll(async () => (await labelsOnCanvas(page))[IN_DISC]).toBe(3); // the status is that of the deletion still
   await clipDone(page);
-  await rows.nth(1).locator('.motion-name').fill('Disc');
-  await rows.nth(1).locator('.motion-name').press('Enter');
+  await enter(rows.nth(1).locator('.motion-name'), 'Disc');
   const corrected = await labelsOnCanvas(page);
   expect(new Set(corrected)).toEqual(new Set([0, 1, 3]));
   await page.getByRole('button', { name: 'Segment the clip again' }).click();
