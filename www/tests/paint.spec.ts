@@ -32,20 +32,6 @@ function blobs(): Segmentation {
   return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
 }
 
-test('hidden labels and the background are transparent, the others opaque', () => {
-  const scene = blobs();
-  const fill = fillOf(scene, { ...EVERYTHING, hidden: new Set([2]) });
-  for (let i = 0; i < fill.length; i++) expect(fill[i]! >>> 24).toBe(scene.labels[i] === 2 || scene.labels[i] === 0 ? 0 : 255);
-});
-
-test('motions of one group have one colour', () => {
-  const scene = blobs();
-  const fill = fillOf(scene, { ...EVERYTHING, kind: 'groups' });
-  const coloursOf = (label: number): Set<number> => new Set(fill.filter((_, i) => scene.labels[i] === label));
-  expect(coloursOf(1)).toEqual(coloursOf(2));
-  expect(coloursOf(3)).not.toEqual(coloursOf(2));
-});
-
 for (const kind of ['motions', 'groups'] as const) {
   for (const thickness of [1, 2, 5]) {
     test(`outlines of ${kind} have a dark edge and a light line, each ${thickness} thick`, () => {
@@ -76,11 +62,4 @@ test('painting row by row gives the same picture', () => {
   const rows = Array.from({ length: HEIGHT }, (_, y) => y);
   expect(rows.flatMap((y) => [...fillOf(scene, EVERYTHING, y, y + 1)])).toEqual([...fillOf(scene, EVERYTHING)]);
   expect(rows.flatMap((y) => [...outlinesOf(scene, EVERYTHING, 2, y, y + 1)])).toEqual([...outlinesOf(scene, EVERYTHING, 2)]);
-});
-
-test('a colour set by the user replaces that of the palette', () => {
-  const scene = blobs();
-  const fill = fillOf(scene, { ...EVERYTHING, colours: { 'motions-2': [1, 2, 3], 'groups-1': [9, 9, 9] } });
-  expect(new Set(fill.filter((_, i) => scene.labels[i] === 2))).toEqual(new Set([0xff03_0201]));
-  expect(fill.includes(0xff09_0909)).toBe(false);
 });

@@ -4,37 +4,29 @@ import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
 
 import type { Clip } from '../src/clips/clip.js';
-import { codecName } from '../src/clips/codecs.js';
-import { NO_EDITS, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
-import { drawnExactly, withEdits } from '../src/correction/exact.js';
-import { labellingOf, labelsIn } from '../src/correction/parts.js';
+import { strings } from '../src/common/strings.js';
+import { labelsIn } from '../src/correction/parts.js';
 import { type Runs, packed, unpacked } from '../src/correction/runs.js';
-import { type Stroke, allowedLabels, constraintsFrom, eachPixel, evidenceOf } from '../src/correction/strokes.js';
+import { eachPixel, evidenceOf } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
-import { residualOf } from '../src/drawing/residual.js';
-import { atSize } from '../src/export/full-size.js';
+import { WHOLE, inPicture, panned, within, zoomedAt } from '../src/drawing/viewport.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
 import { commandFor, scriptFor } from '../src/export/reproduce.js';
-import type { Matrix } from '../src/result/describe.js';
+import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 import { suggestionsOf } from '../src/result/junctions.js';
-import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
+import { merged, separated } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { painted, promptOf, refined } from '../src/session/clip/drawing.js';
-import type { Frames } from '../src/session/frames.js';
-import type { PairSegmenting } from '../src/session/pair/segmenting.js';
-import { Playing } from '../src/session/playing.js';
 import { exactly } from '../src/state/exact.js';
 import { withSaid } from '../src/state/said.js';
-import { becameAfter, fromSpan, numbersOf, spanAt, withRun } from '../src/state/spans.js';
+import { fromSpan, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
-import { INITIAL, type Result, Store } from '../src/state/state.js';
+import { INITIAL, type Result } from '../src/state/state.js';
 import { type Painted, type Prompt, type Said, points, withStatement } from '../src/state/statement.js';
-import { editsIn, saidAtSize, theirNumbers, toSpan, toldOf } from '../src/state/told.js';
-import { type Tracked, type TrackedFrame, type Version, isUnsavedClip, unchanged, untracked, versionOf } from '../src/state/tracked.js';
-import { cornersOf, setCorner, takeBack } from '../src/views/polygon.js';
-import { differences } from './support.js';
+import { saidAtSize, theirNumbers, toSpan, toldOf } from '../src/state/told.js';
+import { type TrackedFrame, type Version, untracked } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 
@@ -53,25 +45,6 @@ function scene(): Segmentation {
   const settings = { motions: 'auto', quality: 'best', markUnknown: false, software: '' } as const;
   return { version: 1, width: 8, height: 4, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
 }
-
-test('masks are groups or motions, and can be merged and ungrouped', () => {
-  const found = scene();
-  expect(masksOf(found, 'groups').map(({ id, pixels }) => [id, pixels])).toEqual([[0, 8], [1, 16], [2, 8]]);
-  expect(masksOf(found, 'motions').map(({ id }) => id)).toEqual([0, 1, 2, 3]);
-  expect(labelSet(found, 'groups', 1)).toBe(0b0110);
-  expect(labelSet(found, 'motions', 1)).toBe(0b0010);
-
-  const joined = merged(found, 'groups', 2, 1);
-  expect(joined.motions.map(({ group }) => group)).toEqual([0, 1, 1, 1]);
-  expect(found.motions.map(({ group }) => group)).toEqual([0, 1, 1, 2]);
-  // Merging single motions leaves the rest of their groups alone.
-  expect(merged(found, 'motions', 0, 3).motions.map(({ group }) => group)).toEqual([0, 1, 1, 0]);
-  expect(ungrouped(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
-});
-
-test('a motion is taken out of its group', () => {
-  expect(separated(scene(), 1).motions.map(({ group }) => group)).toEqual([0, 3, 1, 2]);
-});
 
 test('suggestions are about groups, the surest first, until they are followed or dismissed', () => {
   const junction = (a: number, b: number, likelihood: number): Segmentation['junctions'][number] => ({ labels: [a, b], likelihood, border: 20 });
@@ -128,30 +101,6 @@ test('all notations of a motion move pixels the same way', () => {
   expect(b * (x + 0.5) + d * (y + 0.5) + f - 0.5).toBeCloseTo(moved[1]!, 6);
 });
 
-test('a result at full size has the same motions', () => {
-  const found = scene();
-  const full = atSize(found, { width: 24, height: 12 });
-  expect(full.labels.length).toBe(24 * 12);
-  expect([...full.labels.subarray(0, 24)]).toEqual([...Array(6).fill(0), ...Array(6).fill(1), ...Array(6).fill(2), ...Array(6).fill(3)]);
-  expect(full.motions.map(({ pixels }) => pixels)).toEqual([72, 72, 72, 72]);
-  expect(full.motions[3]!.bbox).toEqual([18, 0, 6, 12]);
-  const flow = ([a11, a12, a13, a21, a22, a23]: Matrix, x: number, y: number): number[] => [a11 * x + a12 * y + a13, a21 * x + a22 * y + a23];
-  // Small pixel (7, 2) covers the large pixels 21…23, 6…8.
-  const [small, large] = [flow(found.motions[3]!.matrix, 7, 2), flow(full.motions[3]!.matrix, 22, 7)];
-  expect(large[0]).toBeCloseTo(3 * small[0]!, 9);
-  expect(large[1]).toBeCloseTo(3 * small[1]!, 9);
-  expect(atSize(found, { width: 8, height: 4 })).toBe(found);
-});
-
-test('the residual is black where a motion fits, and dark grey where it leaves the frame', () => {
-  const found: Segmentation = { ...scene(), motions: scene().motions.map((motion) => ({ ...motion, matrix: [0, 0, 1, 0, 0, 0] })) };
-  const picture = (shift: number) => ({ width: 8, height: 4, data: Uint8Array.from({ length: 128 }, (_, i) => (i % 4 === 3 ? 255 : 20 * (((i >> 2) % 8) - shift) + 20)) });
-  const pixels = residualOf(found, picture(0), picture(1), 0, 4);
-  for (let p = 0; p < 32; p++) expect(pixels[p]).toBe(p % 8 === 7 ? 0xff28_2420 : 0xff00_0000);
-  const worse = residualOf(found, picture(0), picture(3), 0, 4);
-  expect(worse[0]! & 0xff).toBeGreaterThan(200);
-});
-
 test('arrows point in the direction of the motion', () => {
   const { arrows, magnified } = arrowsOf({ ...scene(), labels: new Uint8Array(32).fill(3) });
   expect(arrows.length).toBeGreaterThan(0);
@@ -169,13 +118,6 @@ test('a link holds the settings, and invalid values are ignored', () => {
   expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, swapped: false });
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
   expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
-});
-
-test('codecs have their common names', () => {
-  expect(codecName('hevc', 'hvc1')).toBe('HEVC (H.265)');
-  expect(codecName(null, 'mp4v')).toBe('MPEG-4 Part 2 (DivX, Xvid)');
-  expect(codecName(null, 'SVQ3')).toBe('SVQ3');
-  expect(codecName(null, null)).toBeNull();
 });
 
 test('command and script contain the settings that are not defaults', () => {
@@ -201,14 +143,6 @@ test('command and script contain the settings that are not defaults', () => {
   ]);
 });
 
-test('labels survive run-length encoding', () => {
-  const [width, height] = [37, 23];
-  const labels = Uint8Array.from({ length: width * height }, (_, p) => (p % 11 === 0 ? 255 : Math.floor((p % width) / 9) % 4));
-  const runs = packed(labels, width, height);
-  expect(differences(unpacked(runs), labels)).toBe(0);
-  expect(unpacked(packed(new Uint8Array(6).fill(3), 3, 2))).toEqual(new Uint8Array(6).fill(3));
-});
-
 /** Labels given as rows of digits; a dot is unlabelled. */
 function drawing(...rows: string[]): Runs {
   const labels = Uint8Array.from([...rows.join('')], (digit) => (digit === '.' ? 255 : Number(digit)));
@@ -229,50 +163,6 @@ test('a label is matched to another labelling by its pixels', () => {
   // A larger frame.
   const large = drawing(...['0000000000', '0022001110', '0022001110', '0000001110'].flatMap((row) => Array<string>(2).fill([...row].map((c) => c + c).join(''))));
   expect(labelsIn({ of: before, labels: 0b010 }, large)).toBe(0b100);
-});
-
-test('a stroke whose mask is missing has no effect', () => {
-  const found = scene();
-  const here = labellingOf(found);
-  const path = { points: [1, 1, 6, 1], radius: 1 };
-  const brush = { ...path, tool: 'brush', mask: { of: here, labels: 0b0110 } } as const;
-  const eraser = { ...path, tool: 'eraser', mask: { of: here, labels: 0b0110 } } as const;
-  expect(constraintsFrom([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
-  const gone = { of: drawing('5554....', '555.....', '555.....', '555.....'), labels: 0b1_0000 };
-  expect(constraintsFrom([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
-  // The unlabelled mask has no motion: erasing it allows all of them, painting it has no effect.
-  const unknown = { of: here, labels: 0 };
-  expect(allowedLabels({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
-  expect(allowedLabels({ tool: 'brush', mask: unknown }, found)).toBe(0);
-});
-
-test('edits track what is in effect and what was saved, and can be scaled', () => {
-  const found = scene();
-  const of = labellingOf(found);
-  const stroke = (x: number): { stroke: Stroke } => ({ stroke: { points: [x, 1, 4, 3], radius: 2, tool: 'brush', mask: { of, labels: 1 } } });
-  const [one, two, three] = [stroke(1), stroke(2), stroke(3)];
-  const drawn = withAction(withAction(NO_EDITS, one), two);
-  expect(strokesOf(drawn)).toEqual([one.stroke, two.stroke]);
-  expect([NO_EDITS, drawn].map(isUnsaved)).toEqual([false, true]);
-  const saved = asSaved(drawn);
-  expect(isUnsaved(saved)).toBe(false);
-  const undone = { ...saved, done: 1 };
-  expect(isUnsaved(undone)).toBe(true);
-  expect(isUnsaved({ ...undone, done: 2 })).toBe(false);
-  // A new stroke replaces the undone one: the number of actions is that saved, the actions are not.
-  const other = withAction(undone, three);
-  expect(strokesOf(other)).toEqual([one.stroke, three.stroke]);
-  expect(isUnsaved(other)).toBe(true);
-
-  const large = scaled(saved, 2, 2);
-  expect(isUnsaved(large)).toBe(false);
-  expect(strokesOf(large)[0]).toMatchObject({ points: [2.5, 2.5, 8.5, 6.5], radius: 4 });
-
-  const grouping = { grouping: { of, groups: [0, 1, 0, 2] } };
-  expect(grouped(found, withAction(drawn, grouping), found).motions.map(({ group }) => group)).toEqual([0, 1, 0, 2]);
-  // Motions 1 and 3 swap numbers.
-  const swapped = { ...found, labels: found.labels.map((label) => [0, 3, 2, 1][label]!) };
-  expect(grouped(swapped, withAction(drawn, grouping), swapped).motions.map(({ group }) => group)).toEqual([0, 2, 0, 1]);
 });
 
 /** A frame of 4 pixels a row; an object for each label but 0 and 255. */
@@ -318,48 +208,6 @@ function masks(...labels: number[]): TrackedFrame {
   const objects = [...new Set(labels)].filter((id) => id > 0 && id < 255).map((id) => ({ id, pixels: 1, bbox: [0, 0, 6, 1] as [number, number, number, number], confidence: 1, matrix: null }));
   return { runs: packed(Uint8Array.from(labels), 6, 1), objects, background: null };
 }
-
-test('a correction is unsaved until it is kept, and so is that it was undone', () => {
-  const found: Tracked = { ...untracked({ count: 1 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0)] };
-  expect(isUnsavedClip(found)).toBe(false); // it can be found again
-  const corrected: Tracked = { ...found, frames: [masks(1, 1, 0, 0, 0, 0)], past: [versionOf(found)] };
-  expect(isUnsavedClip(corrected)).toBe(true);
-  const kept: Tracked = { ...corrected, saved: { ...corrected.saved, frames: corrected.frames } };
-  expect(isUnsavedClip(kept)).toBe(false);
-  const undone: Tracked = { ...kept, ...versionOf(found), past: [], future: [versionOf(kept)] };
-  expect(isUnsavedClip(undone)).toBe(true);
-  expect(isUnsavedClip({ ...undone, saved: { ...undone.saved, frames: undone.frames } })).toBe(false);
-});
-
-test('a clip stops playing when something else is being opened, which its next frame would take the place of', async () => {
-  const store = new Store();
-  const clip = { count: 5, times: null } as unknown as Clip;
-  const went: number[] = [];
-  const at = (first: number): void => store.set({ timeline: { clip, first, second: first + 1 } });
-  const goTo = async (index: number): Promise<void> => {
-    went.push(index);
-    at(index);
-    if (index === 2) store.set({ opening: true });
-  };
-  at(0);
-  await new Playing(store, { goTo } as Frames, { rest: () => undefined } as PairSegmenting).toggle();
-  expect(went).toEqual([1, 2]);
-  expect(store.get().playing).toBe(false);
-});
-
-test('an object keeps its number when its frames are segmented again', () => {
-  const none = untracked({ count: 4 } as Clip);
-  // Object 2 was deleted, 5 painted; frame 3 has no masks yet.
-  const found = [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 0, 2, 2)].map(({ runs }) => runs);
-  const frames = [masks(1, 1, 0, 0, 0, 5), masks(1, 1, 0, 0, 0, 5), masks(1, 1, 0, 0, 0, 0), null];
-  const version = { ...none, frames, found: [...found, null], largest: 5 };
-  // Each is what it overlaps most; what was deleted is known by where it was, what was painted by where it is.
-  expect(numbersOf([masks(4, 4, 0, 1, 1, 3), masks(4, 4, 0, 1, 1, 3)], { first: 0, last: 1 }, version)).toEqual(new Map([[4, 1], [1, 2], [3, 5]]));
-  // Two objects never become one, and the background is none.
-  expect(numbersOf([masks(1, 2, 2, 0, 0, 0)], { first: 0, last: 0 }, version)).toEqual(new Map([[1, 1]]));
-  // A frame without masks before is compared with its neighbour.
-  expect(numbersOf([masks(7, 7, 0, 0, 0, 0)], { first: 3, last: 3 }, version)).toEqual(new Map([[7, 1]]));
-});
 
 /** Labels of 6×1 pixels. */
 const labels = (...values: number[]): Runs => packed(Uint8Array.from(values), 6, 1);
@@ -418,13 +266,6 @@ test('the package is given annotations by its own numbers', () => {
   expect(theirNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
 });
 
-test('frames that come back with the same labels are the same', () => {
-  const before = { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 0, 0, 0, 0, 0), null] };
-  expect(unchanged(before, { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 0, 0, 0, 0, 0), null] }).frames).toBe(before.frames);
-  const now = unchanged(before, { frames: [masks(1, 1, 0, 0, 0, 0), masks(2, 2, 0, 0, 0, 0), null] });
-  expect(now.frames.map((frame, index) => frame === before.frames[index])).toEqual([true, false, true]);
-});
-
 test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
   const row = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
   const numbers = new Map([[1, 3], [3, 1]]);
@@ -437,24 +278,6 @@ test('masks and corrections are translated between the numbers of a run and thos
   expect(seen.objects.map(({ id }) => id)).toEqual([1, 2, 3, 6]);
   // There are 254 numbers.
   expect(Array.from(unpacked(fromSpan(masks(1, 1, 0, 0, 0, 0), new Map(), 254).runs))).toEqual([0, 0, 0, 0, 0, 0]);
-});
-
-test('merged and deleted objects are so in every run', () => {
-  let became = becameAfter(new Map(), { merge: [[2, 3]] });
-  became = becameAfter(became, { merge: [[1, 2]] });
-  became = becameAfter(became, { delete: [4] });
-  expect(became).toEqual(new Map([[3, 1], [2, 1], [4, 0]]));
-  expect(editsIn(new Map([[1, 1], [2, 2], [3, 3], [4, 4]]), became)).toEqual({ merge: [[1, 2, 3]], delete: [4] });
-  expect(editsIn(new Map([[5, 3], [6, 1]]), became)).toEqual({ merge: [[6, 5]], delete: [] });
-  // Where there is nothing else of an object, another goes on under its number.
-  const numbers = new Map([[5, 3], [6, 2]]);
-  expect(editsIn(numbers, became)).toEqual({ merge: [[6, 5]], delete: [] });
-  expect(numbers.get(6)).toBe(1);
-});
-
-test('masks are of the span that was segmented last', () => {
-  const [whole, part] = [{ first: 0, last: 8 }, { first: 3, last: 5 }].map((range) => ({ range, state: new Blob(), numbers: new Map() }));
-  expect([2, 3, 5, 6, 9].map((index) => spanAt([whole!, part!], index))).toEqual([whole, part, part, whole, null]);
 });
 
 test('what is drawn exactly stays under later annotations elsewhere, and follows its object when that is merged or deleted', () => {
@@ -487,29 +310,6 @@ test('what is drawn exactly stays under later annotations elsewhere, and follows
   expect(shown(again)).toEqual([0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0]);
 });
 
-test('what is drawn exactly on a pair lies over any solution, until a stroke says otherwise', () => {
-  const found = scene();
-  const mask = { of: labellingOf(found), labels: 0b0110 };
-  const corner = { points: [-0.5, -0.5, 4.5, -0.5, 4.5, 1.5, -0.5, 1.5], radius: 0, filled: true };
-  const labels = (result: Segmentation): number[] => [...result.labels.subarray(0, 8)];
-  const brushed = withAction(NO_EDITS, { exact: drawnExactly(corner, { tool: 'brush', mask }, found.labels, found) });
-  const result = withEdits(found, brushed, found);
-  // The mask has two motions: its pixels keep theirs, others get the first.
-  expect(labels(result)).toEqual([1, 1, 1, 1, 2, 2, 3, 3]);
-  expect(result.labels.subarray(16)).toEqual(found.labels.subarray(16));
-  expect(result.motions.map(({ pixels, bbox }) => [pixels, ...bbox])).toEqual([[4, 0, 2, 2, 2], [12, 0, 0, 4, 4], [8, 4, 0, 2, 4], [8, 6, 0, 2, 4]]);
-  expect(labels(withEdits({ ...found, labels: found.labels.map(() => 3) }, brushed, found))).toEqual([1, 1, 1, 1, 2, 3, 3, 3]);
-  const erased = withAction(brushed, { exact: drawnExactly({ points: [1, 0, 3, 0], radius: 0.4 }, { tool: 'eraser', mask }, result.labels, found) });
-  expect(labels(withEdits(found, erased, found))).toEqual([1, 0, 0, 0, 2, 2, 3, 3]);
-  expect(labels(withEdits(found, { ...erased, done: 1 }, found))).toEqual(labels(result));
-  const stroke: Stroke = { points: [0, 0, 1, 0], radius: 0.4, tool: 'brush', mask: { ...mask, labels: 0b1000 } };
-  expect(labels(withEdits(found, withAction(erased, { stroke }), found))).toEqual([0, 0, 0, 0, 2, 2, 3, 3]);
-  // Another result numbers the motions differently, and may have frames of another size.
-  const table = [2, 3, 0, 1];
-  const other = { ...found, labels: found.labels.map((label) => table[label]!), motions: found.motions.map((motion) => ({ ...motion, group: motion.label })) };
-  expect(labels(withEdits(other, brushed, other))).toEqual([3, 3, 3, 3, 0, 0, 1, 1]);
-});
-
 test('a polygon has the pixels whose centres it encloses, and its contour leads around them', () => {
   const [width, height] = [7, 6];
   const labels = new Uint8Array(width * height);
@@ -524,17 +324,40 @@ test('a polygon has the pixels whose centres it encloses, and its contour leads 
   expect(contoursOf(whole.with(4, 0), 3, 3, (label) => label > 0).get(1)).toBe('M0 0L3 0L3 3L0 3ZM2 1L1 1L1 2L2 2Z');
 });
 
-test('a corner of a polygon is set, closes it or is taken back', () => {
-  const points = [10, 10];
-  const setAt = (x: number, y: number): boolean => {
-    points.splice(-2, 2, x, y);
-    return setCorner(points, 6);
-  };
-  expect([setAt(10, 10), setAt(12, 12), setAt(40, 10), setAt(40, 12), setAt(40, 13)]).toEqual([false, false, false, false, false]);
-  // Neither the first corner nor the last is set twice.
-  expect(cornersOf(points)).toEqual([10, 10, 40, 10, 40, 13]);
-  expect([setAt(40, 14), setAt(13, 14), setAt(20, 14)]).toEqual([true, true, false]);
-  expect(cornersOf(points)).toEqual([10, 10, 40, 10, 40, 13, 20, 14]);
-  expect([takeBack(points), takeBack(points), setAt(13, 14)]).toEqual([true, true, false]); // two corners are no polygon
-  expect([takeBack(points), takeBack(points)]).toEqual([true, false]);
+test('the picture always fills the view, and its pixels are at most 64 pixels of the screen', () => {
+  const large = zoomedAt(WHOLE, 4, [0.5, 0.5], 1);
+  expect(inPicture(panned(large, 100, -100, 1), [0, 1])).toEqual([0, 1]);
+  expect(within({ zoom: 0.1, x: 0, y: 3 }, 1)).toEqual(WHOLE);
+  expect(zoomedAt(WHOLE, 1e6, [0.5, 0.5], 0.5).zoom).toBe(128);
+});
+
+/** The motion whose linear part is F and that moves the pixel (120, 80) by (u, v). */
+function about([f11, f12, f21, f22]: readonly [number, number, number, number], u: number, v: number): Matrix {
+  const [a11, a12, a21, a22] = [f11 - 1, f12, f21, f22 - 1];
+  return [a11, a12, u - a11 * 120 - a12 * 80, a21, a22, v - a21 * 120 - a22 * 80];
+}
+
+test('a motion in words: x is right, y is down, x towards y is clockwise, and a stretch keeps the area', () => {
+  const [shift, angle] = [[1, 0, 0, 1] as const, (1.2 * Math.PI) / 180];
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  const seldom = about([1, -0.002, 0.002, 1], 0.03, 0);
+  const words: readonly (readonly [Matrix, string, reach?: number])[] = [
+    [[0, 0, 0, 0, 0, 0], 'stands still'],
+    [about(shift, 4.13, -0.21), 'moves 4.1 px right, 0.21 px up'],
+    [about(shift, -4.13, 12), 'moves 4.1 px left, 12 px down'],
+    [about([c, -s, s, c], 0, 0), 'turns 1.2° clockwise'],
+    [about([c, s, -s, c], 0, 0), 'turns 1.2° anticlockwise'],
+    [about([1.005, 0, 0, 1.005], 0, 0), 'grows 0.5 %'],
+    [about([0.97, 0, 0, 0.97], 0, 0), 'shrinks 3 %'],
+    [about([1.02, 0, 0, 1 / 1.02], 0, 0), 'stretches 4 %'],
+    // Parts that move no pixel of the mask are left out.
+    [seldom, 'stands still', 10],
+    [seldom, 'turns 0.11° clockwise', 400],
+  ];
+  const said = (write: (parts: ReturnType<typeof visibleParts>) => string, matrix: Matrix, reach = 100): string => write(visibleParts(partsOf(matrix, [120, 80]), reach)).replaceAll('\u00a0', ' ');
+  for (const [matrix, sentence, reach] of words) expect(said(strings.motion, matrix, reach)).toBe(sentence);
+  for (const [u, v, length] of [[1.2, 14.3, '14 px down'], [-4.13, -0.21, '4.1 px left'], [3, 4, '5 px to the lower right'], [3, -4, '5 px to the upper right']] as const) {
+    expect(said(strings.displacement, about(shift, u, v))).toBe(length);
+  }
+  expect(said(strings.displacement, about([0.97, 0, 0, 0.97], 0, 0))).toBe('shrinks 3 %');
 });
