@@ -8,7 +8,7 @@ import { type Place, differences, done, drag, expect, labelsOnCanvas, mergeWith,
 /** Draws a stroke and waits for its masks. */
 async function stroke(page: Page, from: Place, to: Place): Promise<void> {
   await drag(page, from, to);
-  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
+  await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
   await done(page);
 }
 
@@ -50,8 +50,10 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
 
     await page.locator('#undo').click();
+    await expect(page.locator('#status')).toHaveText('Undone.');
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
     await page.keyboard.press('Control+Shift+z');
+    await expect(page.locator('#status')).toHaveText('Redone.');
     expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
     await page.keyboard.press('Control+z');
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
@@ -76,6 +78,7 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     const count = await rows.count();
     await rows.nth(1).getByText('More', { exact: true }).click();
     await mergeWith(rows.nth(1), 2);
+    await expect(page.locator('#status')).toHaveText('Merged.');
     await expect(rows).toHaveCount(count - 1);
     expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
     await page.locator('#undo').click();
@@ -84,6 +87,7 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     await page.locator('#redo').click();
     await rows.nth(1).getByText('More', { exact: true }).click();
     await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
+    await expect(page.locator('#status')).toHaveText('Ungrouped.');
     expect(await rows.count()).toBeGreaterThan(count - 1);
 
     await page.locator('#undo').click();

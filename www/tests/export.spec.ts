@@ -12,8 +12,7 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { readAnnotations } from 'veronese/formats';
 
-import { video } from './video.js';
-import { chooseMotions, differences, done, enter, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, pixelsOf, sample, saved, segmentedInNode, shown, square, test, upload } from './support.js';
+import { chooseMotions, differences, done, enter, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, pixelsOf, sample, saved, segmentedInNode, square, test, upload } from './support.js';
 
 /** Clicks a button of the panel that saves a file. */
 async function savedBy(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
@@ -174,26 +173,6 @@ test('a copied link opens with the same settings and the current sample', async 
   await done(page);
   await expect(page.locator('#look [value=groups]')).toBeChecked();
   await motionsChosen(page, 2);
-});
-
-test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {
-  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await openEmpty(page);
-  await upload(page, [await video(page, 8, 'webm', 'vp8')]);
-  await expect(page.locator('#clip-name')).toContainText('clip.webm');
-  await done(page);
-  await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
-  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
-  await done(page);
-  await page.getByRole('button', { name: 'Step both forward' }).click();
-  await shown(page, 'first', '#1,');
-  await openExport(page);
-  await page.getByRole('button', { name: 'Copy command' }).click();
-  await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
-  expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
-    "ffmpeg -i clip.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
-    'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
-  ]);
 });
 
 test('masks are exported as files of their own and in the formats of annotation tools, under their names', async ({ page }) => {

@@ -43,26 +43,6 @@ test('the picture is zoomed and panned, split, drawn over and blinked', async ({
   await page.keyboard.press('-');
   expect((await place()).width).toBeLessThan(before.width);
 
-  // Two fingers zoom.
-  await page.keyboard.press('0');
-  expect(await zoomShown(page)).toBe(whole);
-  await page.locator('.layers').evaluate((layers) => {
-    const box = layers.getBoundingClientRect();
-    const send = (type: string, pointerId: number, x: number): void => {
-      const at = { clientX: box.x + x * box.width, clientY: box.y + 0.5 * box.height };
-      layers.dispatchEvent(new PointerEvent(type, { pointerId, pointerType: 'touch', isPrimary: pointerId === 1, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
-    };
-    layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
-    send('pointerdown', 1, 0.45);
-    send('pointerdown', 2, 0.55);
-    for (let k = 1; k <= 5; k++) {
-      send('pointermove', 1, 0.45 - 0.02 * k);
-      send('pointermove', 2, 0.55 + 0.02 * k);
-    }
-    send('pointerup', 1, 0.35);
-    send('pointerup', 2, 0.65);
-  });
-  expect(await zoomShown(page)).toBeGreaterThan(2 * whole);
   await page.keyboard.press('0');
 
   // The split view shows both frames, and its line moves.
