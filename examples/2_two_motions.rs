@@ -31,7 +31,7 @@ fn error(truth: &[AffineMotion], found: &AffineMotion) -> f64 {
     truth.iter().map(|motion| motion.relative_error(found)).fold(f64::INFINITY, f64::min)
 }
 
-/// 400 measurements of motions in turn. Brightness constancy says I_x u + I_y v + I_t = 0: given the flow (u, v) and a
+/// 400 measurements of motions in turn. By brightness constancy I_x u + I_y v + I_t = 0: given the flow (u, v) and a
 /// gradient (I_x, I_y), it fixes I_t.
 fn measure(motions: &[AffineMotion], noise: f64) -> Result<Measurements> {
     let mut random = Random::from_seed(7);

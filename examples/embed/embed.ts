@@ -36,7 +36,7 @@ function open(given: readonly (string | File)[]): void {
   annotations.replaceChildren();
   if (first instanceof File && first.type.startsWith('video/')) segmenter.src = URL.createObjectURL(first);
   else if (given.length > 2) segmenter.frames = given;
-  else if (first !== undefined && second !== undefined) segmenter.setFrames(first, second).catch(() => undefined); // the event tells of it
+  else if (first !== undefined && second !== undefined) segmenter.setFrames(first, second).catch(() => undefined); // an event follows
   else status.textContent = 'A video or at least two frames are needed.';
 }
 

@@ -1,4 +1,4 @@
-// A server started by a command: its options, the line that says where it is, its end.
+// A server started by a command: its options, a line with its address, its end.
 
 import { parseArgs } from 'node:util';
 

@@ -11,7 +11,7 @@ import { Refusal } from './http.mjs';
 const LARGEST = 64 * 1024 * 1024;
 const PATIENCE = 30_000;
 const REDIRECTS = 5;
-/** What servers may call a file of a kind. */
+/** The content types that a file of a kind may have. */
 const TYPES = {
   image: /^(image\/|[a-z]+\/octet-stream)/i,
   video: /^(video\/|application\/(mp4|ogg)|[a-z]+\/octet-stream)/i,

@@ -11,7 +11,7 @@ const HELD = 4;
 const PATIENCE = 60_000;
 const CONNECTIONS = 256;
 
-/** An answer that says what is wrong with the request. */
+/** An answer with the fault of the request. */
 export class Refusal extends Error {
   constructor(status, code, message, headers = {}) {
     super(message);
@@ -20,8 +20,8 @@ export class Refusal extends Error {
 }
 
 /**
- * `routes`: functions of the parsed body and an `AbortSignal` by 'METHOD /path'; the signal says that nobody waits for the answer
- * any more. Listens on this computer alone unless told otherwise. `knownAs`: the names under which others reach it, beside
+ * `routes`: functions of the parsed body and an `AbortSignal` by 'METHOD /path'; the signal is aborted when nobody waits for the answer
+ * any more. Listens on this computer alone by default. `knownAs`: the names under which others reach it, beside
  * `host`, the address itself and `localhost`.
  */
 export async function serveJson(routes, { port = 0, host = '127.0.0.1', knownAs = [], largest = LARGEST } = {}) {
@@ -69,7 +69,7 @@ async function answer({ routes, known, budget }, request, response) {
 
 /**
  * A page whose host name was made to point here (DNS rebinding) counts as of one origin with this server, but its browser
- * says that name.
+ * sends that name.
  */
 function checkHost(known, { headers, socket }) {
   const name = hostname(headers.host ?? '');
@@ -94,7 +94,7 @@ function path({ url }) {
   return new URL(url, 'http://localhost').pathname.replace(/(?<=.)\/$/, '');
 }
 
-/** What Veronese refuses is the request's fault (422); what else happens is ours (500). */
+/** Errors of Veronese are the request's fault (422), all others ours (500). */
 export function refusal(error) {
   if (error instanceof Refusal) return error;
   if (error.name !== 'VeroneseError') console.error(error);

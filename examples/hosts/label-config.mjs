@@ -1,4 +1,4 @@
-// What a labelling configuration of Label Studio says.
+// Reads a labelling configuration of Label Studio.
 
 import { DOMParser, onWarningStopParsing } from '@xmldom/xmldom';
 import { Refusal } from './http.mjs';
@@ -7,7 +7,7 @@ import { Refusal } from './http.mjs';
 const LARGEST = 64 * 1024;
 
 /**
- * What is annotated and how: on a video, or on the first of two images. `labels` in their order; `fromName` and `toName` are what a
+ * The targets of annotation: on a video, or on the first of two images. `labels` in their order; `fromName` and `toName` are what a
  * result refers to.
  */
 export function readConfig(config) {

@@ -100,7 +100,7 @@ function health() {
   return { status: 'UP', model_class: 'Veronese' };
 }
 
-/** What can stand in a header. */
+/** Whether a text is allowed in a header. */
 function isToken(text) {
   return typeof text === 'string' && /^[\x21-\x7e]+$/.test(text);
 }

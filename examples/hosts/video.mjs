@@ -12,7 +12,7 @@ import { PIXELS, checkSize } from './segment.mjs';
 /** Most frames, and how long a clip may take, seconds: Label Studio itself gives up after 100. */
 const FRAMES = 1000;
 const SECONDS = 90;
-/** What is ended and goes on is killed after so many milliseconds. */
+/** A process that does not end when asked to is killed after so many milliseconds. */
 const GRACE = 2000;
 /** Containers. Other formats that ffmpeg knows are lists of files, and of this computer's as well. */
 const CONTAINERS = 'mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,ogg,mpegts,mpeg,flv,asf';
@@ -23,7 +23,7 @@ const program = join(dirname(createRequire(import.meta.url).resolve('veronese/pa
 
 /**
  * A function that follows the objects of a video by `veronese clip`, and gives what `use` makes of the result: the folder that
- * was written, what `tracks.json` says, and the video's frames per second. Nothing stays on the disk.
+ * was written, the content of `tracks.json`, and the video's frames per second. Nothing stays on the disk.
  */
 export function createFollow({ frames = FRAMES, seconds = SECONDS, pixels = PIXELS } = {}) {
   return async function follow(bytes, use, signal) {
@@ -53,7 +53,7 @@ export function createFollow({ frames = FRAMES, seconds = SECONDS, pixels = PIXE
   };
 }
 
-/** What the stream has, counted without decoding: headers may say anything. */
+/** Size, rate and number of frames, counted without decoding: a header may be wrong. */
 async function probed(video, signal) {
   const options = ['-v', 'error', '-protocol_whitelist', 'file', '-format_whitelist', CONTAINERS, '-select_streams', 'v:0', '-count_packets'];
   const wanted = ['-show_entries', 'stream=width,height,nb_read_packets,avg_frame_rate', '-of', 'json'];
@@ -68,7 +68,7 @@ async function probed(video, signal) {
   return { width: stream.width, height: stream.height, count: Number(stream.nb_read_packets), frameRate: frameRate > 0 ? frameRate : 25 };
 }
 
-/** Runs `veronese` to its end; throws what it says. */
+/** Runs `veronese` to its end; throws its error. */
 function run(args, folder, signal) {
   return new Promise((resolve, reject) => {
     if (signal.aborted) return reject(signal.reason);
@@ -101,7 +101,7 @@ function tooLong(seconds) {
   return new Refusal(422, 'too-slow', `the video takes longer than ${seconds} s: run 'veronese clip' and import what 'veronese convert' makes of it`);
 }
 
-/** What programs that read a stranger's video get to see: not the token. */
+/** The environment of programs that read a stranger's video: without the token. */
 function environment() {
   const { LABEL_STUDIO_API_KEY: _, ...rest } = process.env;
   return rest;

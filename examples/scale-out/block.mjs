@@ -1,5 +1,5 @@
-// A block of a clip as a job: the pairs of some consecutive frames. What a pair tells follows from its two frames and the settings alone, so
-// the clip's own job takes it as if it had solved the pair itself.
+// A block of a clip as a job: the pairs of some consecutive frames. The evidence of a pair follows from its two frames and the settings
+// alone, so the clip's own job takes it as if it had solved the pair itself.
 
 import { readFile, readdir } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -58,7 +58,7 @@ export async function performBlock(segmenter, { job, clip, folder, from, to, out
   try {
     for await (const _ of clipOfBlock);
   } catch (error) {
-    // What lies in the frames is for the clip's job to tell.
+    // Errors of the frames themselves are reported by the clip's job.
     if (!ending.signal.aborted && !FINAL.has(error.code)) throw error;
   }
   return { did: true, known };

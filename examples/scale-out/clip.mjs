@@ -1,5 +1,5 @@
-// One clip as a job: what it is called, where its result is, how it is done. What the pairs of each frame told is kept until the clip is
-// done: blocks of the clip write it beforehand, and a worker that takes over from another one continues at the last frame solved.
+// One clip as a job: what it is called, where its result is, how it is done. The evidence of its pairs is kept until the clip is done:
+// blocks of the clip write it beforehand, and a worker that takes over from another one continues at the last frame solved.
 
 import { readFile, readdir, rm } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -29,7 +29,7 @@ export function clipPlaceOf(out, job) {
   return join(out, job.slice(5, 7), job);
 }
 
-/** The folder that keeps what the pairs of frames told, until the clip is done: a file for each frame, named by its index. */
+/** The folder of the evidence of pairs, until the clip is done: a file for each frame, named by its index. */
 export function pairsPlaceOf(out, job) {
   return join(clipPlaceOf(out, job), 'pairs');
 }
@@ -63,7 +63,7 @@ export async function performClip(segmenter, { job, folder, out, options }) {
     const source = { length: names.length, read: async (index) => (size = await decodeImage(await readFile(join(folder, names[index])))) };
     const clip = segmenter.segmentClip(source, {
       ...options,
-      // What is missing, damaged or of other frames is solved here.
+      // Pairs that are missing, damaged or of other frames are solved here.
       knownPairs: (index) => readFile(pairs(index)).catch(() => undefined),
       onPairs: async (index, bytes) => {
         solved += 1;

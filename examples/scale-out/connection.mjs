@@ -2,7 +2,7 @@
 
 import { Redis } from 'ioredis';
 
-/** Waits for a server that is away instead of giving up, and says so once. */
+/** Waits for a server that is away instead of giving up, and logs it once. */
 export function connect(url = process.env.REDIS_URL ?? 'redis://127.0.0.1:6379') {
   const connection = new Redis(url, { maxRetriesPerRequest: null, retryStrategy: (attempt) => Math.min(attempt * 100, 2000) });
   let away = false;

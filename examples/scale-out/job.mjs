@@ -23,7 +23,7 @@ export function placeOf(out, job) {
 }
 
 /**
- * What a job found, or undefined where it is not done, or where its files are no longer what was written. The JSON is written
+ * The result of a job, or undefined where it is not done, or where its files are no longer what was written. The JSON is written
  * last: where it is, the PNG is too.
  */
 export async function resultOf(out, job) {

@@ -46,7 +46,7 @@ if (!values.collect) {
 console.log(JSON.stringify(counts));
 process.exitCode = values.collect && counts.missing > 0 ? 1 : 0;
 
-/** What a producer has written of its jobs, if it has run. */
+/** The jobs that a producer has listed, if it has run. */
 async function* listed(name) {
   if (!existsSync(join(out, name))) return;
   for await (const line of createInterface({ input: createReadStream(join(out, name)) })) yield JSON.parse(line);

@@ -1,4 +1,4 @@
-// Does jobs until it is told to end (Ctrl-C: what is under way is finished first).
+// Does jobs until it is interrupted (Ctrl-C: a job under way is finished first).
 //
 // node work.mjs [--jobs N] [--lock 30000]
 

@@ -3,7 +3,7 @@
 import { set, svg } from './figures/kit.mjs';
 
 /**
- * `area` is a plot over the picture. `describe` says what is beneath a place. `onStroke` gets the points of a finished stroke, in
+ * `area` is a plot over the picture. `describe` names the content of a place. `onStroke` gets the points of a finished stroke, in
  * coordinates of the area.
  */
 export function brush(area, { label, at, step, radius, describe, onStroke }) {

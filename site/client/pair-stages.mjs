@@ -1,4 +1,4 @@
-// The stages of a pair: their pictures, and what is said of them.
+// The stages of a pair: their pictures, texts and tables.
 
 import { html, svg, written } from './figures/kit.mjs';
 import { classOf } from './masks.mjs';
@@ -9,7 +9,7 @@ const HEAD = ['motion', 'explains best', 'its two rows'];
 const NAMES = { constraint: 'the constraint', window: 'windows', hypothesis: 'the other hypothesis' };
 
 /**
- * Each stage: its pictures, as key, text and what draws it; and what is said of it while the picture of a key is shown: a sentence, a table
+ * Each stage: its pictures, as key, text and what draws it; and, while the picture of a key is shown, a sentence, a table
  * and a reading for those who do not see the picture.
  */
 export const STAGES = [

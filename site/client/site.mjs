@@ -34,7 +34,7 @@ document.addEventListener('keydown', (event) => {
 function show() {
   dialog.showModal();
   input.select();
-  // So that it is there with the first letter; where it fails, the search says so.
+  // So that it is there with the first letter; where it fails, the search reports it.
   started().catch(() => (index = undefined));
 }
 

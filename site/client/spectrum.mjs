@@ -39,7 +39,7 @@ export function spectrum({ width, height }) {
         ...shares(singularValues).flatMap((share, k) => {
           const x = k * step + (step - wide) / 2;
           const ground = k < rank ? [] : [svg('rect', { x: k * step, width: step, y: 0, height, class: 'none' })];
-          // What is zero keeps a foot, so that it can be counted.
+          // A bar of zero keeps a foot, so that it can be counted.
           const high = Math.max(tall(share), 1.5);
           return [...ground, svg('rect', { x, width: wide, y: height - high, height: high, class: k < rank ? 'kept' : 'lost' })];
         }),

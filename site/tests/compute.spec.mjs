@@ -12,7 +12,7 @@ test('a trap ends the worker, and the next call and those that wait get a fresh 
     const ask = computer(new URL('/out/site/client/worker.js', location.href));
     const lines = () => ask('veroneseMap', Float64Array.of(1, 1, 2, 2, -1, 1, -3, 3), 2, 2).then(({ rank }) => rank);
     const failure = (promise) => promise.then(() => 'no failure', ({ code, message }) => `${code}: ${message}`);
-    // The module has no room for as many numbers as this says it has.
+    // The module has no room for an array of this length.
     const trap = () => ask('veroneseMap', { length: 2 ** 28 }, 2, 1);
     const before = await lines();
     const refused = await failure(ask('veroneseMap', Float64Array.of(1, 1), 2, 0));

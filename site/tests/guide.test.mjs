@@ -1,4 +1,4 @@
-// The guide is what its code does: every block of every page runs here, in the order of the page, and prints what the page says.
+// The guide is what its code does: every block of every page runs here, in the order of the page, and prints the output on the page.
 // `VERONESE_GUIDE=write` writes what was printed into the pages, but for blocks with `…`.
 
 import assert from 'node:assert/strict';
@@ -99,7 +99,7 @@ async function runBlock(t, { page, folder, block }) {
   assert.ok(matches(printed, output.code), `line ${output.line} says\n${output.code}\nbut it printed\n${printed}`);
 }
 
-/** The page with what was printed in the place of what it said. */
+/** Writes the outputs of this run into the page. */
 function writePage({ file, text, blocks }) {
   let written = text;
   for (const { code, printed, output } of blocks) {

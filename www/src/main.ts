@@ -81,7 +81,7 @@ mountEvidence(find(document, '#evidence', HTMLElement), store, session);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
-// Once there is work, whichever says so first.
+// Once there is work, of a pair or of a clip.
 let waiting = true;
 const mountWhenKept = (): void => {
   if (!waiting) return;

@@ -110,7 +110,7 @@ function lines() {
   ]);
 }
 
-/** Each pixel with its normal flow: all that it says of the motion. */
+/** Each pixel with its normal flow, the only part of the motion that it measures. */
 function normals({ at }, positions, derivatives) {
   const paths = [];
   for (let j = 0; j < positions.length / 2; j++) {

@@ -171,7 +171,7 @@ function curvePlot() {
       const slope = (t) => coefficients.reduceRight((sum, c, k) => (k === 0 ? sum : sum * t + k * c), 0);
       const samples = Array.from({ length: 81 }, (_, k) => area.x[0] + (k / 80) * (area.x[1] - area.x[0]));
       set(line, { points: samples.map((t) => area.at(t, value(t)).join()).join(' ') });
-      // What brightness constancy predicts for each true motion names the roots.
+      // Each root is named by the true motion whose prediction, by brightness constancy, is nearest.
       const expected = truth.map((a) => {
         const [u, v] = flow(a, pixel);
         return [-(Math.cos(angle) * u + Math.sin(angle) * v)];

@@ -25,12 +25,12 @@ export default async function mount({ stage, say }) {
 
   /** Labels of each frame: of its pairs alone, of the whole clip, and with strokes. */
   const [alone, whole, corrected] = [[], [], []];
-  /** What each pair has told, so that a run that was stopped goes on. */
+  /** The evidence of each pair, with which a run that was stopped goes on. */
   const known = [];
   let [state, strokes, frame, view, tool] = [undefined, [], EXAMPLE.frame, 'whole', 0];
   let running;
   let objects = [];
-  /** What a stopped stroke goes back to. */
+  /** The state to which a stopped stroke returns. */
   let settled = { strokes, corrected: [] };
 
   // The picture
@@ -49,7 +49,7 @@ export default async function mount({ stage, say }) {
     onStroke: (points) => state && correct([...strokes, { frame, label: tool, points }]),
   });
 
-  // What is known of each frame
+  // The results of each frame
   const areas = strip({ heading: 'What moves: the objects of the clip in their colours, a line for the pairs alone', count: COUNT, onPick: show });
   const agreement = strip({ heading: 'Agreement of the pairs alone with the clip', count: COUNT, onPick: show });
   const changed = strip({ heading: 'Changed by strokes', count: COUNT, onPick: show });

@@ -1,4 +1,4 @@
-// What the figures are made of: plots, points to drag, sliders, choices, pictures. Everything works by mouse, touch and keyboard.
+// The parts of figures: plots, points to drag, sliders, choices, pictures. Everything works by mouse, touch and keyboard.
 
 /** The same numbers for the same seed, and so the same figure for every reader. */
 export { random } from '../../../scripts/lib/random.mjs';
@@ -69,7 +69,7 @@ export function arrow([x1, y1], [x2, y2], head = 8) {
 }
 
 /**
- * A point to drag, or to move with the arrow keys (with Shift ten times as far). `describe` says where it is; `onMove` gets its new place
+ * A point to drag, or to move with the arrow keys (with Shift ten times as far). `describe` puts its place into words; `onMove` gets its new place
  * and returns nothing, or a place that it prefers. A point that is bound to a curve has `along`: `place(t)` and the inverse `nearest(place)`,
  * the range `min` to `max`, and `closed` where the curve's ends are one; the keys then move t by `step`.
  */

@@ -10,11 +10,11 @@ const METHODS = [
   { key: 'best', name: 'Ours', tone: 'one' },
   { key: 'oracle', name: 'Yardstick: labels known', tone: 'limit' },
 ];
-/** What the paper states for 5 % noise, per cent. */
+/** The paper's own figures for 5 % noise, per cent. */
 const STATED = { 2: { factorisation: 6, refined: 2.1 }, 3: { refined: 8.2 }, 4: { refined: 13.3 } };
 /** Errors below this are drawn at the bottom, per cent. */
 const LEAST = 0.05;
-/** Rounds after which the figure says how it stands. */
+/** Rounds after which the reading is updated. */
 const TOLD = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 
 export default async function mount({ stage, say }) {
@@ -50,7 +50,7 @@ export default async function mount({ stage, say }) {
     }
   }
 
-  // What is asked for is done one after another.
+  // Requests are worked on one after another.
   let done = Promise.resolve();
   const then = (work) => {
     done = done.then(work).catch((thrown) => {
@@ -142,7 +142,7 @@ function drawing(width) {
   };
 }
 
-/** What the paper states, at the right. */
+/** The paper's own figure, at the right. */
 function told(area, high, stated) {
   const [x, y] = area.at(5.5, high(stated));
   return [svg('line', { x1: x - 12, x2: area.width - 4, y1: y, y2: y, class: 'stated' }), svg('text', { x: area.width - 4, y: y - 6, 'text-anchor': 'end' }, `${stated} %`)];

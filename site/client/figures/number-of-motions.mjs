@@ -133,7 +133,7 @@ function scores() {
   };
 }
 
-/** What the rule (12) says. Where it holds for no number, the first matrix that is not full still says that there are not more. */
+/** The answer of the rule (12). Where it holds for no number, the first matrix that is not full is an upper bound. */
 function ruling(first, fires, lost) {
   if (first < 0) return 'Every matrix has full rank: no answer';
   if (fires) return `The first that is not full lacks exactly one: ${counted(first + 1)}`;

@@ -24,7 +24,7 @@ const modulo = (value, by) => ((value % by) + by) % by;
 export default async function mount({ stage, say }) {
   let angle = -25 * DEGREE;
   let motion = [1.1, 0.5];
-  /** What the motion keeps along the gradient while it is bound to the line. */
+  /** The motion's part along the gradient, which is fixed while the motion is bound to the line. */
   let bound;
   const direction = () => [Math.cos(angle), Math.sin(angle)];
   const along = ([u, v]) => u * Math.cos(angle) + v * Math.sin(angle);

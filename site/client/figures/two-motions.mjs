@@ -17,7 +17,7 @@ const TERMS = [
   ['I_y I_t', 'v_1 + v_2'],
   ['I_t^2', '1'],
 ];
-/** What of a singular value, beside the largest, or of a product is no more than rounding. */
+/** A singular value below this share of the largest, or a product below it, is rounding. */
 const ROUNDING = 1e-9;
 
 export default async function mount({ stage, say }) {

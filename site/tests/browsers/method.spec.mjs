@@ -1,4 +1,4 @@
-// The explainer in Chromium, Firefox and WebKit: each figure is computed and says what it shows.
+// The explainer in Chromium, Firefox and WebKit: each figure is computed and has a reading.
 
 import { expect, test } from '@playwright/test';
 

@@ -8,7 +8,7 @@ async function coefficients(figure) {
   return texts.map((text) => Number(text.replace('−', '-')));
 }
 
-/** A motion as its point says it. */
+/** A motion, read from its point. */
 async function motion(point) {
   const [, u, v] = (await point.getAttribute('aria-valuetext')).match(/u (\S+), v (\S+)/);
   return [u, v].map((text) => Number(text.replace('−', '-')));

@@ -41,7 +41,7 @@ function withOutputs(blocks, name) {
   return found;
 }
 
-/** Whether a program printed what a page says: `…` stands for anything in a line, and alone in a line for any lines. */
+/** Whether an output is that of a page: `…` stands for anything in a line, and alone in a line for any lines. */
 export function matches(printed, said) {
   const lines = said.trimEnd().split('\n').map((line) => line.trimEnd());
   const pattern = lines

@@ -1,5 +1,5 @@
 // Runs a block of the guide, by its language, in a reader's folder. Each runner returns what was printed, errors too, or `{ skip }` with a
-// sentence where something is not installed; it throws if the block does not do what it says.
+// sentence where something is not installed; it throws if the block fails.
 
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, symlinkSync, writeFileSync } from 'node:fs';

@@ -21,7 +21,7 @@ export function drawnExactly(path: Path, { tool, mask }: Pick<Stroke, 'tool' | '
   return { of: labellingOf(found), labels: packed(said, width, height) };
 }
 
-/** A solution with the edits: what was drawn exactly, unless a later stroke says otherwise, and the user's groups. */
+/** A solution with the edits: what was drawn exactly, unless a later stroke changed it, and the user's groups. */
 export function withEdits(solved: Segmentation, edits: Edits, found: Segmentation): Segmentation {
   const actions = edits.actions.slice(0, edits.done);
   if (!actions.some((action) => 'exact' in action)) return grouped(solved, edits, found);

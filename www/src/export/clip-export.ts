@@ -107,7 +107,7 @@ function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: r
   return { clip, objects, count, stems, ...sequence(indices), fromStart: sequence(fromStart) };
 }
 
-/** A name says what an object is unless a class does. */
+/** Without a class, the name of an object is its category. */
 function classOf({ classes, names }: Tracked, id: number): string {
   const key = keyOf('objects', id);
   return classes[key] ?? names[key] ?? CLASS;

@@ -1,4 +1,4 @@
-//! Files to pixels. Bytes are decoded without colour conversion or premultiplication, and rotated as the EXIF orientation says. For
+//! Files to pixels. Bytes are decoded without colour conversion or premultiplication, and rotated by their EXIF orientation. For
 //! opaque PNG files they are the same bytes as in Node. A canvas premultiplies by alpha, so half-transparent pixels are rounded, and
 //! JPEG decoders differ by a grey level here and there.
 

@@ -24,7 +24,7 @@ self.addEventListener('fetch', (event) => {
   event.respondWith(
     caches
       .open(CACHE)
-      // The files are the same for every origin, whatever the server's Vary header says.
+      // The files are the same for every origin, whatever the server's Vary header.
       .then((cache) => cache.match(request, { ignoreSearch: true, ignoreVary: true }))
       .then((kept) => kept ?? fetch(request)),
   );

@@ -26,7 +26,7 @@ export interface Content extends Pick<Project, 'settings' | 'classList'> {
   readonly pairs: Entries<string, Omit<Kept, 'subject' | 'edits'> & { readonly edits: Omit<Edits, 'saved'> }>;
 }
 
-/** Whether the value is what a project of that many frames says. */
+/** Whether the value is the content of a project of that many frames. */
 export function isContent(value: unknown, frames: number): value is Content {
   if (!isProject(value)) return false;
   const { clip, pairs } = value as Content;

@@ -1,4 +1,4 @@
-//! Checks of values that come from outside, such as the JSON of a file. A check says whether a value is of its kind.
+//! Checks of values that come from outside, such as the JSON of a file. A check is whether a value is of its kind.
 
 export type Check<T> = (value: unknown) => value is T;
 

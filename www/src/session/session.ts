@@ -1,4 +1,4 @@
-//! The actions of the page, in parts: views call them, and read the state. Here they are put together; each says in its file what it owns.
+//! The actions of the page, in parts: views call them, and read the state. Here they are put together.
 
 import { Projects } from '../projects/projects.js';
 import type { Store } from '../state/state.js';

@@ -1,4 +1,4 @@
-//! Labels drawn exactly in frames of a clip lie over all that is found there. The package is told nothing of them, so that nothing follows.
+//! Labels drawn exactly in frames of a clip lie over all that is found there. The package does not get them, so that nothing follows.
 
 import { type Runs, extentsOf, over } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';

@@ -1,4 +1,4 @@
-//! The objects of a whole clip: how far their segmentation is, the masks of each frame, and what a person said of them.
+//! The objects of a whole clip: how far their segmentation is, the masks of each frame, and a person's annotations.
 
 import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
@@ -28,7 +28,7 @@ export type ClipRun =
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
-      /** Time left until all masks are there, seconds; `null` until it can be told. */
+      /** Time left until all masks are there, seconds; `null` until it is known. */
       readonly left: number | null;
       /** Number of frames that are labelled, or that a correction has changed. */
       readonly labelled: number;

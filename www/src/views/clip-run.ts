@@ -31,7 +31,7 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
     cancel.hidden = !working;
     if (held && !working) segment.focus();
     bar.hidden = !working;
-    // Screen readers are told what begins and ends, not of each frame.
+    // Screen readers announce beginning and end, not each frame.
     const sentence = sentenceFor(tracked);
     if (status.textContent !== sentence) status.textContent = sentence;
     detail.textContent = detailOf(tracked);
@@ -73,7 +73,7 @@ function detailOf({ run, solved, range }: Tracked): string {
   return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(run.labelled, solved);
 }
 
-/** The share that is done, 0 to 1; `null` if it cannot be told. */
+/** The share that is done, 0 to 1; `null` if it is not known. */
 function shareOf({ run, solved, range }: Tracked): number | null {
   if (run.phase !== 'working' || run.stage === 'corrections') return null;
   if (run.stage === 'labels') return run.labelled / Math.max(1, solved);

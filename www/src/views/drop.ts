@@ -4,7 +4,7 @@ import { filesOf } from '../frames/dropped.js';
 import type { Session } from '../session/session.js';
 
 export function mountDrop(root: HTMLElement, session: Session): void {
-  // Entering a child leaves its parent, so a count tells when the files have left the page.
+  // Entering a child leaves its parent, so a count shows when the files have left the page.
   let inside = 0;
   const show = (): void => void root.classList.toggle('dropping', inside > 0);
   const carriesFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;

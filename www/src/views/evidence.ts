@@ -1,5 +1,5 @@
 //! The number of motions: how long the description of both frames is with each number, and a button to use it for this pair. The number found
-//! need not be that with the shortest: then a sentence says so.
+//! need not be that with the shortest: then a sentence explains it.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';

@@ -1,5 +1,5 @@
-//! Whether the work on screen is saved, since when, or why not, with a button that saves it as a file. Screen readers are told once; what
-//! is refused is a notice, which they are told as well.
+//! Whether the work on screen is saved, since when, or why not, with a button that saves it as a file. Screen readers announce it
+//! once, and a refusal is a notice, which they announce as well.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';

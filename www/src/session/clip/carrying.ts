@@ -1,4 +1,4 @@
-//! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
+//! Carries a person's annotations of one frame through the clip, one correction after another, because each starts from the masks of the one
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
 import { strings } from '../../common/strings.js';
@@ -113,7 +113,7 @@ export class Carrying {
     this.#shown.version(version, { phase: 'done', cause, changed: changedIn(version, tracked) });
   }
 
-  /** Takes back the correction that is being carried through the clip. Those said since are carried on. */
+  /** Takes back the correction that is being carried through the clip. Later ones are carried on. */
   #takeBack(corrections: Corrections): void {
     const { settled, waiting } = corrections;
     if (waiting.length === 0) return this.#runs.stop();

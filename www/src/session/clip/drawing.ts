@@ -27,7 +27,7 @@ export class Drawing {
   }
 
   /**
-   * Begins a stroke over the frame on screen, with the selected object. Returns what takes its path, or `null`, and tells why, if nothing
+   * Begins a stroke over the frame on screen, with the selected object. Returns what takes its path, or `null`, with a notice, if nothing
    * can be painted.
    */
   beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
@@ -58,7 +58,7 @@ export class Drawing {
 
   /**
    * Begins a box or a click in the frame on screen: around or on a new object, or one more for the object that is selected, which has some
-   * here. Returns what takes its corners, or `null`, and tells why.
+   * here. Returns what takes its corners, or `null`, with a notice.
    */
   beginPrompt(pointing: Pointing): ((path: Pick<Path, 'points'>) => void) | null {
     const at = this.#objects.frameToCorrect();

@@ -129,7 +129,7 @@ export class Objects {
     if (this.takesCorrections()) void this.carrying.correct({ edits, notes });
   }
 
-  /** Whether one of the objects is locked; tells so. */
+  /** Whether one of the objects is locked, with a notice. */
   areLocked(...ids: readonly number[]): boolean {
     const { tracked, look } = this.#store.get();
     const id = ids.find((one) => tracked?.locked.has(one));
@@ -137,7 +137,7 @@ export class Objects {
     return id !== undefined;
   }
 
-  /** The frame on screen and its index; `null`, and tells why, if it takes no corrections. */
+  /** The frame on screen and its index; `null`, with a notice, if it takes no corrections. */
   frameToCorrect(): { readonly index: number; readonly frame: LoadedFrame } | null {
     const { tracked, timeline, pair } = this.#store.get();
     const index = timeline?.first ?? null;

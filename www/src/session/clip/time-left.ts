@@ -9,7 +9,7 @@ export class TimeLeft {
     readonly of: number,
   ) {}
 
-  /** Seconds left when so many frames are done; `null` if it cannot be told yet. */
+  /** Seconds left when so many frames are done; `null` if it is not known yet. */
   at(done: number): number | null {
     if (done === this.done) return null;
     // The first frame may have waited for the module.

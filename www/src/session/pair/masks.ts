@@ -49,7 +49,7 @@ export class Masks {
     if (result !== null) this.#regroup(separated(result.segmentation, label), 'separated');
   }
 
-  /** Begins a stroke with the selected mask. Returns what takes its path, or `null`, and tells why, if it would have no effect. */
+  /** Begins a stroke with the selected mask. Returns what takes its path, or `null`, with a notice, if it would have no effect. */
   beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
     const { result, found, look, live, tool: { exact: isExact } } = this.#store.get();
     if (live !== null) return null;

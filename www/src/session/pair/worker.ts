@@ -18,7 +18,7 @@ export class PairWorker {
   prepare(): void {
     if (this.#warm) return;
     this.#warm = true;
-    this.#segmenter.warmUp().catch(() => undefined); // the request that needs the worker says why there is none
+    this.#segmenter.warmUp().catch(() => undefined); // the request that needs the worker reports why there is none
   }
 
   /** Segments a pair; `null` if the request was cancelled or replaced by another. Throws the package's errors. */
