@@ -1,17 +1,14 @@
 //! <veronese-segmenter> by itself: clips, keyboard, forms.
 
-import { createServer } from 'node:http';
-import { readFile, realpath } from 'node:fs/promises';
-import type { AddressInfo } from 'node:net';
-import { extname, join } from 'node:path';
+import { readFile } from 'node:fs/promises';
+import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 import type { Page } from '@playwright/test';
 import type { ClipTracks, Segmentation } from 'veronese';
-import { decodeImage } from 'veronese/codecs';
 import type { VeroneseSegmenterElement } from 'veronese/element';
 
-import { clipFrames, clipInNode, differences, expect, test, unwatched } from './support.js';
+import { clipFrames, clipInNode, differences, expect, labelsOfDavis, test, unwatched } from './support.js';
 import { BIT, BITS, video } from './video.js';
 
 /** Opens the host page without its own masks, and gives the page `clip(count)`, frames of a moving square as pixels. */
@@ -298,7 +295,7 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
     expect(found.failed).toEqual(['false', expect.stringContaining('32×32')]);
     // Read by another decoder, the files have the labels.
     const pictures = [[found.labels.png, found.labels.labels], ...found.frames.map((png, index) => [png, found.shown[index]!])] as [number[], number[]][];
-    for (const [png, labels] of pictures) expect(await coloursOf(png)).toEqual(await davis(labels));
+    for (const [png, labels] of pictures) expect(differences(await labelsOfDavis(Uint8Array.from(png)), labels)).toBe(0);
   });
 });
 
@@ -451,18 +448,6 @@ test('the keyboard steps through frames and chooses objects', async ({ page }) =
   expect(await state()).toMatchObject({ selected: null });
 });
 
-/** The colours of a PNG, pixel by pixel. */
-async function coloursOf(png: readonly number[]): Promise<string> {
-  const { data, width, height } = await decodeImage(Uint8Array.from(png));
-  return `${width}×${height} ${[...data].filter((_, at) => at % 4 !== 3).join()}`;
-}
-
-async function davis(labels: readonly number[]): Promise<string> {
-  const { davisPalette } = await import('veronese');
-  const palette = davisPalette();
-  return `96×64 ${labels.flatMap((label) => palette[label]!).join()}`;
-}
-
 test('every frame of a video, 30 and 12.5 a second', async ({ page }) => {
   await openEmpty(page);
   for (const [count, fps] of [[9, 30], [5, 12.5]] as const) {
@@ -500,48 +485,34 @@ test('every frame of a video, 30 and 12.5 a second', async ({ page }) => {
 
 // The examples of the package's README, in a page that loads the package without a bundler.
 
-const ROOT = fileURLToPath(new URL('../../', import.meta.url));
-const TYPES: Record<string, string> = { '.js': 'text/javascript', '.wasm': 'application/wasm', '.html': 'text/html; charset=utf-8' };
-
-unwatched('the examples of README.md', async ({ page }) => {
-  const readme = await readFile(join(ROOT, 'pkg/README.md'), 'utf8');
+unwatched('the examples of README.md', async ({ page, context }) => {
+  const root = fileURLToPath(new URL('../../', import.meta.url));
+  const readme = await readFile(join(root, 'pkg/README.md'), 'utf8');
   const examples = [...readme.matchAll(/^```html element\n([\s\S]*?)^```$/gm)].map(([, code]) => code!);
   expect(examples).toHaveLength(2);
-  const pictures = new Map((await clipFrames(4, 96, 64)).map(({ buffer }, index) => [`/f${index}.png`, buffer]));
-  pictures.set('/first.png', pictures.get('/f0.png')!).set('/second.png', pictures.get('/f1.png')!);
-  const map = JSON.stringify({ imports: { 'veronese/element': '/pkg/dist/element.js' } });
+  const frames = (await clipFrames(4, 96, 64)).map(({ buffer }) => buffer);
+  const pictures = new Map([['first.png', frames[0]!], ['second.png', frames[1]!], ...frames.map((frame, index) => [`f${index}.png`, frame] as const)]);
+  const map = JSON.stringify({ imports: { 'veronese/element': './pkg/dist/element.js' } });
   const asked: string[] = [];
-  const server = createServer((request, response) => {
-    const path = request.url ?? '/';
+  await context.route('**/readme/**', (route) => {
+    const path = new URL(route.request().url()).pathname.replace('/readme/', '');
     asked.push(path);
-    const example = /^\/(\d)\.html$/.exec(path)?.[1];
-    const answer = async (): Promise<string | Buffer> => {
-      if (example) return `<!doctype html><link rel="icon" href="data:," /><script type="importmap">${map}</script>${examples[Number(example)]}`;
-      return pictures.get(path) ?? readFile(await realpath(join(ROOT, new URL(path, 'http://host').pathname)));
-    };
-    answer().then(
-      (body) => response.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'image/png' }).end(body),
-      () => response.writeHead(404).end(),
-    );
+    const example = examples[Number(/^(\d)\.html$/.exec(path)?.[1])];
+    if (example !== undefined) return route.fulfill({ contentType: 'text/html; charset=utf-8', body: `<!doctype html><link rel="icon" href="data:," /><script type="importmap">${map}</script>${example}` });
+    const picture = pictures.get(path);
+    return route.fulfill(picture ? { contentType: 'image/png', body: picture } : { path: join(root, path) });
   });
-  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
-  const address = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
   const logged: string[] = [];
   page.on('console', (message) => logged.push(message.text()));
   page.on('pageerror', (error) => logged.push(String(error)));
-  try {
-    await page.goto(`${address}/0.html`);
-    await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeAttached();
-    // Two frames without a form load nothing that is for clips and files.
-    expect(asked.filter((path) => path.includes('later'))).toEqual([]);
-    expect(logged).toEqual([]);
-    await page.goto(`${address}/1.html`);
-    await expect(page).toHaveTitle(/^\d+ objects$/);
-    await page.getByRole('button', { name: 'Save' }).click();
-    await expect.poll(() => logged.at(-1)).toBe('00000.png 00001.png 00002.png 00003.png');
-    expect(logged.slice(0, 4).map((line) => line.split(' ')[0])).toEqual(['0', '1', '2', '3']);
-  } finally {
-    server.close();
-    server.closeAllConnections();
-  }
+  await page.goto('./readme/0.html');
+  await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeAttached();
+  // Two frames without a form load nothing that is for clips and files.
+  expect(asked.filter((path) => path.includes('later'))).toEqual([]);
+  expect(logged).toEqual([]);
+  await page.goto('./readme/1.html');
+  await expect(page).toHaveTitle(/^\d+ objects$/);
+  await page.getByRole('button', { name: 'Save' }).click();
+  await expect.poll(() => logged.at(-1)).toBe('00000.png 00001.png 00002.png 00003.png');
+  expect(logged.slice(0, 4).map((line) => line.split(' ')[0])).toEqual(['0', '1', '2', '3']);
 });

@@ -1,6 +1,5 @@
 //! The browser and Node give identical bits: motions, evidence and labels of problems; pixels and labels of the sample clip.
 
-import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type MotionFit, fitMotions } from 'veronese';
@@ -11,7 +10,6 @@ import { clipInNode, differences, expect, labelsOnCanvas, openEmpty, openSegment
 // Every kind of them once; many in npm run soak.
 const PROBLEMS = process.env.VERONESE_SOAK === undefined ? 20 : 200;
 const PACKAGE = fileURLToPath(new URL('../../pkg/', import.meta.url));
-const TYPES: Readonly<Record<string, string>> = { js: 'text/javascript', wasm: 'application/wasm' };
 
 interface Problem {
   positions: number[];
@@ -48,9 +46,7 @@ function bits(fit: Omit<MotionFit, 'labels'> & { labels: ArrayLike<number> }): s
 
 test('fits in the browser equal those in Node', async ({ page, baseURL }) => {
   await page.route('**/package/**', async (route) => {
-    const path = new URL(route.request().url()).pathname.replace(/^.*\/package\//, '');
-    const contentType = TYPES[path.split('.').pop() ?? ''];
-    await route.fulfill({ body: await readFile(PACKAGE + path), ...(contentType === undefined ? {} : { contentType }) });
+    await route.fulfill({ path: PACKAGE + new URL(route.request().url()).pathname.replace(/^.*\/package\//, '') });
   });
   await openEmpty(page);
   const problems = Array.from({ length: PROBLEMS }, (_, index) => problem(index));
