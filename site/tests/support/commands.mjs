@@ -1,7 +1,7 @@
 // The lines of a page's shell commands: those that install or download are checked and not run, the others run in a shell.
 
-import { copyFileSync, existsSync, mkdirSync, readFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
+import { existsSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
 
 import { projectText, root } from '../../../scripts/lib/project.mjs';
 import identity from '../../data/identity.mjs';
@@ -22,32 +22,21 @@ const CHECKED = [
   [/^npm ci --prefix ([\w/-]+)$/, ([, folder]) => (existsSync(join(root, folder, 'package-lock.json')) ? undefined : `no package-lock.json in ${folder}`)],
   [/^pip install -r ([\w/.]+)$/, ([, file]) => isInProject(file)],
   [/^export \w+=\S+$/, () => undefined],
+  // The reader's folder has these files; of several, `[20-31]`, the first is asked for.
+  [new RegExp(`^curl -L .*"?${identity.repository}/raw/main/([^" ]+)"?$`), ([, file]) => isInProject(file.replace(/\[(\d+)-\d+\]/, '$1'))],
   [/^(?:node|python) (examples\/[\w/.-]+)(?: .*)?$/, ([, file]) => isInProject(file)],
 ];
 
-/** `curl` of the project's own files: they are taken from the checkout. */
-const DOWNLOAD = new RegExp(`^curl -L(?: --create-dirs)? (?:-O|-o) "?(?:([^" ]+)"? "?)?${identity.repository}/raw/main/([^" ]+)"?$`);
-
-/**
- * Divides a script. Returns the lines for the shell, and what was recognised instead; copies the files that it downloads into `folder`.
- * Throws for a line that is neither.
- */
-export function divide(script, folder) {
+/** Divides a script. Returns the lines for the shell, and those that were recognised instead. Throws for a line that is neither. */
+export function divide(script) {
   const lines = script.replaceAll('\\\n', ' ').split('\n').map(withoutComment).filter((line) => line !== '');
   const [run, recognised] = [[], []];
   for (const line of lines) {
     const checked = CHECKED.find(([pattern]) => pattern.test(line));
-    const download = DOWNLOAD.exec(line);
     if (checked) {
       const [pattern, problem] = checked;
       const sentence = problem(pattern.exec(line));
       if (sentence) throw new Error(`${line}: ${sentence}`);
-      recognised.push(line);
-    } else if (download) {
-      for (const [from, to] of copies(download)) {
-        mkdirSync(dirname(join(folder, to)), { recursive: true });
-        copyFileSync(join(root, from), join(folder, to));
-      }
       recognised.push(line);
     } else if (RUN.includes(line.split(' ')[0])) {
       run.push(line);
@@ -56,16 +45,6 @@ export function divide(script, folder) {
     }
   }
   return { run, recognised };
-}
-
-/** The files of a download: from where in the checkout, to where. `[20-31]` counts, and `#1` is the number. */
-function copies([, to, from]) {
-  const [whole, first, last] = /\[(\d+)-(\d+)\]/.exec(from) ?? [];
-  if (whole === undefined) return [[from, to ?? from.split('/').at(-1)]];
-  return Array.from({ length: last - first + 1 }, (_, k) => {
-    const number = String(Number(first) + k).padStart(first.length, '0');
-    return [from.replace(whole, number), to.replace('#1', number)];
-  });
 }
 
 function withoutComment(line) {

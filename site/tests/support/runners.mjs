@@ -33,7 +33,7 @@ function writeJson({ folder, block }) {
 }
 
 function runShell({ folder, block, note }) {
-  const { run, recognised } = divide(block.code, folder);
+  const { run, recognised } = divide(block.code);
   for (const line of recognised) note(`checked, not run: ${line}`);
   if (run.length === 0) return '';
   const usesPython = run.some((line) => line.startsWith('python '));
