@@ -2,7 +2,7 @@
 
 import { unzipSync } from 'fflate';
 
-import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, enter, expect, labelsInPalette, labelsOfDavis, openClip, openExport, openSegmented, pixelsOfPicture, savedClip, segmentClip, test } from './support.js';
+import { axe, clipDone, clipFrames, clipInNode, differences, enter, expect, give, labelsInPalette, labelsOfDavis, openClip, openExport, openSegmented, pixelsOfPicture, savedClip, segmentClip, test } from './support.js';
 
 const text = (bytes: Uint8Array | undefined): string => new TextDecoder().decode(bytes);
 
@@ -20,11 +20,13 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     const listed = preview.locator('li');
     await openExport(page);
     const formats = page.getByLabel('Format of the clip');
-    await formats.selectOption({ label: 'DAVIS' });
-    await expect(listed).toHaveText(['davis/Annotations/480p/f00-f03/f00.png … f03.png, 4 files', 'davis/ImageSets/2017/val.txt']);
+    // An indexed PNG for each frame, under the frame's name.
     const davis = unzipSync((await savedClip(page, 'DAVIS')).bytes);
-    const own = davis['davis/Annotations/480p/f00-f03/f03.png']!;
-    await expect(caption).toHaveText(`f03.png: ${(own.length / 1000).toFixed(1)} kB`);
+    const folder = 'davis/Annotations/480p/f00-f03';
+    expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
+    for (const [index, file] of files.entries()) expect(differences(await labelsOfDavis(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
+    await expect(listed).toHaveText([`${folder}/f00.png … f03.png, 4 files`, 'davis/ImageSets/2017/val.txt']);
+    await expect(caption).toHaveText(`f03.png: ${(davis[`${folder}/f03.png`]!.length / 1000).toFixed(1)} kB`);
     const shown = async (): Promise<Uint8Array> => labelsInPalette(await pixelsOfPicture(preview.locator('img')));
     expect(differences(await shown(), found[3]!)).toBe(0);
 
@@ -65,12 +67,6 @@ test('a clip is exported in the formats of annotation tools, with the objects th
 
   const name = page.locator('#objects .motion-name').nth(1);
   await enter(name, 'Ball');
-
-  // An indexed PNG for each frame, under the frame's name.
-  const davis = unzipSync((await savedClip(page, 'DAVIS')).bytes);
-  const folder = 'davis/Annotations/480p/f00-f03';
-  expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
-  for (const [index, file] of files.entries()) expect(differences(await labelsOfDavis(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
 
   const vis = JSON.parse((await savedClip(page, 'YouTube-VIS')).bytes.toString()) as {
     videos: { file_names: string[] }[];
@@ -118,13 +114,13 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await openClip(page, await clipFrames(4, 120, 84));
   const notice = page.locator('#notice-sentence');
   const file = (name: string, content: string) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
-  await dropOn(page, [file('labels.json', JSON.stringify([{ name: 'person', color: '#ff0000' }, { name: 'ball' }]))]);
+  await give(page, 'drop', [file('labels.json', JSON.stringify([{ name: 'person', color: '#ff0000' }, { name: 'ball' }]))]);
   await expect(notice).toHaveText('2 classes added to the list.');
   await segmentClip(page);
   // It is kept for the next clip, though it was read before there was a list of objects.
   await expect.poll(() => page.evaluate(() => localStorage.getItem('veronese-classes'))).toBe('["person","ball"]');
   const categories = [{ id: 8, name: 'box' }, { id: 3, name: 'ball' }];
-  await dropOn(page, [file('categories.json', JSON.stringify({ images: [], annotations: [], categories }))]);
+  await give(page, 'drop', [file('categories.json', JSON.stringify({ images: [], annotations: [], categories }))]);
   await expect(notice).toHaveText('One class added to the list.');
   // The dialogue says what is no list of classes, and adds nothing.
   const list = page.locator('#class-list');
@@ -147,7 +143,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await expect(page.locator('#class-names option')).toHaveText(['person', 'box', 'ball']);
 
   const names = page.locator('#objects .motion-name');
-  const give = async (object: string, name: string): Promise<void> => {
+  const classify = async (object: string, name: string): Promise<void> => {
     await page.keyboard.press(object);
     await page.keyboard.press('t');
     await page.keyboard.type(name);
@@ -164,8 +160,8 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
     field.dispatchEvent(new Event('change', { bubbles: true }));
   });
   await enter(names.nth(2), 'the cube');
-  await give('1', 'ball');
-  await give('2', 'crate');
+  await classify('1', 'ball');
+  await classify('2', 'crate');
   const own = page.locator('#objects .class');
   await expect(names.nth(1)).toHaveValue('ball 1');
   await expect(names.nth(2)).toHaveValue('the cube');
@@ -205,7 +201,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await page.keyboard.press('1');
   await enter(own.nth(1), '');
   await expect(names.nth(1)).toHaveValue('Object 1');
-  await dropOn(page, [file('coco.json', coco.bytes.toString())]);
+  await give(page, 'drop', [file('coco.json', coco.bytes.toString())]);
   await clipDone(page);
   await expect(names.nth(1)).toHaveValue('ball 1');
   await undo.click();

@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, rename, saved, test, upload, withoutStorage } from './support.js';
+import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -23,19 +23,7 @@ async function written(page: Page, name: string): Promise<void> {
 }
 
 /** The first lines of all projects in the browser. */
-function headers(page: Page): Promise<string[]> {
-  return page.evaluate(async () => {
-    const found: string[] = [];
-    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
-    if (folder === null) return found;
-    for await (const name of folder.keys()) {
-      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
-      const text = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
-      found.push(((await text?.catch(() => '')) ?? '').split('\n')[0]!);
-    }
-    return found;
-  });
-}
+const headers = async (page: Page): Promise<string[]> => (await projectsInBrowser(page)).map((text) => text.split('\n')[0]!);
 
 /** The sizes of the files in a folder of the browser, bytes; an empty one is none. */
 function sizes(page: Page, name: 'projects' | 'frames'): Promise<number[]> {
@@ -239,7 +227,9 @@ test('work that the browser refuses to keep is shown as not saved', async ({ pag
   await rename(page, '#objects', 1, 'Disc');
   const saving = page.locator('#saving button');
   await expect(saving).toHaveText(/^Not saved: the browser refused/);
+  await expect(page.locator('#notice-code')).toHaveText('storage-refused');
   await expect(page.getByRole('alert')).toContainText('save the project before you leave');
+  expect(await leaves(page)).toBe(false);
   await expect(page.locator('#saving [role=status]')).toHaveText('');
   expect((await saved(page, saving)).name).toBe('f00-f03.veronese');
   expect(await leaves(page)).toBe(true);

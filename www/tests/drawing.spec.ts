@@ -3,22 +3,12 @@
 import { type Locator, type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, openEmpty, openExport, openSegmented, savedClip, savedProject, shown, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, masksOf, openEmpty, openExport, openSegmented, savedClip, savedProject, shown, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
 const status = (page: Page): Locator => page.locator('#clip-status');
 const exact = (page: Page): Locator => page.getByRole('checkbox', { name: 'Exact' });
-
-/** The masks of frames, shown one after another. */
-async function masksOf(page: Page, indices: readonly number[]): Promise<Uint8Array[]> {
-  const masks: Uint8Array[] = [];
-  for (const index of indices) {
-    await goTo(page, index);
-    masks.push(await labelsOnCanvas(page));
-  }
-  return masks;
-}
 
 /** Places of the picture in pixels of the frame: the centre of a pixel has whole numbers. */
 const pixel = ([u, v]: Place, width = WIDTH, height = HEIGHT): Place => [u * width - 0.5, v * height - 0.5];

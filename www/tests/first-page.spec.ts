@@ -210,22 +210,4 @@ test('the looks of the page', async ({ page }) => {
     expect(asked).toMatch(/cormorant-garamond-.*\.woff2$/);
     expect(left[1]).toBe(left[0]);
   });
-
-  await test.step('text has three sizes, and figures one width', async () => {
-    await page.locator('#settings details').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
-    await page.locator('#motions details').nth(1).evaluate((details) => void ((details as HTMLDetailsElement).open = true));
-    await openExport(page);
-    await expect(page.getByRole('button', { name: 'Save project' })).toBeEnabled();
-    const odd = await page.evaluate(() => {
-      const said = [...document.body.querySelectorAll<HTMLElement>('*')].filter(
-        (part) => part.matches('input[type=text], input[type=number], select') || [...part.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent!.trim() !== ''),
-      );
-      return said
-        .filter((part) => part.localName !== 'h1' && part.checkVisibility())
-        .map((part) => ({ part, style: getComputedStyle(part) }))
-        .filter(({ style }) => !['12px', '13px', '16px'].includes(style.fontSize) || (style.fontVariantNumeric !== 'tabular-nums' && !style.fontFamily.includes('monospace')))
-        .map(({ part, style }) => `${part.localName}#${part.id}.${part.className} ${style.fontSize} ${style.fontVariantNumeric}`);
-    });
-    expect(odd).toEqual([]);
-  });
 });

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe } from 'veronese/formats';
 
-import { type Upload, clipFrames, clipInNode, differences, done, dropOn, expect, labelsOnCanvas, openEmpty, openExport, openSegmented, test, upload } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, expect, give, goTo, labelsOnCanvas, openEmpty, openExport, openSegmented, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
 
 const SIZE = { width: 200, height: 140 };
@@ -13,14 +13,6 @@ async function openSix(page: Page): Promise<Uint8Array[]> {
   const files = await clipFrames(6);
   await openSegmented(page, files);
   return clipInNode(files);
-}
-
-async function goTo(page: Page, index: number): Promise<void> {
-  const track = page.getByRole('slider', { name: 'Current frame' });
-  await track.press('Home');
-  for (let k = 0; k < index; k++) await track.press('ArrowRight');
-  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
-  await done(page);
 }
 
 const corrected = (page: Page): Promise<void> => expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
@@ -66,7 +58,7 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   await expect(page.locator('#undo')).toBeDisabled();
 
   await test.step('masks that are dropped on the clip are no frames, and frames are', async () => {
-    const drop = (files: Upload[]): Promise<void> => dropOn(page, files);
+    const drop = (files: Upload[]): Promise<void> => give(page, 'drop', files);
     const said = withBox(found[1]!, 3, 100);
     await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
     await corrected(page);

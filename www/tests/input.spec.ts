@@ -7,26 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, axe, done, expect, labelsOnCanvas, open, openEmpty, segmentedInNode, differences, square, test, motionsChosen, withSmallSampleClip } from './support.js';
-
-/** Drops or pastes files. */
-async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
-  const plain = files.map(({ name, mimeType, buffer }) => ({ name, mimeType, base64: buffer.toString('base64') }));
-  await page.evaluate(
-    ([how, plain]) => {
-      const transfer = new DataTransfer();
-      for (const { name, mimeType, base64 } of plain) {
-        transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name, { type: mimeType }));
-      }
-      const common = { bubbles: true, cancelable: true };
-      if (how === 'drop') {
-        document.body.dispatchEvent(new DragEvent('dragenter', { ...common, dataTransfer: transfer }));
-        document.body.dispatchEvent(new DragEvent('drop', { ...common, dataTransfer: transfer }));
-      } else document.body.dispatchEvent(new ClipboardEvent('paste', { ...common, clipboardData: transfer }));
-    },
-    [how, plain] as const,
-  );
-}
+import { axe, differences, done, expect, give, labelsOnCanvas, motionsChosen, open, openEmpty, segmentedInNode, square, test, withSmallSampleClip } from './support.js';
 
 /** Drops files and folders from the disk. */
 async function dropPaths(page: Page, paths: string[]): Promise<void> {

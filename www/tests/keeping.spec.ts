@@ -2,7 +2,7 @@
 
 import { type Locator, type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reopen, test } from './support.js';
 
 const [WIDTH, HEIGHT, COUNT] = [120, 84, 6];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
@@ -17,11 +17,7 @@ const notice = (page: Page): Locator => page.locator('#notice-sentence');
 /** The masks of all frames; then the frame shown before is shown again. */
 async function allMasks(page: Page): Promise<Uint8Array[]> {
   const shown = Number(/\d+$/.exec((await page.locator('#caption').textContent())!)![0]);
-  const masks: Uint8Array[] = [];
-  for (let index = 0; index < COUNT; index++) {
-    await goTo(page, index);
-    masks.push(await labelsOnCanvas(page));
-  }
+  const masks = await masksOf(page, Array.from({ length: COUNT }, (_, index) => index));
   await goTo(page, shown);
   return masks;
 }
@@ -234,33 +230,5 @@ test('a prompt is refined by presses that add and remove, with mouse and keyboar
     const box = (await page.locator('.layers').boundingBox())!;
     await page.locator('.layers').click({ position: { x: box.width / 2, y: box.height / 2 }, modifiers: ['Alt'] });
     await dismiss(page, 'Clicks refine an object that a box or a press made in this frame. Select it first.');
-  });
-});
-
-test.describe('on a phone', () => {
-  test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
-
-  test('a finger removes what does not belong', async ({ page }) => {
-    await openSegmented(page, await clipFrames(COUNT, WIDTH, HEIGHT));
-    await goTo(page, 3);
-    const own = Math.max(...(await labelsOnCanvas(page))) + 1;
-    await page.getByRole('radio', { name: 'Box: a new object' }).check({ force: true });
-    await page.locator('.layers').scrollIntoViewIfNeeded();
-    const box = (await page.locator('.layers').boundingBox())!;
-    const tap = (x: number, y: number): Promise<void> => page.touchscreen.tap(box.x + (x / WIDTH) * box.width, box.y + (y / HEIGHT) * box.height);
-    await tap(36.5, 33.5);
-    await expect(status(page)).toHaveText(/^Corrected/);
-    await clipDone(page);
-    expect((await labelsOnCanvas(page))[pixelAt(41, 33)]).toBe(own);
-    const remove = page.getByRole('radio', { name: 'Remove' });
-    const { height } = (await remove.locator('..').boundingBox())!;
-    expect(height).toBeGreaterThanOrEqual(44);
-    await remove.check({ force: true });
-    await tap(41.5, 33.5);
-    await expect(page.locator('#strokes .prompt')).toHaveCount(2);
-    await clipDone(page);
-    const labels = await labelsOnCanvas(page);
-    expect(labels[pixelAt(36, 33)]).toBe(own);
-    expect(labels[pixelAt(41, 33)]).not.toBe(own);
   });
 });

@@ -145,5 +145,17 @@ test.describe('on a phone', () => {
     await touch('touchEnd');
     await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
     expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+
+    // A finger removes what does not belong.
+    await clipDone(page);
+    const remove = page.getByRole('radio', { name: 'Remove' });
+    expect((await remove.locator('..').boundingBox())!.height).toBeGreaterThanOrEqual(44);
+    await remove.check({ force: true });
+    const [x, y] = [41, 33];
+    expect((await labelsOnCanvas(page))[y * WIDTH + x]).toBe(own);
+    await page.touchscreen.tap(finger(at(x + 0.5, y + 0.5)).x, finger(at(x + 0.5, y + 0.5)).y);
+    await expect(page.locator('#strokes .prompt')).toHaveCount(2);
+    await clipDone(page);
+    expect((await labelsOnCanvas(page))[y * WIDTH + x]).not.toBe(own);
   });
 });

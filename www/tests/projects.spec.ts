@@ -4,7 +4,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipInNode, differences, done, drag, enter, expect, goTo, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipInNode, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, square, test, upload } from './support.js';
 
 /** Waits until the panel says that the work is kept, and nothing is left to write. */
 async function kept(page: Page): Promise<void> {
@@ -14,34 +14,10 @@ async function kept(page: Page): Promise<void> {
   await expect.poll(() => leaves(page)).toBe(true);
 }
 
-/** The only project that the browser keeps, unpacked; empty before there is one. */
-function fileInBrowser(page: Page): Promise<string> {
-  return page.evaluate(async () => {
-    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
-    let text = '';
-    if (folder === null) return text;
-    for await (const name of folder.keys()) {
-      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
-      // It may be replaced, also while it is read.
-      const unpacked = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
-      text = (await unpacked?.catch(() => '')) ?? '';
-    }
-    return text;
-  });
-}
-
-/** The names of objects in that project; undefined before there is one. */
+/** The names of objects in the only project of the browser; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {
-  const [, project] = (await fileInBrowser(page)).split('\n');
+  const [, project] = (await projectsInBrowser(page)).join('').split('\n');
   return project === undefined ? undefined : (JSON.parse(project) as { clip: { names: unknown } }).clip.names;
-}
-
-/** Hides the page, which keeps at once what is to be kept. */
-async function hide(page: Page): Promise<void> {
-  await page.evaluate(() => {
-    Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
 }
 
 /** A segmented clip with a name and a correction. */
@@ -76,7 +52,7 @@ test('a corrected clip is there after a reload, and can be corrected further', a
   await correctedClip(page, files);
   await goTo(page, 2);
   await page.getByLabel('Show Box').uncheck();
-  await expect.poll(() => fileInBrowser(page)).toContain('"hidden":[2]');
+  await expect.poll(async () => (await projectsInBrowser(page)).join('')).toContain('"hidden":[2]');
   await reopen(page, files);
   await expect(page.locator('#caption')).toHaveText('Frame 2');
   await expect(page.getByLabel('Show Box')).not.toBeChecked();
@@ -216,17 +192,6 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   await expect(unlabelled).toBeChecked();
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Ball');
   await expect(page.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
-});
-
-test('a browser that keeps nothing says so, and asks before the work is left', async ({ page }) => {
-  await withoutStorage(page);
-  const files = await smallFrames(3);
-  await openSegmented(page, files);
-  await rename(page, '#objects', 1, 'Ball');
-  await expect(page.locator('#notice-code')).toHaveText('storage-refused');
-  expect(await leaves(page)).toBe(false);
-  await savedProject(page);
-  expect(await leaves(page)).toBe(true);
 });
 
 test('a second tab on a clip says that its work is not kept, and overwrites nothing', async ({ page: second, context }) => {

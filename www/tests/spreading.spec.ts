@@ -2,13 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, enter, expect, goTo, labelsOnCanvas, leaves, openSegmented, reopen, test } from './support.js';
-
-/** The masks of a frame, shown. */
-async function masksOf(page: Page, index: number): Promise<Uint8Array> {
-  await goTo(page, index);
-  return labelsOnCanvas(page);
-}
+import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, enter, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reopen, test } from './support.js';
 
 async function selectNew(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'New object' }).click();
@@ -148,7 +142,7 @@ test('a correction that spreads: frames are redrawn as it changes them, and it i
     await page.locator('#objects > li').nth(2).locator('summary').click();
     await page.getByRole('button', { name: 'Delete Object 2' }).click();
     await expect(status).toHaveText(/^Corrected/);
-    const kept = [await masksOf(page, 8), await masksOf(page, 3)];
+    const kept = await masksOf(page, [8, 3]);
     await selectNew(page);
     await pressAtFirstChange(page, 'Escape');
     await drag(page, ...OVER_DISC);
@@ -156,7 +150,7 @@ test('a correction that spreads: frames are redrawn as it changes them, and it i
     await expect(status).toHaveText('Undone.');
     await expect(page.locator('#clip-cancel')).toBeHidden();
     expect(differences(await labelsOnCanvas(page), kept[1]!)).toBe(0);
-    expect(differences(await masksOf(page, 8), kept[0]!)).toBe(0);
+    expect(differences((await masksOf(page, [8]))[0]!, kept[0]!)).toBe(0);
     // The correction before can be undone still, and another one be made.
     await undo.click();
     await expect(status).toHaveText(/^Undone in/);
@@ -181,7 +175,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
     await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
     const masks = await labelsOnCanvas(page);
     expect([masks[DISC_IN_3 + 3], masks[DISC_IN_3 + 24]]).toEqual([label, 3]);
-    const changed = differences((await masksOf(page, 5)).map((label) => Number(label === 1)), found[5]!);
+    const changed = differences((await masksOf(page, [5]))[0]!.map((label) => Number(label === 1)), found[5]!);
     await page.getByRole('button', { name: 'Undo' }).click();
     await expect(page.locator('#clip-status')).toHaveText(/^Undone in/);
     return changed;

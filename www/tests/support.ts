@@ -282,6 +282,40 @@ export async function undoAll(page: Page): Promise<void> {
   await done(page);
 }
 
+/** The projects that the browser keeps, unpacked. */
+export function projectsInBrowser(page: Page): Promise<string[]> {
+  return page.evaluate(async () => {
+    const found: string[] = [];
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
+    if (folder === null) return found;
+    for await (const name of folder.keys()) {
+      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
+      // It may be replaced, also while it is read.
+      const text = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+      found.push((await text?.catch(() => '')) ?? '');
+    }
+    return found;
+  });
+}
+
+/** Hides the page, which keeps at once what is to be kept. */
+export async function hide(page: Page): Promise<void> {
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+}
+
+/** The masks of frames, shown one after another. */
+export async function masksOf(page: Page, indices: readonly number[]): Promise<Uint8Array[]> {
+  const masks: Uint8Array[] = [];
+  for (const index of indices) {
+    await goTo(page, index);
+    masks.push(await labelsOnCanvas(page));
+  }
+  return masks;
+}
+
 /** Makes the browser one that keeps no projects. */
 export async function withoutStorage(page: Page): Promise<void> {
   await page.addInitScript(() => {
@@ -406,15 +440,17 @@ function keyOf(files: readonly Upload[], options: unknown): string {
   return hash.digest('hex') + JSON.stringify(options);
 }
 
-/** Drops files on the page. */
-export async function dropOn(page: Page, files: readonly Upload[]): Promise<void> {
+/** Drops or pastes files on the page. */
+export async function give(page: Page, how: 'drop' | 'paste', files: readonly Upload[]): Promise<void> {
   await page.evaluate(
-    (all) => {
+    ([how, all]) => {
       const transfer = new DataTransfer();
       for (const { name, type, bytes } of all) transfer.items.add(new File([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], name, { type }));
-      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+      const common = { bubbles: true, cancelable: true };
+      if (how === 'paste') document.body.dispatchEvent(new ClipboardEvent('paste', { ...common, clipboardData: transfer }));
+      else for (const type of ['dragenter', 'drop']) document.body.dispatchEvent(new DragEvent(type, { ...common, dataTransfer: transfer }));
     },
-    files.map(({ name, mimeType, buffer }) => ({ name, type: mimeType, bytes: buffer.toString('base64') })),
+    [how, files.map(({ name, mimeType, buffer }) => ({ name, type: mimeType, bytes: buffer.toString('base64') }))] as const,
   );
 }
 
@@ -430,29 +466,25 @@ interface CanvasPixels {
 }
 
 /** The RGBA bytes of a canvas. */
-export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixels> {
-  const { width, height, base64 } = await page.locator(selector).evaluate((canvas) => {
-    if (!(canvas instanceof HTMLCanvasElement)) throw new Error('no canvas');
-    const { width, height } = canvas;
+export function pixelsOf(page: Page, selector: string): Promise<CanvasPixels> {
+  return pixelsIn(page.locator(selector));
+}
+
+async function pixelsIn(picture: Locator): Promise<CanvasPixels> {
+  const { width, height, base64 } = await picture.evaluate((source: HTMLCanvasElement | HTMLImageElement) => {
+    const { width, height } = source instanceof HTMLImageElement ? { width: source.naturalWidth, height: source.naturalHeight } : source;
     // Reads from a copy: frequent reads change how a browser stores a canvas.
-    const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-    copy?.drawImage(canvas, 0, 0);
-    const image = copy?.getImageData(0, 0, width, height);
-    if (!image) throw new Error('no pixels');
-    return { width, height, base64: (new Uint8Array(image.data.buffer) as Uint8Array & { toBase64(): string }).toBase64() };
+    const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true })!;
+    copy.drawImage(source, 0, 0);
+    return { width, height, base64: (new Uint8Array(copy.getImageData(0, 0, width, height).data.buffer) as Uint8Array & { toBase64(): string }).toBase64() };
   });
   return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
 }
 
 /** The RGBA bytes of an `<img>`. */
 export async function pixelsOfPicture(picture: Locator): Promise<Uint8Array> {
-  const base64 = await picture.evaluate(async (image: HTMLImageElement) => {
-    await image.decode();
-    const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
-    context.drawImage(image, 0, 0);
-    return (new Uint8Array(context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data.buffer) as Uint8Array & { toBase64(): string }).toBase64();
-  });
-  return new Uint8Array(Buffer.from(base64, 'base64'));
+  await picture.evaluate((image: HTMLImageElement) => image.decode());
+  return (await pixelsIn(picture)).data;
 }
 
 /** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. */

@@ -4,7 +4,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, labelsOnCanvas, leaves, mergeWith, openClip, openEmpty, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -177,10 +177,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   const name = page.locator('#objects .motion-name').nth(1);
   await enter(name, 'Early');
   expect(await leaves(page)).toBe(false);
-  await page.evaluate(() => {
-    Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
-    document.dispatchEvent(new Event('visibilitychange'));
-  });
+  await hide(page);
   await expect.poll(() => leaves(page)).toBe(true);
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await page.evaluate(() => (window as unknown as { release: () => void }).release());
@@ -412,11 +409,7 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   await drag(page, [0.1, 0.8], [0.2, 0.8]);
   await expect.poll(async () => (await labelsOnCanvas(page)).includes(3)).toBe(true); // the status is that of the deletion still
   await clipDone(page);
-  const before: Uint8Array[] = [];
-  for (let index = 0; index < 6; index++) {
-    await goTo(page, index);
-    before.push(await labelsOnCanvas(page));
-  }
+  const before = await masksOf(page, [0, 1, 2, 3, 4, 5]);
   expect(new Set(before[5])).toEqual(new Set([0, 2, 3]));
 
   await goTo(page, 2);
@@ -426,9 +419,7 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   await page.getByRole('button', { name: 'Segment frames 2–4' }).click();
   await expect(status).toHaveText(/ objects in 6 frames, corrected as before\.$/);
   // The disc is deleted there too, and the box is the object that it was.
-  for (let index = 0; index < 6; index++) {
-    await goTo(page, index);
-    const now = await labelsOnCanvas(page);
+  for (const [index, now] of (await masksOf(page, [0, 1, 2, 3, 4, 5])).entries()) {
     if (index < 2 || index > 4) expect(differences(now, before[index]!)).toBe(0);
     else expect(new Set(now)).toEqual(new Set([0, 2]));
   }
@@ -438,21 +429,14 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   await goTo(page, 3);
   await drag(page, [0.1, 0.2], [0.2, 0.2]);
   await expect(status).toHaveText(/^Corrected/);
-  const seen: number[] = [];
-  for (let index = 0; index < 6; index++) {
-    await goTo(page, index);
-    if (new Set(await labelsOnCanvas(page)).has(4)) seen.push(index);
-  }
+  const seen = [...(await masksOf(page, [0, 1, 2, 3, 4, 5])).entries()].flatMap(([index, labels]) => (labels.includes(4) ? [index] : []));
   expect(seen).toContain(3);
   expect(seen.filter((index) => index < 2 || index > 4)).toEqual([]);
   // The edit of an object is for the whole clip.
   await rows.nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 2' }).click();
   await expect(status).toHaveText('Corrected: the masks of 6 frames have changed.');
-  for (const index of [0, 3, 5]) {
-    await goTo(page, index);
-    expect(new Set(await labelsOnCanvas(page))).not.toContain(2);
-  }
+  for (const labels of await masksOf(page, [0, 3, 5])) expect(labels).not.toContain(2);
   // All of it is there after a reload.
   const last = await labelsOnCanvas(page);
   await expect.poll(() => leaves(page)).toBe(true); // kept
