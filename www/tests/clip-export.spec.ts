@@ -96,7 +96,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   const tasks = JSON.parse((await savedClip(page, 'Label Studio')).bytes.toString()) as { data: { image: string }; predictions: { result: unknown[] }[] }[];
   expect(tasks.map(({ data }) => data.image.replace(/^.*\//, ''))).toEqual(files.map((file) => file.name));
   expect(tasks.map(({ predictions }) => predictions[0]!.result.length)).toEqual([1, 1, 1, 1]);
-  await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 4 frames.');
+  await expect(page.locator('#clip-export-status')).toHaveText('Saved: one object in 4 frames.');
 
   const coco = JSON.parse((await savedClip(page, 'COCO, RLE')).bytes.toString()) as { images: unknown[]; annotations: { attributes: { track_id: number } }[] };
   expect(coco.images).toHaveLength(4);

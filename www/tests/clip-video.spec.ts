@@ -103,7 +103,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   const matte = await savedClip(page, 'Video, matte');
   const white = await played(page, matte.bytes, matte.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
   for (const [i, k] of at.entries()) expect(share(white.frames[i]!, white.width, found[k]!, ([r]) => r! > 127, wanted)).toBeLessThan(0.005);
-  await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 4 frames.');
+  await expect(page.locator('#clip-export-status')).toHaveText('Saved: one object in 4 frames.');
 });
 
 /** The times of a video's frames and their durations as its file says them, seconds. */

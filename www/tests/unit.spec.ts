@@ -20,12 +20,12 @@ import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { painted, promptOf, refined } from '../src/session/clip/drawing.js';
 import { exactly } from '../src/state/exact.js';
-import { withSaid } from '../src/state/said.js';
+import { withCorrection } from '../src/state/correction.js';
 import { fromSpan, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
-import { type Painted, type Prompt, type Said, points, withStatement } from '../src/state/statement.js';
-import { saidAtSize, theirNumbers, toSpan, toldOf } from '../src/state/told.js';
+import { type Painted, type Prompt, type Annotation, points, withAnnotation } from '../src/state/annotation.js';
+import { annotationAtSize, packageNumbers, toSpan, forPackage } from '../src/state/package-numbers.js';
 import { type TrackedFrame, type Version, untracked } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
@@ -217,13 +217,13 @@ const prompt = (object: number, clicks: Prompt['clicks'], box: Prompt['box'] = n
 test('annotations are kept of each object, in the order in which they were given', () => {
   const none: ReadonlySet<number> = new Set();
   const all = [stroke(1, 1, 1, 255, 255, 255, 255), stroke(2, 255, 2, 2, 0, 255, 255), prompt(1, [[0, 0, 1]]), stroke(1, 255, 0, 255, 255, 255, 1), prompt(1, [[0, 0, 1], [3, 0, -1]])];
-  const said = all.reduce<readonly Said[]>((before, now) => withStatement(before, now, none), []);
-  expect(said.map((one) => ('labels' in one ? [one.object, ...unpacked(one.labels)] : one.clicks))).toEqual([[2, 255, 2, 2, 0, 255, 255], [1, 1, 0, 255, 255, 255, 1], [[0, 0, 1], [3, 0, -1]]]);
+  const annotations = all.reduce<readonly Annotation[]>((before, now) => withAnnotation(before, now, none), []);
+  expect(annotations.map((one) => ('labels' in one ? [one.object, ...unpacked(one.labels)] : one.clicks))).toEqual([[2, 255, 2, 2, 0, 255, 255], [1, 1, 0, 255, 255, 255, 1], [[0, 0, 1], [3, 0, -1]]]);
   // A label map of objects is about all that was painted in its frame, but what is locked.
-  const [one, , , map] = withStatement(said, stroke(0, 255, 4, 255, 255, 255, 4), new Set([2])).filter((of) => 'labels' in of || of.object === 1);
-  expect(one).toBe(said[0]);
+  const [one, , , map] = withAnnotation(annotations, stroke(0, 255, 4, 255, 255, 255, 4), new Set([2])).filter((of) => 'labels' in of || of.object === 1);
+  expect(one).toBe(annotations[0]);
   expect(map).toMatchObject({ object: 0 });
-  expect([...unpacked((withStatement(said, stroke(0, 255, 4, 255, 255, 255, 4), none)[0] as Painted).labels)]).toEqual([255, 255, 2, 0, 255, 255]);
+  expect([...unpacked((withAnnotation(annotations, stroke(0, 255, 4, 255, 255, 255, 4), none)[0] as Painted).labels)]).toEqual([255, 255, 2, 0, 255, 255]);
 });
 
 test('a prompt is refined by clicks and a box, which has all that is the object', () => {
@@ -236,8 +236,8 @@ test('a prompt is refined by clicks and a box, which has all that is the object'
   // The last click on a pixel counts, and something must be left that it points to.
   expect(refined(first, [4, 4, -1]).clicks).toEqual([[4, 4, -1]]);
   expect([first, boxed, refined(first, [4, 4, -1])].map(points)).toEqual([true, true, false]);
-  expect(saidAtSize(prompt(3, [[1, 1, 1], [5, 3, -1]], [1, 0, 3, 4]), { width: 6, height: 4 }, { width: 12, height: 8 })).toEqual(prompt(3, [[3, 3, 1], [11, 7, -1]], [2, 0, 6, 8]));
-  const version: Version = { ...untracked({ count: 1 } as Clip), said: [first], became: new Map([[3, 1]]) };
+  expect(annotationAtSize(prompt(3, [[1, 1, 1], [5, 3, -1]], [1, 0, 3, 4]), { width: 6, height: 4 }, { width: 12, height: 8 })).toEqual(prompt(3, [[3, 3, 1], [11, 7, -1]], [2, 0, 6, 8]));
+  const version: Version = { ...untracked({ count: 1 } as Clip), annotations: [first], became: new Map([[3, 1]]) };
   expect([promptOf(version, 0, 1), promptOf(version, 0, 3), promptOf(version, 1, 1), promptOf(version, null, null)]).toEqual([first, null, null, null]);
 });
 
@@ -246,24 +246,24 @@ test('an eraser is about the selected object and what was merged into it; the ba
   const erase = Uint8Array.of(255, 0, 0, 0, 255, 255);
   const of = (version: Version, object: number): (readonly number[])[] => painted(version, 0, object, erase, 'none').map((one) => [one.object, ...unpacked(one.labels)]);
   expect(of(start, 1)).toEqual([[4, 255, 0, 0, 0, 255, 255], [1, 255, 0, 0, 0, 255, 255]]);
-  const erased = withSaid(start, { said: painted(start, 0, 1, erase, 'none') });
+  const erased = withCorrection(start, { annotations: painted(start, 0, 1, erase, 'none') });
   expect([...unpacked(erased.frames[0]!.runs)]).toEqual([1, 0, 2, 3, 3, 0]);
   expect(of(erased, 0).map(([object]) => object)).toEqual([0, 4, 1]);
   const locked = { ...start, locked: new Set([3]) };
   expect(of(locked, 0).map(([object]) => object)).toEqual([0]);
-  expect([...unpacked(withSaid(locked, { said: painted(locked, 0, 0, erase, 'none') }).frames[0]!.runs)]).toEqual([1, 0, 0, 3, 3, 0]);
+  expect([...unpacked(withCorrection(locked, { annotations: painted(locked, 0, 0, erase, 'none') }).frames[0]!.runs)]).toEqual([1, 0, 0, 3, 3, 0]);
   // Under the masks of a file, which name objects, of each that is there.
-  const imported = { ...locked, said: [stroke(0, 1, 1, 2, 3, 3, 0)] };
+  const imported = { ...locked, annotations: [stroke(0, 1, 1, 2, 3, 3, 0)] };
   expect(of(imported, 0).map(([object]) => object)).toEqual([1, 2]);
 });
 
 test('the package is given annotations by its own numbers', () => {
   const numbers = new Map([[1, 3], [3, 1]]);
-  const { corrections, prompts } = toldOf([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
+  const { corrections, prompts } = forPackage([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
   expect(corrections!.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
   expect(prompts).toEqual([{ frame: 0, object: 5, propagate: 'both', clicks: [[1, 0, 1]], box: [0, 0, 2, 1] }]);
   expect(numbers).toEqual(new Map([[1, 3], [3, 1], [9, 9], [5, 5]]));
-  expect(theirNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
+  expect(packageNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
 });
 
 test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
@@ -284,23 +284,23 @@ test('what is drawn exactly stays under later annotations elsewhere, and follows
   const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
   const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
   const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
-  const drawn = withSaid(start, { drawn: new Map([[0, row(255, 3, 3, 255, 0, 255)]]) });
+  const drawn = withCorrection(start, { drawn: new Map([[0, row(255, 3, 3, 255, 0, 255)]]) });
   expect(shown(drawn)).toEqual([1, 3, 3, 2, 0, 0]);
   expect(drawn.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [2, 1, 3, 0, 1, 1], [3, 2, 1, 0, 2, 1]]);
   expect(drawn.frames[1]).toBe(start.frames[1]);
-  expect([drawn.largest, drawn.said.length]).toEqual([3, 0]);
+  expect([drawn.largest, drawn.annotations.length]).toEqual([3, 0]);
   // Whatever comes for the frame, and unchanged if it agrees.
   expect(shown(exactly({ ...drawn, frames: [masks(4, 4, 4, 4, 4, 4), null] }))).toEqual([4, 3, 3, 4, 0, 4]);
   expect(exactly(drawn).frames[0]).toBe(drawn.frames[0]);
   // A person says otherwise: that counts, and is exact as well where something was.
-  const over = withSaid(drawn, { said: [stroke(2, 255, 255, 2, 2, 2, 2)] });
+  const over = withCorrection(drawn, { annotations: [stroke(2, 255, 255, 2, 2, 2, 2)] });
   expect(shown(over)).toEqual([1, 3, 2, 2, 2, 2]);
   expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
-  expect(shown(withSaid(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
-  expect(shown(withSaid(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
+  expect(shown(withCorrection(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
+  expect(shown(withCorrection(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
   // An object without a number of the package's goes along with one that has a number, in all frames.
-  const later = withSaid(drawn, { said: [{ ...stroke(5, 255, 255, 255, 255, 255, 5), frame: 1 }] });
-  const merged = withSaid(later, { edits: { merge: [[3, 5]] } });
+  const later = withCorrection(drawn, { annotations: [{ ...stroke(5, 255, 255, 255, 255, 255, 5), frame: 1 }] });
+  const merged = withCorrection(later, { edits: { merge: [[3, 5]] } });
   expect([shown(merged), shown(merged, 1)]).toEqual([[1, 3, 3, 2, 0, 0], [1, 1, 0, 2, 2, 3]]);
   expect(merged.frames[1]!.objects.map(({ id }) => id)).toEqual([1, 2, 3]);
   expect(merged.frames[0]).toBe(later.frames[0]);
@@ -354,10 +354,10 @@ test('a motion in words: x is right, y is down, x towards y is clockwise, and a 
     [seldom, 'stands still', 10],
     [seldom, 'turns 0.11° clockwise', 400],
   ];
-  const said = (write: (parts: ReturnType<typeof visibleParts>) => string, matrix: Matrix, reach = 100): string => write(visibleParts(partsOf(matrix, [120, 80]), reach)).replaceAll('\u00a0', ' ');
-  for (const [matrix, sentence, reach] of words) expect(said(strings.motion, matrix, reach)).toBe(sentence);
+  const annotations = (write: (parts: ReturnType<typeof visibleParts>) => string, matrix: Matrix, reach = 100): string => write(visibleParts(partsOf(matrix, [120, 80]), reach)).replaceAll('\u00a0', ' ');
+  for (const [matrix, sentence, reach] of words) expect(annotations(strings.motion, matrix, reach)).toBe(sentence);
   for (const [u, v, length] of [[1.2, 14.3, '14 px down'], [-4.13, -0.21, '4.1 px left'], [3, 4, '5 px to the lower right'], [3, -4, '5 px to the upper right']] as const) {
-    expect(said(strings.displacement, about(shift, u, v))).toBe(length);
+    expect(annotations(strings.displacement, about(shift, u, v))).toBe(length);
   }
-  expect(said(strings.displacement, about([0.97, 0, 0, 0.97], 0, 0))).toBe('shrinks 3 %');
+  expect(annotations(strings.displacement, about([0.97, 0, 0, 0.97], 0, 0))).toBe('shrinks 3 %');
 });

@@ -37,15 +37,15 @@ function stage(name: string): string {
 
 /** "moves 4.1 px right, 0.2 px up; turns 1.2° clockwise; grows 0.5 %". */
 function motion(parts: MotionParts): string {
-  const said: string[] = [];
+  const words: string[] = [];
   const moves: string[] = [];
   if (parts.right !== 0) moves.push(`${amount(parts.right)}${NBSP}px ${parts.right > 0 ? 'right' : 'left'}`);
   if (parts.down !== 0) moves.push(`${amount(parts.down)}${NBSP}px ${parts.down > 0 ? 'down' : 'up'}`);
-  if (moves.length > 0) said.push(`moves ${moves.join(', ')}`);
-  if (parts.turn !== 0) said.push(`turns ${amount(parts.turn)}° ${parts.turn > 0 ? 'clockwise' : 'anticlockwise'}`);
-  if (parts.growth !== 0) said.push(`${parts.growth > 0 ? 'grows' : 'shrinks'} ${amount(parts.growth * 100)}${NBSP}%`);
-  if (parts.stretch !== 0) said.push(`stretches ${amount(parts.stretch * 100)}${NBSP}%`);
-  return said.length > 0 ? said.join('; ') : 'stands still';
+  if (moves.length > 0) words.push(`moves ${moves.join(', ')}`);
+  if (parts.turn !== 0) words.push(`turns ${amount(parts.turn)}° ${parts.turn > 0 ? 'clockwise' : 'anticlockwise'}`);
+  if (parts.growth !== 0) words.push(`${parts.growth > 0 ? 'grows' : 'shrinks'} ${amount(parts.growth * 100)}${NBSP}%`);
+  if (parts.stretch !== 0) words.push(`stretches ${amount(parts.stretch * 100)}${NBSP}%`);
+  return words.length > 0 ? words.join('; ') : 'stands still';
 }
 
 /** From right, clockwise. */

@@ -11,14 +11,14 @@ import { type Path, type Stroke, allowedLabels, eachPixel } from './strokes.js';
 export function drawnExactly(path: Path, { tool, mask }: Pick<Stroke, 'tool' | 'mask'>, labels: Uint8Array, found: Segmentation): Exact {
   const { width, height } = found;
   const allowed = allowedLabels({ tool, mask }, found);
-  const said = new Uint8Array(labels.length).fill(UNLABELLED);
+  const drawn = new Uint8Array(labels.length).fill(UNLABELLED);
   eachPixel(path, width, height, (p) => {
     const label = labels[p]!;
     const stays = isIn(allowed, label) || (tool === 'eraser' && label === UNLABELLED && mask.labels !== 0);
-    if (!stays) said[p] = 31 - Math.clz32(allowed & -allowed);
-    else if (tool === 'brush') said[p] = label;
+    if (!stays) drawn[p] = 31 - Math.clz32(allowed & -allowed);
+    else if (tool === 'brush') drawn[p] = label;
   });
-  return { of: labellingOf(found), labels: packed(said, width, height) };
+  return { of: labellingOf(found), labels: packed(drawn, width, height) };
 }
 
 /** A solution with the edits: what was drawn exactly, unless a later stroke changed it, and the user's groups. */
@@ -26,21 +26,21 @@ export function withEdits(solved: Segmentation, edits: Edits, found: Segmentatio
   const actions = edits.actions.slice(0, edits.done);
   if (!actions.some((action) => 'exact' in action)) return grouped(solved, edits, found);
   const { width, height } = found;
-  const said = new Uint8Array(width * height).fill(UNLABELLED);
+  const drawn = new Uint8Array(width * height).fill(UNLABELLED);
   for (const action of actions) {
     if ('exact' in action) {
       const numbers = numbersIn(action.exact.of, found);
       unpacked(resized(action.exact.labels, found)).forEach((label, p) => {
-        if (label !== UNLABELLED) said[p] = numbers.get(label) ?? UNLABELLED;
+        if (label !== UNLABELLED) drawn[p] = numbers.get(label) ?? UNLABELLED;
       });
     } else if ('stroke' in action) {
       const allowed = allowedLabels(action.stroke, found);
       eachPixel(action.stroke, width, height, (p) => {
-        if (allowed !== 0 && !isIn(allowed, said[p]!)) said[p] = UNLABELLED;
+        if (allowed !== 0 && !isIn(allowed, drawn[p]!)) drawn[p] = UNLABELLED;
       });
     }
   }
-  const labels = solved.labels.map((label, p) => (said[p] === UNLABELLED ? label : said[p]!));
+  const labels = solved.labels.map((label, p) => (drawn[p] === UNLABELLED ? label : drawn[p]!));
   const extents = extentsOf(packed(labels, width, height));
   const motions = solved.motions.map((motion) => {
     const { pixels, bbox } = extents.get(motion.label) ?? { pixels: 0, bbox: [0, 0, 0, 0] };

@@ -53,9 +53,9 @@ export interface ClipFormat {
 /** Which objects are ticked, and the list of classes. */
 type Shown = Pick<State, 'look' | 'classList'>;
 
-/** The frames that have masks. `told` is called when a frame has been made. */
-export function exportOfClip(tracked: Tracked, shown: Shown, told: (done: number, of: number) => void = () => undefined): ClipExport {
-  return exportOfFrames(tracked, shown, [...tracked.frames.keys()].filter((index) => tracked.frames[index] !== null), told);
+/** The frames that have masks. `onFrame` is called when a frame has been made. */
+export function exportOfClip(tracked: Tracked, shown: Shown, onFrame: (done: number, of: number) => void = () => undefined): ClipExport {
+  return exportOfFrames(tracked, shown, [...tracked.frames.keys()].filter((index) => tracked.frames[index] !== null), onFrame);
 }
 
 /** One frame of {@link exportOfClip}; `null` if it has no masks. */
@@ -64,7 +64,7 @@ export function exportOfFrame(tracked: Tracked, shown: Shown, index: number): Cl
 }
 
 /** The objects are those of all frames. */
-function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: readonly number[], told: (done: number, of: number) => void): ClipExport {
+function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: readonly number[], onFrame: (done: number, of: number) => void): ClipExport {
   const { clip, frames } = tracked;
   const count = indices.length;
   const objects = livesOf(tracked).filter(({ id }) => !look.hidden.has(id));
@@ -96,7 +96,7 @@ function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: r
         const moving = new Set(frame.objects.filter(({ id, matrix }) => matrix !== null && wanted.has(id)).map(({ id }) => id));
         if (frame.background !== null) moving.add(0);
         yield { ...named, labels: kept, width, height, motions: motions.filter(({ label }) => moving.has(label)) };
-        told(at + 1, count);
+        onFrame(at + 1, count);
         // The page stays responsive between frames.
         await new Promise((resolve) => setTimeout(resolve));
       }

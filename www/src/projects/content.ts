@@ -4,7 +4,7 @@ import type { Edits } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
-import { type Click, type Said, isPrompt, points } from '../state/statement.js';
+import { type Click, type Annotation, isPrompt, points } from '../state/annotation.js';
 import type { SolvedPairs, Span } from '../state/tracked.js';
 import type { Project, ProjectClip } from './project.js';
 import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, optional, orNull } from './schema.js';
@@ -32,19 +32,19 @@ export function isContent(value: unknown, frames: number): value is Content {
   const { clip, pairs } = value as Content;
   if (pairs.some(([, { edits, found }]) => edits.done > edits.actions.length || !(found === null || fits(found.packed)))) return false;
   if (clip === null) return true;
-  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...clip.said.map((one) => ('labels' in one ? one.labels : null)), ...clip.exact.map(([, runs]) => runs)];
+  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...clip.annotations.map((one) => ('labels' in one ? one.labels : null)), ...clip.exact.map(([, runs]) => runs)];
   const images = masks.filter((image) => image !== null);
-  const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames) && clip.said.every((one) => isInside(one, clip.frames[one.frame]?.runs));
+  const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames) && clip.annotations.every((one) => isInside(one, clip.frames[one.frame]?.runs));
   return clip.frames.length === frames && clip.found.length === frames && clip.at < frames && inside && images.every((image) => sameSize(image, images[0]!));
 }
 
 /** Whether clicks and box of a prompt are within the masks of its frame. */
-function isInside(said: Said, masks: Runs | undefined): boolean {
-  if (masks === undefined || !isPrompt(said)) return masks !== undefined;
-  const { clicks, box } = said;
+function isInside(one: Annotation, masks: Runs | undefined): boolean {
+  if (masks === undefined || !isPrompt(one)) return masks !== undefined;
+  const { clicks, box } = one;
   const isIn = (x: number, y: number): boolean => x < masks.width && y < masks.height;
   const [left, top, width, height] = box ?? [0, 0, 1, 1];
-  return points(said) && clicks.every(([x, y]) => isIn(x, y)) && width > 0 && height > 0 && isIn(left + width - 1, top + height - 1);
+  return points(one) && clicks.every(([x, y]) => isIn(x, y)) && width > 0 && height > 0 && isIn(left + width - 1, top + height - 1);
 }
 
 /** Whether labels and report are of one result. */
@@ -87,7 +87,7 @@ const isClip = objectOf({
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
-  said: listOf(either(isPainted, isPrompted)),
+  annotations: listOf(either(isPainted, isPrompted)),
   exact: listOf(entryOf(isIndex, isRuns)),
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
   locked: listOf(isFrom(1, 254)),

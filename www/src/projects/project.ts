@@ -70,8 +70,8 @@ export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of
 const NOTHING: Tracked['saved'] = { frames: [], locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 /** Whether a person did anything with the clip. */
-function hasWork({ past, said, exact, became, locked, accepted, names, classes, colours }: Tracked): boolean {
-  const counts = [past.length, said.length, ...[exact, became, locked, accepted].map(({ size }) => size), ...[names, classes, colours].map((said) => Object.keys(said).length)];
+function hasWork({ past, annotations, exact, became, locked, accepted, names, classes, colours }: Tracked): boolean {
+  const counts = [past.length, annotations.length, ...[exact, became, locked, accepted].map(({ size }) => size), ...[names, classes, colours].map((kept) => Object.keys(kept).length)];
   return counts.some((count) => count > 0);
 }
 

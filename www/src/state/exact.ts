@@ -5,8 +5,8 @@ import { UNLABELLED } from '../result/masks.js';
 import type { TrackedFrame, Version } from './tracked.js';
 
 /** The masks of a frame with labels over them, and its objects as they are then; the same masks if that changes none. */
-export function overlaid(frame: TrackedFrame, said: Runs | undefined): TrackedFrame {
-  const runs = said === undefined ? frame.runs : over(frame.runs, said);
+export function overlaid(frame: TrackedFrame, above: Runs | undefined): TrackedFrame {
+  const runs = above === undefined ? frame.runs : over(frame.runs, above);
   return runs === frame.runs ? frame : withRuns(frame, runs);
 }
 

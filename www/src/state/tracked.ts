@@ -4,7 +4,7 @@ import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import type { Runs } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
-import type { Said } from './statement.js';
+import type { Annotation } from './annotation.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -62,7 +62,7 @@ export interface Version {
   /** The masks before corrections, by index: they tell which object of another run is which. */
   readonly found: readonly (Runs | null)[];
   /** The annotations of objects in frames, in the order in which they were given. */
-  readonly said: readonly Said[];
+  readonly annotations: readonly Annotation[];
   /** Labels drawn exactly in frames, by index: their masks have them, whatever else is annotated; 255 where nothing was drawn. */
   readonly exact: ReadonlyMap<number, Runs>;
   /** The fate of objects that were merged or deleted: the number of another object, or 0. */
@@ -117,7 +117,7 @@ export function untracked(clip: Clip): Tracked {
     spans: [],
     longestSide: Infinity,
     found: frames,
-    said: [],
+    annotations: [],
     exact: new Map(),
     became: new Map(),
     ...NO_NOTES,
@@ -129,8 +129,8 @@ export function untracked(clip: Clip): Tracked {
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, said, exact, became, largest, ...others }: Version): Version {
-  return { frames, spans, longestSide, found, said, exact, became, largest, ...notesOf(others) };
+export function versionOf({ frames, spans, longestSide, found, annotations, exact, became, largest, ...others }: Version): Version {
+  return { frames, spans, longestSide, found, annotations, exact, became, largest, ...notesOf(others) };
 }
 
 export function notesOf({ locked, accepted, names, classes, colours }: Notes): Notes {
@@ -143,8 +143,8 @@ export function savedOf({ frames, ...others }: Saved): Saved {
 }
 
 /** The frames that a person corrected, by index, and of which objects. A frame may be there several times. */
-export function correctedIn({ said, exact }: Pick<Version, 'said' | 'exact'>): (readonly [number, readonly number[]])[] {
-  const ofObjects = said.map((one) => [one.frame, one.object === 0 && 'labels' in one ? [...one.labels.labels] : [one.object]] as const);
+export function correctedIn({ annotations, exact }: Pick<Version, 'annotations' | 'exact'>): (readonly [number, readonly number[]])[] {
+  const ofObjects = annotations.map((one) => [one.frame, one.object === 0 && 'labels' in one ? [...one.labels.labels] : [one.object]] as const);
   return [...ofObjects, ...[...exact].map(([index, { labels }]) => [index, [...labels]] as const)];
 }
 

@@ -15,7 +15,7 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
   const dialog = find(root, '#class-list', HTMLDialogElement);
   const text = find(dialog, 'textarea', HTMLTextAreaElement);
   const file = find(dialog, 'input', HTMLInputElement);
-  const told = find(dialog, '[role=status]', HTMLElement);
+  const status = find(dialog, '[role=status]', HTMLElement);
   keepClasses(store);
 
   const connected = new WeakSet<HTMLInputElement>();
@@ -45,7 +45,7 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
     const files = [...(file.files ?? [])];
     file.value = ''; // so that choosing the same file again is a change
     // Here, because what is behind the dialogue is not read out.
-    told.textContent = await importClasses(files, store, true).catch(sentenceOf);
+    status.textContent = await importClasses(files, store, true).catch(sentenceOf);
   });
   find(dialog, 'button', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
@@ -53,7 +53,7 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
   });
   dialog.addEventListener('close', () => {
     take();
-    told.textContent = '';
+    status.textContent = '';
   });
 }
 

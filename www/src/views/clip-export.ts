@@ -14,7 +14,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   const select = find(root, 'select', HTMLSelectElement);
   const button = find(root, 'button', HTMLButtonElement);
   const hint = find(root, '#clip-format-hint', HTMLElement);
-  const told = find(root, '#clip-export-told', HTMLElement);
+  const status = find(root, '#clip-export-status', HTMLElement);
   const chosen = (): ClipFormat => formats[select.selectedIndex]!;
 
   const describe = (): void => void (hint.textContent = chosen().hint);
@@ -26,13 +26,13 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     if (tracked === null) return;
     button.disabled = true;
     try {
-      const exported = exportOfClip(tracked, store.get(), (done, of) => (told.textContent = strings.exporting(done, of)));
+      const exported = exportOfClip(tracked, store.get(), (done, of) => (status.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
       clipExported(store, tracked);
-      told.textContent = strings.exported(exported.objects.length, exported.count);
+      status.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
-      told.textContent = '';
+      status.textContent = '';
       session.say(strings.errors.notExported(format.title, error instanceof Error ? error.message : ''), 'not-written');
     } finally {
       button.disabled = false;
@@ -49,7 +49,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
 
   const render = ({ look, tracked }: State, before: State | null): void => {
     root.hidden = look.kind !== 'objects';
-    if (tracked?.frames !== before?.tracked?.frames || look.hidden !== before?.look.hidden) told.textContent = '';
+    if (tracked?.frames !== before?.tracked?.frames || look.hidden !== before?.look.hidden) status.textContent = '';
   };
   store.subscribe(render);
   render(store.get(), null);

@@ -18,10 +18,10 @@ export function mountClipPreview(panel: HTMLElement, store: Store, formats: read
   let outdated = false;
   let working = false;
 
-  const show = (made: Preview | null, told: string): void => {
+  const show = (made: Preview | null, sentence: string): void => {
     const shown = made?.shown ?? null;
     list.replaceChildren(...(made?.folders ?? []).map(rowOf));
-    caption.textContent = told;
+    caption.textContent = sentence;
     text.hidden = typeof shown !== 'string';
     text.textContent = typeof shown === 'string' ? shown : '';
     picture.hidden = !(shown instanceof Blob);

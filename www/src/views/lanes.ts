@@ -39,7 +39,7 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     const { tracked, look } = now;
     const frames = shownFrames(tracked);
     const sameFrames = frames === shownFrames(before.tracked);
-    const same = sameFrames && tracked?.said === before.tracked?.said && tracked?.exact === before.tracked?.exact;
+    const same = sameFrames && tracked?.annotations === before.tracked?.annotations && tracked?.exact === before.tracked?.exact;
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;

@@ -88,8 +88,8 @@ export function offerMerging(row: HTMLElement, others: readonly number[], look: 
   const merge = find(row, '[data-action=merge-with]', HTMLSelectElement);
   const button = find(row, '[data-action=merge]', HTMLButtonElement);
   const offered = [new Option(strings.mergeWith, ''), ...others.map((id) => new Option(nameOf(look, id), String(id)))];
-  const said = (options: Iterable<HTMLOptionElement>): string => Array.from(options, ({ text, value }) => `${value} ${text}`).join();
-  if (said(offered) !== said(merge.options)) merge.replaceChildren(...offered);
+  const textOf = (options: Iterable<HTMLOptionElement>): string => Array.from(options, ({ text, value }) => `${value} ${text}`).join();
+  if (textOf(offered) !== textOf(merge.options)) merge.replaceChildren(...offered);
   merge.disabled = !ready;
   button.disabled = !ready || merge.value === '';
   merge.hidden = button.hidden = others.length === 0;

@@ -2,7 +2,7 @@
 
 import { promptOf } from '../session/clip/drawing.js';
 import type { Pointing, State, Store } from '../state/state.js';
-import type { Prompt } from '../state/statement.js';
+import type { Prompt } from '../state/annotation.js';
 import { drawn, find } from './markup.js';
 
 /** Radius of a disc, and half the length of the lines in it, pixels of the screen. */

@@ -8,7 +8,7 @@ import { contextOf, find } from './markup.js';
 
 export function mountReview(root: HTMLElement, store: Store, session: Session): void {
   const box = find(root, '#review', HTMLElement);
-  const told = find(root, '#reviewed', HTMLElement);
+  const status = find(root, '#reviewed', HTMLElement);
   const one = find(root, '#accept', HTMLButtonElement);
   const all = find(root, '#accept-all', HTMLButtonElement);
   const bar = find(root, '#review-bar', HTMLCanvasElement);
@@ -21,7 +21,7 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
     if (box.hidden || tracked === null) return;
     const { frames, clip } = tracked;
     const accepted = acceptedIn(tracked);
-    told.textContent = strings.accepted(accepted.length, masksIn(frames, { first: 0, last: clip.count - 1 }));
+    status.textContent = strings.accepted(accepted.length, masksIn(frames, { first: 0, last: clip.count - 1 }));
     one.disabled = accepted.includes(timeline?.first ?? -1) && toReview(tracked) === null;
     all.disabled = toReview(tracked) === null;
     bar.width = clip.count;

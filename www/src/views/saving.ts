@@ -10,7 +10,7 @@ import { saveProject } from './save-project.js';
 export function mountSaving(root: HTMLElement, store: Store, session: Session): void {
   const button = find(root, 'button', HTMLButtonElement);
   const sentence = find(button, 'span', HTMLElement);
-  const told = find(root, '[role=status]', HTMLElement);
+  const status = find(root, '[role=status]', HTMLElement);
   button.addEventListener('click', () => void saveProject(store, session));
 
   const show = ({ keeping }: State): void => {
@@ -20,7 +20,7 @@ export function mountSaving(root: HTMLElement, store: Store, session: Session): 
     const [what, where, more] = keeping.is === 'kept' ? strings.projects.savedHere(keeping.at, keeping.without) : strings.projects.notSaved[keeping.code];
     sentence.replaceChildren(what!, element('span', where, 'in-full'), more!);
     button.title = strings.projects.keeping(keeping);
-    if (keeping.is === 'kept' && told.textContent === '') told.textContent = strings.projects.firstSaved;
+    if (keeping.is === 'kept' && status.textContent === '') status.textContent = strings.projects.firstSaved;
   };
   store.subscribe((now, before) => {
     if (now.keeping !== before.keeping) show(now);

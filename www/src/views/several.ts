@@ -13,7 +13,7 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
   const list = find(root, '#objects', HTMLOListElement);
   const toggle = find(root, '#select-several', HTMLButtonElement);
   const bar = find(root, '#several', HTMLElement);
-  const told = find(bar, '[role=status]', HTMLElement);
+  const status = find(bar, '[role=status]', HTMLElement);
   const button = (action: string): HTMLButtonElement => find(bar, `[data-action=${action}]`, HTMLButtonElement);
   const [merge, lock] = [button('merge'), button('lock')];
   const actions = [lock, button('remove'), button('export')];
@@ -158,7 +158,7 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
     const ids = chosen();
     // Those that are gone leave the selection.
     if (ids.length < among.size) return choose(ids);
-    told.textContent = strings.selected(ids.length);
+    status.textContent = strings.selected(ids.length);
     const ready = tracked.spans.length > 0;
     merge.disabled = !ready || ids.length < 2;
     for (const control of actions) control.disabled = !ready || ids.length === 0;

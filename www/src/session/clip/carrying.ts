@@ -2,10 +2,10 @@
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
 import { strings } from '../../common/strings.js';
-import { type Drawn, type Noted, type Saying, withSaid } from '../../state/said.js';
+import { type Correction, type Drawn, type Noted, withCorrection } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { isPrompt } from '../../state/statement.js';
+import { isPrompt } from '../../state/annotation.js';
 import { type ClipRun, type Notes, type TrackedFrame, type Version, unchanged, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import type { Change, ClipRuns } from './runs.js';
@@ -25,7 +25,7 @@ interface Corrections {
   settled: Version;
   /** These, as far as the one under way has changed them. */
   now: Version;
-  readonly waiting: Saying[];
+  readonly waiting: Correction[];
 }
 
 /** Why a run on the clip is done. */
@@ -47,14 +47,14 @@ export class Carrying {
   }
 
   /** Shows a correction at once in its own frame, and carries it through the clip after those before. */
-  async correct(said: Saying): Promise<void> {
+  async correct(correction: Correction): Promise<void> {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const under = this.#corrections;
     const settled = versionOf(tracked);
     const corrections: Corrections = under ?? { settled, now: settled, waiting: [] };
-    corrections.waiting.push(said);
-    this.#shown.version(withSaid(tracked, said), tracked.run);
+    corrections.waiting.push(correction);
+    this.#shown.version(withCorrection(tracked, correction), tracked.run);
     if (under !== null) return; // taken by the loop below
     this.#corrections = corrections;
     const ends = { cancel: () => this.#takeBack(corrections), stopped: () => this.#stopped(corrections) };
@@ -74,20 +74,20 @@ export class Carrying {
   }
 
   /** Takes what is drawn exactly in frames, by index: it is not carried to other pixels. */
-  draw(said: Drawn & Partial<Noted>): void {
-    this.#note(said, 'corrected', false);
+  draw(correction: Drawn & Partial<Noted>): void {
+    this.#note(correction, 'corrected', false);
   }
 
-  #note(said: Noted | Drawn, cause: DoneCause, goesOn: boolean): void {
+  #note(correction: Noted | Drawn, cause: DoneCause, goesOn: boolean): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     if (this.#corrections !== null) {
       const { waiting } = this.#corrections;
-      const last = goesOn ? waiting.findLastIndex((one) => kindOf(one) === kindOf(said)) : -1;
+      const last = goesOn ? waiting.findLastIndex((one) => kindOf(one) === kindOf(correction)) : -1;
       if (last >= 0) waiting.splice(last, 1);
-      return void this.correct(said);
+      return void this.correct(correction);
     }
-    const after = withSaid(tracked, said);
+    const after = withCorrection(tracked, correction);
     if (!goesOn && tracked.spans.length > 0) this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
     this.#shown.version(after, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: changedIn(after, tracked) });
   }
@@ -98,7 +98,7 @@ export class Carrying {
     if (corrections === null || tracked === null) return this.#go('past', 'future', 'undone');
     // The last correction is what is undone.
     if (corrections.waiting.pop() === undefined) return this.#runs.stop();
-    this.#shown.version(corrections.waiting.reduce(withSaid, corrections.now), tracked.run);
+    this.#shown.version(corrections.waiting.reduce(withCorrection, corrections.now), tracked.run);
   }
 
   redo(): void {
@@ -119,7 +119,7 @@ export class Carrying {
     if (waiting.length === 0) return this.#runs.stop();
     this.#runs.interrupt();
     corrections.now = settled;
-    this.#shown.version(waiting.reduce(withSaid, settled), CARRYING);
+    this.#shown.version(waiting.reduce(withCorrection, settled), CARRYING);
   }
 
   #stopped({ settled }: Corrections): void {
@@ -133,30 +133,30 @@ export class Carrying {
     const next = waiting.shift();
     if (next === undefined) return;
     set({ run: CARRYING });
-    corrections.now = withSaid(before, next);
+    corrections.now = withCorrection(before, next);
     const after = unchanged(before, await this.#carried(before, next, corrections, signal));
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;
-    const isNothing = 'said' in next && next.said.some((said) => isPrompt(said) && !after.frames[said.frame]?.objects.some(({ id }) => id === (after.became.get(said.object) ?? said.object)));
+    const isNothing = 'annotations' in next && next.annotations.some((one) => isPrompt(one) && !after.frames[one.frame]?.objects.some(({ id }) => id === (after.became.get(one.object) ?? one.object)));
     if (isNothing) this.#store.say(strings.notices.nothingThere);
     corrections.settled = corrections.now = isNothing ? before : after;
     if (!isNothing) set({ past: [...now.past, before], future: [] });
     // Later corrections stay on screen.
     const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(corrections.settled, before) } as const);
-    this.#shown.version(waiting.reduce(withSaid, corrections.settled), run);
+    this.#shown.version(waiting.reduce(withCorrection, corrections.settled), run);
   }
 
   /** The masks of all frames after a correction. */
-  async #carried(before: Version, saying: Saying, corrections: Corrections, signal: AbortSignal): Promise<Version> {
+  async #carried(before: Version, correction: Correction, corrections: Corrections, signal: AbortSignal): Promise<Version> {
     const { now } = corrections;
-    if (!('edits' in saying || 'said' in saying)) return now;
+    if (!('edits' in correction || 'annotations' in correction)) return now;
     const changes = this.#shows(corrections);
     // Frames that do not change are as they were.
-    let after: Version = 'edits' in saying ? now : { ...now, frames: before.frames, largest: before.largest };
-    const objects = new Set('edits' in saying ? [...(saying.edits.merge ?? []), saying.edits.delete ?? []].flat() : []);
-    const said = now.said.filter((one) => !before.said.includes(one));
+    let after: Version = 'edits' in correction ? now : { ...now, frames: before.frames, largest: before.largest };
+    const objects = new Set('edits' in correction ? [...(correction.edits.merge ?? []), correction.edits.delete ?? []].flat() : []);
+    const annotations = now.annotations.filter((one) => !before.annotations.includes(one));
     for (const span of before.spans) {
-      const own = said.filter(({ frame }) => spanAt(before.spans, frame) === span);
+      const own = annotations.filter(({ frame }) => spanAt(before.spans, frame) === span);
       const isAbout = own.length > 0 || [...span.numbers.values()].some((id) => objects.has(id));
       if (isAbout) after = await this.#spans.corrected(after, span, own, signal, changes);
     }
@@ -174,14 +174,14 @@ export class Carrying {
       const { timeline } = this.#store.get();
       if (index !== timeline?.first && index !== timeline?.second && performance.now() - shown < OFTEN) return;
       shown = performance.now();
-      this.#shown.version(waiting.reduce(withSaid, corrections.now), { ...CARRYING, labelled: changed.size });
+      this.#shown.version(waiting.reduce(withCorrection, corrections.now), { ...CARRYING, labelled: changed.size });
     };
   }
 }
 
 /** The kinds of notes; `null` for a correction of masks. */
-function kindOf(saying: Saying): string | null {
-  return 'notes' in saying && saying.notes !== undefined && !('said' in saying || 'drawn' in saying || 'edits' in saying) ? Object.keys(saying.notes).join() : null;
+function kindOf(correction: Correction): string | null {
+  return 'notes' in correction && correction.notes !== undefined && !('annotations' in correction || 'drawn' in correction || 'edits' in correction) ? Object.keys(correction.notes).join() : null;
 }
 
 /** Number of frames that are others than before. */

@@ -7,10 +7,10 @@ import { smallerPieces } from '../../correction/pieces.js';
 import { type Runs, packed, unpacked } from '../../correction/runs.js';
 import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
 import { UNLABELLED, keyOf } from '../../result/masks.js';
-import { type Spread, seenOf } from '../../state/said.js';
+import { type Spread, seenOf } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
 import type { Pointing, Store } from '../../state/state.js';
-import { type Box, type Click, type Painted, type Prompt, isPrompt, namesObjects, paintedOf, points } from '../../state/statement.js';
+import { type Box, type Click, type Painted, type Prompt, isPrompt, namesObjects, paintedOf, points } from '../../state/annotation.js';
 import type { Version } from '../../state/tracked.js';
 import type { Objects } from './objects.js';
 
@@ -85,7 +85,7 @@ export class Drawing {
         this.#store.look({ selected: object });
         this.#store.set({ tool: { ...this.#store.get().tool, pointing: 'new' } });
       }
-      void this.#objects.carrying.correct({ said: [now] });
+      void this.#objects.carrying.correct({ annotations: [now] });
     };
   }
 
@@ -119,7 +119,7 @@ export class Drawing {
     const [is, isNot] = [nothing(masks), nothing(masks)];
     for (const p of pieces) [is[p], isNot[p]] = [number, 0];
     // An automatic object gives way by itself.
-    const isOwn = keyOf('objects', id) in tracked.names || tracked.said.some((one) => one.object === id || (!isPrompt(one) && one.labels.labels.includes(id)));
+    const isOwn = keyOf('objects', id) in tracked.names || tracked.annotations.some((one) => one.object === id || (!isPrompt(one) && one.labels.labels.includes(id)));
     this.#paint(frame, [...(isOwn ? [[id, isNot] as const] : []), [number, is]]);
   }
 
@@ -128,7 +128,7 @@ export class Drawing {
     const { tracked } = this.#store.get();
     const spread = this.#spread();
     if (tracked === null) return;
-    if (spread !== 'exact') return void this.#objects.carrying.correct({ said: all.flatMap(([object, labels]) => painted(tracked, frame, object, labels, spread)) });
+    if (spread !== 'exact') return void this.#objects.carrying.correct({ annotations: all.flatMap(([object, labels]) => painted(tracked, frame, object, labels, spread)) });
     const seen = all.map(([object, labels]) => seenOf(tracked, frame, object, labels));
     this.#objects.carrying.draw({ drawn: new Map([[frame, seen[0]!.map((label, p) => seen.findLast((labels) => labels[p] !== UNLABELLED)?.[p] ?? label)]]) });
   }
@@ -153,17 +153,17 @@ export function painted(version: Version, frame: number, object: number, labels:
     const merged = labels.includes(0) ? [...version.became].filter(([, into]) => into === object).map(([other]) => not(other)) : [];
     return [...merged, { frame, object, propagate, labels: runsOf(labels) }];
   }
-  const map = paintedOf(version.said, frame, 0);
+  const map = paintedOf(version.annotations, frame, 0);
   const isOfMasks = map !== null && namesObjects(map);
   const under = isOfMasks ? unpacked(masks).filter((_, p) => labels[p] === 0) : [];
-  const stroked = version.said.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
+  const stroked = version.annotations.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
   const others = [...new Set([...under, ...stroked])].filter((other) => other !== 0 && other !== UNLABELLED && !version.locked.has(other));
   return [...(isOfMasks ? [] : [not(0)]), ...others.map(not)];
 }
 
 /** The prompt of an object in a frame, which may have been merged into this one; `null` if there is none. */
-export function promptOf({ said, became }: Pick<Version, 'said' | 'became'>, frame: number | null, id: number | null): Prompt | null {
-  return said.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
+export function promptOf({ annotations, became }: Pick<Version, 'annotations' | 'became'>, frame: number | null, id: number | null): Prompt | null {
+  return annotations.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
 }
 
 /** A prompt with another click, or with a box. A box has all clicks that are the object's. */

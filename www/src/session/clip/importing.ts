@@ -8,7 +8,7 @@ import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
-import type { Painted } from '../../state/statement.js';
+import type { Painted } from '../../state/annotation.js';
 import type { Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
@@ -60,7 +60,7 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     const { painted, classes, left } = await masksFrom(files, tracked);
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     shown.kind('objects');
-    void objects.carrying.correct({ said: mapsOf(painted, tracked), notes: objects.withClasses(classes) });
+    void objects.carrying.correct({ annotations: mapsOf(painted, tracked), notes: objects.withClasses(classes) });
     if (left.length > 0) store.say(texts.taken(painted.size, left));
   } catch (error) {
     report(store, error);

@@ -45,7 +45,7 @@ export class ClipRuns {
     } catch (error) {
       if (signal.aborted) return;
       set({ run: { phase: 'failed' } });
-      report(this.#store, told(error));
+      report(this.#store, reported(error));
     } finally {
       if (this.#current === own) this.#current = null;
     }
@@ -71,7 +71,7 @@ export class ClipRuns {
   }
 }
 
-function told(error: unknown): unknown {
+function reported(error: unknown): unknown {
   const code = codeOf(error);
   if (code === 'object-locked') return new PageError(code, strings.notices.locked);
   return code === 'invalid-option' ? new PageError('other-state', strings.notices.otherState) : error;

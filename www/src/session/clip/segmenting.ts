@@ -169,11 +169,11 @@ export class ClipSegmenting {
     signal: AbortSignal,
     set: Change,
   ): Promise<void> {
-    const { said, became } = before;
+    const { annotations, became } = before;
     const isFirst = before.found.every((runs) => runs === null);
     const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
-    const corrected = said.some(({ frame }) => contains(range, frame)) || became.size > 0;
+    const corrected = annotations.some(({ frame }) => contains(range, frame)) || became.size > 0;
     if (corrected || acceptedIn(before).some((index) => contains(range, index))) version = await this.#spans.repeated(before, version, signal);
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;

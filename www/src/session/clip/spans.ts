@@ -7,8 +7,8 @@ import type { LoadedFrame } from '../../state/pair.js';
 import { exactly, overlaid } from '../../state/exact.js';
 import { contains, fromSpan, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
-import type { Said } from '../../state/statement.js';
-import { editsIn, namesIn, saidAtSize, theirNumbers, toSpan, toldOf } from '../../state/told.js';
+import type { Annotation } from '../../state/annotation.js';
+import { editsIn, namesIn, annotationAtSize, packageNumbers, toSpan, forPackage } from '../../state/package-numbers.js';
 import { type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
 import { ClipFrames, blobOf, bytesOf, masksOf } from './frames.js';
 
@@ -25,12 +25,12 @@ export class Spans {
   }
 
   /** Tells the package what is new in a span, and what became of objects. `changes` takes frames as they change, perhaps not for the last time. */
-  corrected(version: Version, span: Span, said: readonly Said[], signal: AbortSignal, changes: (index: number, masks: TrackedFrame) => void): Promise<Version> {
+  corrected(version: Version, span: Span, annotations: readonly Annotation[], signal: AbortSignal, changes: (index: number, masks: TrackedFrame) => void): Promise<Version> {
     const accepted = acceptedIn(version).filter((index) => spanAt(version.spans, index) === span);
     return this.#answer(version, span, signal, changes, (numbers) => ({
-      ...toldOf(said, span.range, numbers),
+      ...forPackage(annotations, span.range, numbers),
       accepted: accepted.map((index) => index - span.range.first),
-      locked: theirNumbers(numbers, version.became, (id) => version.locked.has(id)),
+      locked: packageNumbers(numbers, version.became, (id) => version.locked.has(id)),
       names: namesIn(version, numbers),
     }));
   }
@@ -42,12 +42,12 @@ export class Spans {
   async repeated(before: Version, now: Version, signal: AbortSignal): Promise<Version> {
     const at = now.spans.length - 1;
     const { range } = now.spans[at]!;
-    const said = now.said.map((one) => {
+    const annotations = now.annotations.map((one) => {
       const [was, is] = [before, now].map(({ frames }) => frames[one.frame]?.runs);
-      return was && is && was.width !== is.width ? saidAtSize(one, was, is) : one;
+      return was && is && was.width !== is.width ? annotationAtSize(one, was, is) : one;
     });
-    const own = said.filter(({ frame }) => contains(range, frame));
-    const after = await this.#answer({ ...now, said }, now.spans[at]!, signal, null, (numbers) => ({ ...toldOf(own, range, numbers), accepted: [], locked: [], names: {} }));
+    const own = annotations.filter(({ frame }) => contains(range, frame));
+    const after = await this.#answer({ ...now, annotations }, now.spans[at]!, signal, null, (numbers) => ({ ...forPackage(own, range, numbers), accepted: [], locked: [], names: {} }));
     const accepted = acceptedIn(before).filter((index) => contains(range, index));
     if (accepted.length === 0 || signal.aborted) return after;
     return this.#answer(after, after.spans[at]!, signal, null, (numbers) => ({
@@ -81,9 +81,9 @@ export class Spans {
       const frame = await segmented();
       if (!signal.aborted) changes?.(first + index, numbered(frame));
     };
-    const { names, ...told } = tell(numbers);
+    const { names, ...asked } = tell(numbers);
     const found = this.#segmenter.segmentClip(frames, {
-      ...told,
+      ...asked,
       state: await bytesOf(span.state),
       markUnknown: settings.markUnknown,
       changesOnly: true,

@@ -4,11 +4,11 @@ import type { ClipOptions } from 'veronese';
 import { type Runs, resized, unpacked } from '../correction/runs.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { MOST_OBJECTS } from './spans.js';
-import { type Click, type Said, isPrompt, namesObjects } from './statement.js';
+import { type Click, type Annotation, isPrompt, namesObjects } from './annotation.js';
 import type { Range, Version } from './tracked.js';
 
 /** The number that the package has for an object, or will have: one that none has makes a new object. */
-export function theirNumber(numbers: ReadonlyMap<number, number>, id: number): number {
+export function packageNumber(numbers: ReadonlyMap<number, number>, id: number): number {
   const [known] = [...numbers].find(([, here]) => here === id) ?? [];
   const any = Array.from({ length: MOST_OBJECTS }, (_, k) => k + 1);
   // Above all that are seen there is none that is hidden.
@@ -26,16 +26,16 @@ export function toSpan(runs: Runs, numbers: Map<number, number>): Uint8Array<Arr
 }
 
 function learned(numbers: Map<number, number>, id: number): number {
-  const number = theirNumber(numbers, id);
+  const number = packageNumber(numbers, id);
   if (number !== 0) numbers.set(number, id);
   return number;
 }
 
 /** Annotations of frames of a span for the package; `numbers` learns new ones. Where an object is not that it does not know is nothing. */
-export function toldOf(said: readonly Said[], { first }: Range, numbers: Map<number, number>): Required<Pick<ClipOptions, 'corrections' | 'prompts'>> {
+export function forPackage(annotations: readonly Annotation[], { first }: Range, numbers: Map<number, number>): Required<Pick<ClipOptions, 'corrections' | 'prompts'>> {
   const corrections: NonNullable<ClipOptions['corrections']>[number][] = [];
   const prompts: NonNullable<ClipOptions['prompts']>[number][] = [];
-  for (const one of said) {
+  for (const one of annotations) {
     const isKnown = one.object === 0 || [...numbers.values()].includes(one.object);
     const object = isKnown || isPrompt(one) || namesObjects(one) ? learnedUnlessMap(numbers, one.object) : null;
     if (object === null) continue;
@@ -52,7 +52,7 @@ function learnedUnlessMap(numbers: Map<number, number>, object: number): number 
 }
 
 /** The package's numbers of objects here, which may have been merged. */
-export function theirNumbers(numbers: ReadonlyMap<number, number>, became: Version['became'], is: (id: number) => boolean): number[] {
+export function packageNumbers(numbers: ReadonlyMap<number, number>, became: Version['became'], is: (id: number) => boolean): number[] {
   return [...numbers].filter(([, here]) => is(became.get(here) ?? here)).map(([there]) => there);
 }
 
@@ -84,14 +84,14 @@ interface Size {
 }
 
 /** An annotation of masks of one size, for masks of another. */
-export function saidAtSize(said: Said, before: Size, now: Size): Said {
-  if (!isPrompt(said)) return { ...said, labels: resized(said.labels, now) };
+export function annotationAtSize(one: Annotation, before: Size, now: Size): Annotation {
+  if (!isPrompt(one)) return { ...one, labels: resized(one.labels, now) };
   const [sx, sy] = [now.width / before.width, now.height / before.height];
   const at = (value: number, by: number, side: number): number => Math.min(Math.floor((value + 0.5) * by), side - 1);
-  const clicks = said.clicks.map(([x, y, sign]): Click => [at(x, sx, now.width), at(y, sy, now.height), sign]);
-  if (said.box === null) return { ...said, clicks };
-  const [x, y, width, height] = said.box;
+  const clicks = one.clicks.map(([x, y, sign]): Click => [at(x, sx, now.width), at(y, sy, now.height), sign]);
+  if (one.box === null) return { ...one, clicks };
+  const [x, y, width, height] = one.box;
   const [left, top] = [Math.floor(x * sx), Math.floor(y * sy)];
   const [right, bottom] = [Math.min(Math.ceil((x + width) * sx), now.width), Math.min(Math.ceil((y + height) * sy), now.height)];
-  return { ...said, clicks, box: [left, top, right - left, bottom - top] };
+  return { ...one, clicks, box: [left, top, right - left, bottom - top] };
 }

@@ -5,17 +5,17 @@ import { over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
-import { type Said, isPrompt, withStatement } from './statement.js';
+import { type Annotation, isPrompt, withAnnotation } from './annotation.js';
 import type { Notes, Version } from './tracked.js';
 
 /** Where an annotation of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
 export type Spread = ClipPropagation | 'exact';
 
 /** An annotation: of objects in frames, of whole objects, pixels drawn exactly, or notes, which change no masks. */
-export type Saying = (Stated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
+export type Correction = (Annotated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
 
-export interface Stated {
-  readonly said: readonly Said[];
+export interface Annotated {
+  readonly annotations: readonly Annotation[];
 }
 
 /** Labels drawn exactly in frames, by index. */
@@ -36,19 +36,19 @@ export function seenOf(version: Version, frame: number, object: number, labels: 
 }
 
 /** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */
-export function withSaid<V extends Version>(version: V, saying: Saying): V {
-  const noted = { ...version, ...saying.notes };
-  if ('edits' in saying) return withEdits(noted, saying.edits);
-  if ('drawn' in saying) return [...saying.drawn].reduce((before, [index, labels]) => withLabels(before, index, labels, true), noted);
-  return 'said' in saying ? saying.said.reduce(withOne, noted) : noted;
+export function withCorrection<V extends Version>(version: V, correction: Correction): V {
+  const noted = { ...version, ...correction.notes };
+  if ('edits' in correction) return withEdits(noted, correction.edits);
+  if ('drawn' in correction) return [...correction.drawn].reduce((before, [index, labels]) => withLabels(before, index, labels, true), noted);
+  return 'annotations' in correction ? correction.annotations.reduce(annotated, noted) : noted;
 }
 
-function withOne<V extends Version>(version: V, now: Said): V {
-  const said = withStatement(version.said, now, version.locked);
+function annotated<V extends Version>(version: V, now: Annotation): V {
+  const annotations = withAnnotation(version.annotations, now, version.locked);
   // Nothing is seen of a prompt yet; its number is taken.
-  if (isPrompt(now)) return { ...version, said, largest: Math.max(version.largest, now.object) };
+  if (isPrompt(now)) return { ...version, annotations, largest: Math.max(version.largest, now.object) };
   const masks = version.frames[now.frame];
-  return { ...(masks ? withLabels(version, now.frame, seenOf(version, now.frame, now.object, unpacked(now.labels)), false) : version), said };
+  return { ...(masks ? withLabels(version, now.frame, seenOf(version, now.frame, now.object, unpacked(now.labels)), false) : version), annotations };
 }
 
 function withEdits<V extends Version>(version: V, edits: NonNullable<ClipOptions['edits']>): V {
@@ -69,6 +69,6 @@ function withLabels<V extends Version>(version: V, index: number, labels: Uint8A
   const before = version.exact.get(index);
   if (!isExact && before === undefined) return { ...version, frames, largest };
   // A later annotation counts, also where something was drawn exactly.
-  const said = packed(isExact || before === undefined ? labels : unpacked(before).map((label, p) => (label === UNLABELLED ? label : labels[p]!)), width, height);
-  return { ...version, frames, largest, exact: new Map(version.exact).set(index, before === undefined ? said : over(before, said)) };
+  const exact = packed(isExact || before === undefined ? labels : unpacked(before).map((label, p) => (label === UNLABELLED ? label : labels[p]!)), width, height);
+  return { ...version, frames, largest, exact: new Map(version.exact).set(index, before === undefined ? exact : over(before, exact)) };
 }
