@@ -30,7 +30,7 @@ from urllib3.exceptions import HTTPError
 FRAMES = 3000
 PIXELS = 4096 * 2304
 BYTES = 64 * 1024 * 1024
-# The label that says nothing of a pixel.
+# The label of a pixel that is left open.
 SILENT = 255
 
 
@@ -40,7 +40,7 @@ class Refusal(Exception):
 
 
 class Work:
-    """The folder of a task: its frames, the clip, what was said of it, and what CVAT held when this program last looked."""
+    """The folder of a task: its frames, the clip, its corrections, and what CVAT held when this program last looked."""
 
     def __init__(self, folder, task):
         self.folder = Path(folder)
@@ -57,7 +57,7 @@ class Work:
         return {int(number): set(frames) for number, frames in self.held["drawn"].items()}
 
     def sending(self):
-        """What an upload is to bring to CVAT; None where none has begun, or the last one has ended."""
+        """The content of an upload to CVAT; None where none has begun, or the last one has ended."""
         plan = self.held and self.held.get("sending")
         if plan is None:
             return None
@@ -200,7 +200,7 @@ def upload(task, work):
         elif new or (said and len(old) < len(ids)):
             others.add(number)
         elif not said:
-            # An object can be lost by what was said of others.
+            # An object can be lost by corrections of others.
             lost += old
         else:
             if not (len(old) == 1 and old[0].group == number and cvat_tracks.says(old, said, frames)):
@@ -276,7 +276,7 @@ def name_of(frame):
 
 
 def veronese(options, command, *arguments):
-    """Runs the program; what it says goes to the terminal."""
+    """Runs the program; its messages go to the terminal."""
     # Backslashes of Windows are no escapes.
     name, *first = (word.strip('"') for word in shlex.split(options.veronese, posix=os.name != "nt"))
     program = shutil.which(name)
@@ -299,7 +299,7 @@ def outlines(work, options, frames):
 
 
 def edits_in(folder):
-    """What was said of whole objects before, in a folder that there is afterwards."""
+    """The earlier edits of whole objects, in a folder that is made if it is missing."""
     folder.mkdir(exist_ok=True)
     file = folder / "edits.json"
     return json.loads(file.read_text(encoding="utf-8")) if file.exists() else {"delete": [], "locked": [], "propagate": {}}
@@ -324,10 +324,10 @@ def say(work, options, before, now, changed):
 
 
 def certain(old, new, found, touched):
-    """What is certain of a pixel, from what polygons were and are there, and what was found: polygons may only be near to that."""
+    """The label that is certain of a pixel, from the polygons before and now, and what was found: polygons may only be near to that."""
     if old != new or new in touched or found in touched:
         return new
-    # Of objects that nobody touched nothing is said: they would be followed anew.
+    # Objects that nobody touched are left open: they would be followed anew.
     return 0 if found == 0 else SILENT
 
 
@@ -351,7 +351,7 @@ def send(task, action, tracks):
 
 
 def read_back(task, frames, numbers):
-    """What CVAT holds now of these objects, as it gives it: that is what a person will change."""
+    """These objects as CVAT holds them now: a person will change that."""
     tracks = cvat_tracks.by_number(task.get_annotations().tracks, {})
     return {number: cvat_tracks.united(tracks[number], frames) for number in numbers if number in tracks}
 

@@ -19,7 +19,7 @@ ROUNDING = 0.01
 
 
 def known(track, frames):
-    """What the key frames of a track say. Before the first and after one that is outside, the object is not there."""
+    """The polygons of a track by its key frames. Before the first and after one that is outside, the object is not there."""
     keys = {shape.frame: shape for shape in track.shapes}
     said, last = {}, None
     for frame in frames:
@@ -75,7 +75,7 @@ def says(tracks, said, frames):
 
 
 def changes(before, now, frames):
-    """The frames in which a person said something of an object: {number: [frame, ...]}."""
+    """The frames in which a person changed an object: {number: [frame, ...]}."""
     changed = {}
     for number, said in now.items():
         old = before.get(number, {frame: [] for frame in frames})
@@ -84,7 +84,7 @@ def changes(before, now, frames):
 
 
 def write_xml(path, objects, changed, frames, size):
-    """What is known of the frames that changed, in CVAT's own format for videos, with frames counted as the clip counts them. What changed
+    """Writes what is known of the frames that changed, in CVAT's own format for videos, with frames counted as the clip counts them. What changed
     lies on top."""
     only = {frame for where in changed.values() for frame in where}
     root = ElementTree.Element("annotations")
