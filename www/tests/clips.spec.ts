@@ -1,4 +1,4 @@
-//! Clips: videos with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
+//! Clips: videos with a number in every frame, read back exactly; folders; the fallback without WebCodecs.
 
 import { type Page } from '@playwright/test';
 
@@ -187,8 +187,7 @@ async function isHevcNamed(page: Page): Promise<void> {
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
 }
 
-test('a broken video and one of an unsupported codec are rejected, and the pair stays; the camera is segmented live, and its last pair stays', async ({ page, context }) => {
-  await context.grantPermissions(['camera']);
+test('a broken video and one of an unsupported codec are rejected, and the pair stays', async ({ page }) => {
   await open(page);
   await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
   await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
@@ -196,12 +195,4 @@ test('a broken video and one of an unsupported codec are rejected, and the pair 
   await expect(page.locator('#motions > li').first()).toBeVisible();
   await isHevcNamed(page);
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
-
-  await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ frames per second, .* objects?\.$/);
-  await expect(page.locator('#caption')).toHaveText('Camera');
-  await page.getByRole('button', { name: 'Stop camera' }).click();
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
-  await expect(page.locator('#motions > li').first()).toBeVisible();
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('camera');
 });

@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
+import { type Upload, axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -37,6 +37,23 @@ function sizes(page: Page, name: 'projects' | 'frames'): Promise<number[]> {
 
 /** How many copies of frames the browser has. */
 const copies = async (page: Page): Promise<number> => (await sizes(page, 'frames')).length;
+
+/** Work on a small clip that the browser keeps, with a copy of its frames unless that is left out. */
+async function keptWork(page: Page, { copied = true } = {}): Promise<Upload[]> {
+  const files = await clipFrames(4, 120, 84);
+  await openSegmented(page, files);
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f03.png');
+  if (copied) await expect.poll(() => copies(page)).toBe(1);
+  return files;
+}
+
+/** Goes on with that work by choosing its frames. */
+async function chooseFrames(page: Page, files: Upload[]): Promise<void> {
+  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
+  await chooser.setFiles(files);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+}
 
 /** Where the parts of the panel and of the bar are, from the top and from the left. */
 function places(page: Page): Promise<number[]> {
@@ -118,11 +135,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
 });
 
 test('files that were not written before the page was closed count for nothing', async ({ page }) => {
-  const files = await clipFrames(4, 120, 84);
-  await openSegmented(page, files);
-  await rename(page, '#objects', 1, 'Disc');
-  await written(page, 'f00-f03.png');
-  await expect.poll(() => copies(page)).toBe(1);
+  const files = await keptWork(page);
   await visit(page);
   await page.evaluate(async () => {
     const root = await navigator.storage.getDirectory();
@@ -132,9 +145,7 @@ test('files that were not written before the page was closed count for nothing',
   });
   expect(await copies(page)).toBe(0);
   await visit(page);
-  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
-  await chooser.setFiles(files);
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  await chooseFrames(page, files);
   await expect.poll(() => copies(page)).toBe(1);
   await openExport(page);
   await expect(page.locator('#project summary')).toHaveText('One project in this browser');
@@ -142,10 +153,7 @@ test('files that were not written before the page was closed count for nothing',
 });
 
 test('of several the newest comes first, and a sample needs no copy, also with its frames swapped', async ({ page }) => {
-  await openSegmented(page, await clipFrames(4, 120, 84));
-  await rename(page, '#objects', 1, 'Disc');
-  await written(page, 'f00-f03.png');
-  await expect.poll(() => copies(page)).toBe(1);
+  await keptWork(page);
   await page.goto('about:blank');
   await page.goto(`${PARALLAX}&swapped=true`);
   await done(page);
@@ -169,24 +177,16 @@ test('of several the newest comes first, and a sample needs no copy, also with i
 
 test('frames that are too large to copy are asked for', async ({ page }) => {
   await page.addInitScript(() => void (isSecureContext && (StorageManager.prototype.estimate = () => Promise.resolve({ quota: 1000, usage: 0 })))); // about:blank has none
-  const files = await clipFrames(4, 120, 84);
-  await openSegmented(page, files);
-  await rename(page, '#objects', 1, 'Disc');
-  await written(page, 'f00-f03.png');
+  const files = await keptWork(page, { copied: false });
   await expect(page.locator('#saving button')).toHaveText(/^Saved without its frames, \d\d:\d\d/);
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText('Your work is kept in this browser. Open the same frames again to continue.');
   await visit(page);
-  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
-  await chooser.setFiles(files);
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  await chooseFrames(page, files);
 });
 
 test('copies of frames give way to work when the disk is full', async ({ page, context, baseURL }) => {
-  await openSegmented(page, await clipFrames(4, 120, 84));
-  await rename(page, '#objects', 1, 'Disc');
-  await written(page, 'f00-f03.png');
-  await expect.poll(() => copies(page)).toBe(1);
+  await keptWork(page);
   const usage = await page.evaluate(async () => (await navigator.storage.estimate()).usage ?? 0);
   const session = await context.newCDPSession(page);
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: usage });
