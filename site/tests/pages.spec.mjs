@@ -161,11 +161,6 @@ for (const [path, budget] of [['', 200], ['method/', 400]]) {
       }),
     );
     const kilobytes = sizes.reduce((sum, size) => sum + size, 0) / KILOBYTE;
-    const paint = await page.evaluate(
-      () => new Promise((resolve) => new PerformanceObserver((list) => resolve(list.getEntries().at(-1).startTime)).observe({ type: 'largest-contentful-paint', buffered: true })),
-    );
-    test.info().annotations.push({ type: 'size', description: `${kilobytes.toFixed(0)} KB` });
-    console.log(`/${path}: ${kilobytes.toFixed(0)} KB, largest paint after ${paint.toFixed(0)} ms`);
     expect(kilobytes).toBeLessThanOrEqual(budget);
   });
 }
