@@ -98,8 +98,8 @@ export async function withProcessors(page: Page, count: number): Promise<void> {
 }
 
 /** Opens frames, or a video of `count` frames, as a clip. */
-export async function openClip(page: Page, files: Upload[], { count = files.length, kind = 'groups' }: { count?: number; kind?: 'motions' | 'groups' } = {}): Promise<void> {
-  await openEmpty(page, kind);
+export async function openClip(page: Page, files: Upload[], { count = files.length, kind = 'groups', quality = 'fast' }: { count?: number; kind?: 'motions' | 'groups'; quality?: 'fast' | 'best' } = {}): Promise<void> {
+  await openEmpty(page, kind, quality);
   await upload(page, files);
   await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
   await done(page);

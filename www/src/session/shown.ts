@@ -6,7 +6,7 @@ import type { Kind } from '../result/masks.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import type { FramePair } from '../state/pair.js';
 import { FRESH, type Look, type Run, type State, type Store, isCurrent, isPassing } from '../state/state.js';
-import { type ClipRun, type Tracked, type Version, isSeen, isTracked, versionOf } from '../state/tracked.js';
+import { type ClipRun, type Tracked, type Version, isDrafting, isSeen, versionOf } from '../state/tracked.js';
 import type { Masks } from './pair/masks.js';
 import { type PairSegmenting, STARTING } from './pair/segmenting.js';
 import type { Solving } from './pair/solving.js';
@@ -81,15 +81,17 @@ export class Shown {
     const frames = [pair.first, pair.second].filter((frame) => frame !== null);
     const came = frames.some((frame) => frameOf(before, frame) === null && frameOf(tracked, frame) !== null);
     if (came) this.kind('objects');
-    // Objects of previews have other numbers.
-    if (look.selected !== null && isSeen(before) && isTracked(tracked) !== isTracked(before)) this.select(null);
+    // Objects of drafts have other numbers.
+    if (look.kind === 'objects' && isDrafting(tracked) !== isDrafting(before)) this.select(null);
     const changed = frames.some((frame) => frameOf(tracked, frame) !== frameOf(before, frame));
     if (look.kind === 'objects' && changed) this.#store.set({ result: resultOf(tracked, pair) });
   }
 
-  /** Goes back to the masks of the pair if there are none of the clip, as a run on it has ended early. */
-  pairIfAlone(): void {
-    const { look, tracked } = this.#store.get();
-    if (look.kind === 'objects' && tracked !== null && !isSeen(tracked)) this.kind('groups');
+  /** Shows no drafts any more when a run on the clip has ended, and the masks of the pair if there are no others. */
+  ended(): void {
+    const { look, tracked, pair } = this.#store.get();
+    if (look.kind !== 'objects' || tracked === null) return;
+    if (isSeen(tracked)) this.#store.set({ result: resultOf(tracked, pair) });
+    else this.kind('groups');
   }
 }

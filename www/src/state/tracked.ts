@@ -87,7 +87,10 @@ export interface Tracked extends Version {
   readonly run: ClipRun;
   /** The frames to segment, from the in point to the out point. */
   readonly range: Range;
-  /** Masks of frames whose pairs are solved, by index, to show while there are no others. They are no work of anyone, and go when a run ends. */
+  /**
+   * What is shown while the first masks are being found, by index: drafts, and the masks that take their place. Drafts are no work of anyone,
+   * and go when a run ends.
+   */
   readonly previews: Version['frames'];
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
@@ -102,7 +105,6 @@ export interface Tracked extends Version {
 
 type Saved = Notes & Pick<Version, 'frames'>;
 
-const NO_PREVIEWS: Tracked['previews'] = [];
 const NO_NOTES: Notes = { locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 export function untracked(clip: Clip): Tracked {
@@ -111,7 +113,7 @@ export function untracked(clip: Clip): Tracked {
     clip,
     run: { phase: 'idle' },
     range: { first: 0, last: clip.count - 1 },
-    previews: NO_PREVIEWS,
+    previews: frames,
     solved: 0,
     frames,
     spans: [],
@@ -229,12 +231,21 @@ export function isTracked(tracked: Tracked | null): tracked is Tracked {
   return tracked !== null && tracked.frames.some((frame) => frame !== null);
 }
 
-/** The masks that are on screen: those of the clip, or while these are being found what is seen of them. */
+/** The masks that are on screen: those of the clip, or until the first ones are complete also drafts. */
 export function shownFrames(tracked: Tracked | null): Version['frames'] {
-  if (tracked === null) return NO_PREVIEWS;
-  const { frames, previews, run } = tracked;
-  if (isTracked(tracked)) return frames;
-  return run.phase === 'working' ? previews : NO_PREVIEWS;
+  if (tracked === null) return [];
+  const { frames, previews, run, spans } = tracked;
+  return run.phase === 'working' && spans.length === 0 ? previews : frames;
+}
+
+/** Whether there are drafts on screen, whose objects have other numbers than those of the masks will have. */
+export function isDrafting(tracked: Tracked | null): boolean {
+  return tracked !== null && shownFrames(tracked) !== tracked.frames;
+}
+
+/** Whether what is shown of a frame is a draft. */
+export function isDraft(tracked: Tracked | null, index: number): boolean {
+  return tracked?.frames[index] === null && shownFrames(tracked)[index] !== null;
 }
 
 /** Whether there are masks of any frame to show. */

@@ -7,6 +7,7 @@ import { zipped } from '../export/zip.js';
 import { clipExported } from '../session/exported.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
+import { isDrafting } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipExport(panel: HTMLElement, store: Store, session: Session, formats: readonly ClipFormat[]): void {
@@ -24,6 +25,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     const { tracked } = store.get();
     const format = chosen();
     if (tracked === null) return;
+    if (isDrafting(tracked)) return session.say(strings.notices.drafts);
     button.disabled = true;
     try {
       const exported = exportOfClip(tracked, store.get(), (done, of) => (status.textContent = strings.exporting(done, of)));

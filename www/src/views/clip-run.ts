@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
+import { type Tracked, isDrafting, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipRun(root: HTMLElement, store: Store, session: Session): void {
@@ -57,7 +57,7 @@ function sentenceFor(tracked: Tracked): string {
     case 'idle':
       return '';
     case 'working':
-      return run.stage === 'corrections' ? tracking.corrections : tracking.started;
+      return run.stage === 'corrections' ? tracking.corrections : isDrafting(tracked) ? tracking.drafting : tracking.started;
     case 'done':
       if (run.cause === 'corrected' || run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
       return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)));

@@ -1,5 +1,5 @@
-//! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are, and marks where a person has
-//! corrected.
+//! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are, as a thin line where they are drafts,
+//! and marks where a person has corrected.
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, correctedIn, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, type Tracked, correctedIn, isDraft, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -15,8 +15,9 @@ const LEAST_CONFIDENCE = 0.5;
 const LEAST_OPACITY = 0.2;
 /** At least as many lanes have room. */
 const LEAST_LANES = 2;
-/** Height of a lane in its row. */
+/** Height of a lane in its row, and where it shows drafts. */
 const THICKNESS = 0.6;
+const THICKNESS_OF_DRAFTS = 0.2;
 
 export function mountLanes(root: HTMLElement, store: Store, session: Session): void {
   const names = find(root, '#lane-names', HTMLElement);
@@ -78,11 +79,12 @@ function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[
   const places = new Map(lives.map(({ id }, k) => [id, k]));
   frames.forEach((frame, index) => {
     const [left, right] = [Math.floor(index * column), Math.floor((index + 1) * column)];
+    const thickness = isDraft(tracked, index) ? THICKNESS_OF_DRAFTS : THICKNESS;
     for (const { id, confidence } of frame?.objects ?? []) {
       const sure = Math.max(0, (confidence - LEAST_CONFIDENCE) / (1 - LEAST_CONFIDENCE));
       context.globalAlpha = LEAST_OPACITY + (1 - LEAST_OPACITY) * sure;
       context.fillStyle = cssColour(colourOfMask(id, look));
-      context.fillRect(left, ((places.get(id) ?? 0) + (1 - THICKNESS) / 2) * row, Math.max(1, right - left), THICKNESS * row);
+      context.fillRect(left, ((places.get(id) ?? 0) + (1 - thickness) / 2) * row, Math.max(1, right - left), thickness * row);
     }
   });
   context.globalAlpha = 1;

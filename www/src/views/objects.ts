@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Result, State, Store } from '../state/state.js';
-import { type Life, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, isDrafting, livesOf, shownFrames } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
@@ -35,7 +35,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     add.disabled = tracked.spans.length === 0;
     if (list.hidden) return;
     const lives = livesOf({ frames: shownFrames(tracked) });
-    list.inert = !isTracked(tracked);
+    list.inert = isDrafting(tracked);
     const ids = [0, ...lives.map(({ id }) => id)];
     // A new object that is selected but not painted yet.
     if (look.selected !== null && look.selected > tracked.largest && look.selected !== UNLABELLED) ids.push(look.selected);

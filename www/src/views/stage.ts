@@ -6,6 +6,7 @@ import { drawStabilised } from '../drawing/warp.js';
 import { mainMotion } from '../result/masks.js';
 import type { LoadedFrame, Slot } from '../state/pair.js';
 import type { State, Store } from '../state/state.js';
+import { isDraft } from '../state/tracked.js';
 import { contextOf, find } from './markup.js';
 
 export function mountStage(stage: HTMLElement, store: Store): void {
@@ -13,16 +14,18 @@ export function mountStage(stage: HTMLElement, store: Store): void {
   const canvas = find(stage, '#frame', HTMLCanvasElement);
   const other = find(stage, '#other', HTMLCanvasElement);
   const caption = find(stage, '#caption', HTMLElement);
+  const draft = find(stage, '#draft', HTMLElement);
   const invitation = find(stage, '#invitation', HTMLElement);
 
   store.subscribe((now, before) => {
-    const { pair, result, look, opening } = now;
+    const { pair, result, look, opening, tracked, timeline } = now;
     const slot = shownSlot(now);
     invitation.hidden = slot !== null || opening;
     if (look.names !== before.look.names || look.kind !== before.look.kind) caption.textContent = captionOf(now);
     if (pair === before.pair && result === before.result && look.view === before.look.view && look.stabilised === before.look.stabilised) return;
     layers.hidden = slot === null;
     caption.textContent = captionOf(now);
+    draft.textContent = look.kind === 'objects' && isDraft(tracked, timeline?.[slot ?? 'first'] ?? -1) ? strings.draft : '';
     const frame = slot === null ? null : pair[slot];
     if (slot === null || frame === null) return;
     stage.style.setProperty('--ratio', String(frame.width / frame.height));

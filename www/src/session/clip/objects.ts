@@ -9,7 +9,7 @@ import { keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type Notes, toReview } from '../../state/tracked.js';
+import { type Notes, isDrafting, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
 /** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}. */
@@ -148,7 +148,7 @@ export class Objects {
   takesCorrections(): boolean {
     const { tracked } = this.#store.get();
     const ready = tracked !== null && tracked.spans.length > 0;
-    if (!ready) this.refuse(strings.notices.notReady);
+    if (!ready) this.refuse(isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady);
     return ready;
   }
 

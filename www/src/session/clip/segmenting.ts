@@ -9,6 +9,7 @@ import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, acceptedIn, isTracked, notesOf, savedOf, unchanged, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
+import { draft } from './drafts.js';
 import { ClipFrames, STOPPED, blobOf, bytesOf, masksOf } from './frames.js';
 import type { Change, ClipRuns } from './runs.js';
 import type { Spans } from './spans.js';
@@ -71,15 +72,24 @@ export class ClipSegmenting {
     const { longestSide, ...options } = settings;
     const { pairs } = this.#knownOf(clip, range, settings);
     const frames = new ClipFrames(clip, longestSide, range);
-    const ends = { cancel: () => this.#finish(frames), stopped: () => this.#store.clip({ run: { phase: 'cancelled' } }) };
+    const drafting = new AbortController();
+    const cancel = (): void => {
+      drafting.abort();
+      this.#finish(frames);
+    };
+    const ends = { cancel, stopped: () => this.#store.clip({ run: { phase: 'cancelled' } }) };
     await this.#runs.run(ends, async (signal, set) => {
       const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
       const time = new TimeLeft(solved(), frames.length);
       const solving = (): void => {
         if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()), labelled: 0 }, solved: solved() });
       };
-      set({ previews: untracked(clip).frames });
+      set({ previews: tracked.frames });
       solving();
+      const preview = (read: ClipFrames) => (frame: ClipFrame) => this.#preview(frame, read, set);
+      const fresh = !isTracked(tracked);
+      const drafts = fresh && settings.quality === 'best' && solved() < frames.length ? new ClipFrames(clip, longestSide, range) : null;
+      if (drafts !== null) void draft(drafts, { ...options, signal: drafting.signal }, preview(drafts));
       const found = this.#runs.segmenter.segmentClip(frames, {
         ...options,
         signal,
@@ -92,7 +102,7 @@ export class ClipSegmenting {
           pairs.set(index, blobOf(bytes));
           solving();
         },
-        onPreview: isTracked(tracked) ? undefined : (frame) => this.#preview(frame, frames, set),
+        onPreview: fresh && drafts === null ? preview(frames) : undefined,
       });
       const masks: TrackedFrame[] = [];
       let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
@@ -111,7 +121,8 @@ export class ClipSegmenting {
       if (state === undefined || !covered) return set({ run });
       await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
     });
-    this.#shown.pairIfAlone();
+    drafting.abort();
+    this.#shown.ended();
   }
 
   /** Cancels the run on the clip. A correction under way is taken back. */
@@ -127,11 +138,12 @@ export class ClipSegmenting {
     this.#store.clip({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
   }
 
-  /** Shows what the pairs tell of a frame while the clip has no masks. */
+  /** Shows a draft of a frame that has no masks yet. */
   #preview(frame: ClipFrame, { range, size }: ClipFrames, set: Change): void {
     const { tracked } = this.#store.get();
-    if (tracked === null) return;
-    set({ previews: tracked.previews.with(range.first + frame.index, masksOf(frame, size)) });
+    const index = range.first + frame.index;
+    if (tracked === null || tracked.frames[index] !== null) return;
+    set({ previews: tracked.previews.with(index, masksOf(frame, size)) });
     this.#shown.objects(tracked);
   }
 
@@ -147,7 +159,8 @@ export class ClipSegmenting {
       set({ run: { phase: 'working', stage: 'labels', left: null, labelled: masks.length } });
       if (!fresh) return;
       const frames = untracked(clip).frames.map((_, index) => masks[index - range.first] ?? null);
-      set({ frames, largest: largestOf(frames), longestSide, saved: savedOf({ ...before, frames }) });
+      const previews = before.previews.map((shown, index) => frames[index] ?? shown);
+      set({ frames, previews, largest: largestOf(frames), longestSide, saved: savedOf({ ...before, frames }) });
       this.#shown.objects(before);
     };
     try {
