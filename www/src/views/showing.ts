@@ -1,4 +1,5 @@
-//! The clip that opens the page shows what is found while it is found: its frames come one after another with their masks. Then it plays.
+//! The clip that opens the page shows what is found while it is found: its frames come one after another with their masks, as its pairs are
+//! solved. Then it plays.
 //! Whoever touches or opens anything first is not interrupted.
 
 import type { SampleClip } from '../frames/samples.js';
@@ -30,7 +31,7 @@ export function mountShowing(root: Window, store: Store, session: Session, sampl
     }
     if (mayGoOn()) await session.frames.goTo(sample.start);
   };
-  /** On the way to the frame that was found last. */
+  /** On the way to the frame that was solved last. */
   let isGoing = false;
   let going = Promise.resolve();
   const follow = async (index: number): Promise<void> => {
@@ -42,9 +43,10 @@ export function mountShowing(root: Window, store: Store, session: Session, sampl
   const leave = store.subscribe(({ tracked, look, result }, before) => {
     if (tracked === null) return;
     if (!isGoing && !mayGoOn()) return leave();
-    const { previews, run } = tracked;
-    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && !isGoing) {
-      const newest = previews.findLastIndex((frame) => frame !== null);
+    const { previews, run, range, solved } = tracked;
+    const goesOn = previews !== before.tracked?.previews || solved !== before.tracked?.solved;
+    if (goesOn && run.phase === 'working' && result !== null && !isGoing) {
+      const newest = Math.min(previews.findLastIndex((frame) => frame !== null), range.first + solved - 1);
       // The masks of the first pair stay until there is something to see.
       if (newest >= 0 && (look.kind === 'objects' || previews[newest]!.objects.length > 0)) going = follow(newest);
     }
