@@ -2,59 +2,52 @@
 //!
 //! Pixels are visited in raster order. Every edge keeps one message, towards the end that is visited next. A
 //! forward pass sends messages right and down, a backward pass left and up. With Potts weights a message costs O(labels):
-//! `m(l) = min(s(l) − min s, w)`. The backward pass also gives a lower bound of the energy, which never falls; where
-//! the energy of the labels read out on the way meets it, they are optimal and the iteration ends.
+//! `m(l) = min(s(l) − min s, w)`.
 //!
 //! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
 //!
-//! A message depends on the one before it in its row, and on the one above it. Four rows, a band, are therefore processed at once, each a
-//! pixel behind the row above, so that all arithmetic is on four pixels at a time, and gives the same bits as pixel by pixel:
+//! Costs and messages are 16-bit whole numbers, in units of which the heaviest border has [`HEAVIEST`]: half the memory of floats, which is
+//! what a pass waits for, twice as many at a time, and the same everywhere. A label that costs more than its pixel's four borders above the
+//! cheapest one is never taken, so that larger differences are cut, and no sum leaves the range. On each coarser level the unit is twice as
+//! large, so that a message handed down at half its size keeps its number.
+//!
+//! A message depends on the one before it in its row, and on the one above it. Eight rows, a band, are therefore processed at once, each a
+//! pixel behind the row above, so that all arithmetic is on eight pixels at a time, and gives the same bits as pixel by pixel:
 //!
 //! ```text
-//! step     0  1  2  3  4  5        the columns of four rows of three pixels; the rest is padding, without costs and weights
+//! step     0  1  2  3  4  …        the columns of eight rows of three pixels; the rest is padding, without costs and weights
 //! row 0    0  1  2
 //! row 1       0  1  2
 //! row 2          0  1  2
-//! row 3             0  1  2
+//! …
 //! ```
 
-use wide::f32x4;
+use wide::i16x8;
 
-use super::potts::{FORBIDDEN, Potts, cut};
+use super::potts::Potts;
 
-/// Labels are padded to 2, 3, 4, 8 or 16.
+/// Labels are padded to 2, 3, 4, 5, 6, 8, 10, 12 or 16.
 pub(super) const MAX_LABELS: usize = 16;
-/// Cost of the padding labels.
-const PADDING: f32 = 1e20;
+/// The heaviest weight of a problem.
+const HEAVIEST: i16 = 4095;
+/// Largest cost of a label above that of its pixel's cheapest one, the weight of four borders: the sum with four messages is in range.
+const DEAREST: i16 = 4 * HEAVIEST;
 /// Smallest side of a level of the pyramid.
 const SMALLEST: usize = 8;
-/// Up to this many iterations are completed before labels are read out.
-const FEW: usize = 2;
-/// Relative gap between energy and bound at which the labels count as optimal.
-const CLOSED: f64 = 1e-6;
-/// Relative rise of the bound in one iteration below which the iteration stops.
-const STALLED: f64 = 2e-6;
 /// Coarse levels only initialise the messages, so a few iterations are enough.
 const COARSE_ITERATIONS: usize = 3;
 /// Rows of a band.
-const ROWS: usize = 4;
+const ROWS: usize = 8;
 /// Steps that the last row of a band is behind the first.
 const BEHIND: usize = ROWS - 1;
 
 /// Values of the pixels of a band in one step, one of each row.
-type Step = [f32; ROWS];
+type Step = [i16; ROWS];
 
-/// Labels, and a lower bound of the energy.
-pub(super) struct Solution {
-    pub(super) labels: Vec<u8>,
-    #[cfg_attr(not(test), allow(dead_code))]
-    pub(super) bound: f64,
-}
-
-/// At most `iterations` iterations on each of at most `levels` levels.
+/// Labels after so many iterations on each of at most `levels` levels.
 #[inline(never)]
-pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
+pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Vec<u8> {
     let mut pyramid = vec![Grid::new(problem)];
     while pyramid.len() < levels {
         let finest = &pyramid[pyramid.len() - 1];
@@ -68,51 +61,22 @@ pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) ->
         coarsest.clear_messages();
     }
     for level in (1..pyramid.len()).rev() {
-        for _ in 0..iterations.min(COARSE_ITERATIONS) {
-            pyramid[level].forward();
-            pyramid[level].backward();
-        }
+        pyramid[level].pass_messages(iterations.min(COARSE_ITERATIONS));
         let (finer, coarser) = pyramid.split_at_mut(level);
         finer[level - 1].take_messages_from(&coarser[0]);
     }
-
-    let grid = &mut pyramid[0];
-    let mut labels = vec![0u8; grid.width * grid.height];
-    let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
-    let mut bound = f64::NEG_INFINITY;
-    let unread = if iterations <= FEW { iterations } else { 0 };
-    for _ in 0..unread {
-        grid.forward();
-        grid.backward();
-    }
-    for iteration in unread..=iterations {
-        // If all messages are still zero, this reads out the costs alone: a valid labelling.
-        let energy = grid.read_out(&mut labels);
-        if energy < lowest {
-            lowest = energy;
-            best.copy_from_slice(&labels);
-        }
-        if iteration == iterations || lowest - bound <= CLOSED * (1.0 + lowest.abs()) {
-            break;
-        }
-        grid.forward();
-        let reached = grid.backward();
-        if reached - bound <= STALLED * (1.0 + reached.abs()) && iteration > 2 {
-            bound = bound.max(reached);
-            break;
-        }
-        bound = bound.max(reached);
-    }
-    problem.descend(&mut best, 2);
-    Solution { labels: best, bound }
+    pyramid[0].pass_messages(iterations);
+    let mut labels = pyramid[0].read_out();
+    problem.descend(&mut labels, 2);
+    labels
 }
 
 /// Number of labels for which there is code, at least `labels`.
 fn padded(labels: usize) -> usize {
     match labels {
         0..=2 => 2,
-        3..=4 => labels,
-        5..=8 => 8,
+        3..=6 => labels,
+        7..=12 => labels.next_multiple_of(2),
         _ => MAX_LABELS,
     }
 }
@@ -135,33 +99,56 @@ struct Grid {
 }
 
 impl Grid {
+    #[inline(never)]
     fn new(problem: &Potts<'_>) -> Self {
-        let labels = padded(problem.costs.len());
-        let mut grid = Self::unconnected(problem.width(), problem.height(), labels);
-        let (width, height) = (grid.width, grid.height);
-        let size = [width, height];
-        for l in 0..labels {
-            let costs = &mut grid.costs[l..];
-            match problem.costs.get(l) {
-                Some(plane) => stagger(|y| &plane.row(y)[..width], size, FORBIDDEN, costs, labels),
-                // Padding labels keep their price.
-                None => {
-                    let padding = vec![PADDING; width];
-                    stagger(|_| &padding, size, PADDING, costs, labels);
+        let (width, height, given) = (problem.width(), problem.height(), problem.costs.len());
+        let labels = padded(given);
+        let mut grid = Self::unconnected(width, height, labels);
+        let unit = f32::from(HEAVIEST) / problem.heaviest();
+        let mut band = Band::new(width);
+        let mut lows = vec![vec![0.0; width]; ROWS];
+        for first in 0..height.div_ceil(ROWS) {
+            let rows = (first * ROWS..height).take(ROWS);
+            for (y, low) in rows.clone().zip(&mut lows) {
+                low.fill(f32::INFINITY);
+                for label in 0..given {
+                    let costs = problem.costs_of_row(label, y);
+                    low.iter_mut().zip(costs).for_each(|(low, cost)| *low = if cost < *low { cost } else { *low });
                 }
             }
+            let start = first * grid.steps();
+            for label in 0..labels {
+                band.clear();
+                for ((y, low), row) in rows.clone().zip(&lows).zip(band.rows()) {
+                    if label < given {
+                        let costs = problem.costs_of_row(label, y).zip(low);
+                        row.iter_mut()
+                            .zip(costs)
+                            .for_each(|(row, (cost, low))| *row = rounded(unit * (cost - low), DEAREST));
+                    } else {
+                        row.fill(DEAREST);
+                    }
+                }
+                band.stagger(&mut grid.costs[start * labels + label..], labels);
+            }
+            let weights = |row: &mut [i16], weights: &[f32]| {
+                row.iter_mut().zip(weights).for_each(|(row, weight)| *row = rounded(unit * weight, HEAVIEST));
+            };
+            band.clear();
+            rows.clone().zip(band.rows()).for_each(|(y, row)| weights(row, &problem.horizontal.row(y)[..width - 1]));
+            band.stagger(&mut grid.to_right[start..], 1);
+            band.clear();
+            let connected = rows.filter(|y| y + 1 < height);
+            connected.zip(band.rows()).for_each(|(y, row)| weights(row, problem.vertical.row(y)));
+            band.stagger(&mut grid.to_below[start..], 1);
         }
-        let (horizontal, vertical) = (problem.horizontal, problem.vertical);
-        let connected = [width - 1, height - 1];
-        stagger(|y| &horizontal.row(y)[..connected[0]], size, PADDING, &mut grid.to_right, 1);
-        stagger(|y| vertical.row(y), [width, connected[1]], PADDING, &mut grid.to_below, 1);
         grid
     }
 
     /// A grid without costs, weights and messages.
     fn unconnected(width: usize, height: usize, labels: usize) -> Self {
         let steps = height.div_ceil(ROWS) * (width + BEHIND);
-        let none = |count: usize| vec![[0.0; ROWS]; count];
+        let none = |count: usize| vec![[0; ROWS]; count];
         let [right, down] = [0; 2].map(|_| Vec::new());
         Grid {
             width,
@@ -186,11 +173,13 @@ impl Grid {
         (y / ROWS * self.steps() + x + y % ROWS, y % ROWS)
     }
 
-    /// Costs and the weights across the border of 2×2 blocks, summed.
+    /// Costs and the weights across the border of 2×2 blocks, summed, in units twice as large.
     #[inline(never)]
     fn halved(&self) -> Self {
         let labels = self.labels;
         let mut half = Self::unconnected(self.width.div_ceil(2), self.height.div_ceil(2), labels);
+        let mut sums = [0i32; MAX_LABELS];
+        let weight = |a: i16, b: i16| ((i32::from(a) + i32::from(b)) >> 1) as i16;
         for y in 0..half.height {
             let ((start, lane), (from, at)) = (half.place(0, y), self.place(0, 2 * y));
             for x in 0..half.width {
@@ -200,13 +189,16 @@ impl Grid {
                 let upper = from + 2 * x;
                 let beside = upper + 1;
                 let across = (upper + 2).min(self.to_right.len() - 1);
-                for l in 0..labels {
-                    let at_step = |step: usize, lane: usize| self.costs[step * labels + l][lane];
-                    half.costs[step * labels + l][lane] =
-                        at_step(upper, at) + at_step(beside, at) + at_step(beside, at + 1) + at_step(across, at + 1);
+                for (l, sum) in sums[..labels].iter_mut().enumerate() {
+                    let cost = |step: usize, lane: usize| i32::from(self.costs[step * labels + l][lane]);
+                    *sum = cost(upper, at) + cost(beside, at) + cost(beside, at + 1) + cost(across, at + 1);
                 }
-                half.to_right[step][lane] = self.to_right[beside][at] + self.to_right[across][at + 1];
-                half.to_below[step][lane] = self.to_below[beside][at + 1] + self.to_below[across][at + 1];
+                let low = sums[..labels].iter().fold(i32::MAX, |low, &sum| low.min(sum));
+                for (costs, sum) in half.costs[step * labels..].iter_mut().zip(&sums[..labels]) {
+                    costs[lane] = ((sum - low) >> 1).min(i32::from(DEAREST)) as i16;
+                }
+                half.to_right[step][lane] = weight(self.to_right[beside][at], self.to_right[across][at + 1]);
+                half.to_below[step][lane] = weight(self.to_below[beside][at + 1], self.to_below[across][at + 1]);
             }
         }
         half
@@ -214,49 +206,47 @@ impl Grid {
 
     /// Sets all messages to zero.
     fn clear_messages(&mut self) {
-        self.right = vec![[0.0; ROWS]; self.costs.len()];
+        self.right = vec![[0; ROWS]; self.costs.len()];
         self.down = self.right.clone();
     }
 
-    /// Initialises the messages from the coarser level. The bound is valid for any messages.
+    /// Initialises the messages from the coarser level.
     #[inline(never)]
     fn take_messages_from(&mut self, coarser: &Self) {
         self.clear_messages();
-        let labels = self.labels;
-        for y in 0..self.height {
-            let ((start, lane), (from, of)) = (self.place(0, y), coarser.place(0, y / 2));
-            // No message leaves the grid.
-            let down = if y + 1 < self.height { 0.5 } else { 0.0 };
-            for x in 0..self.width {
-                let right = if x + 1 < self.width { 0.5 } else { 0.0 };
-                let (here, there) = ((start + x) * labels, (from + x / 2) * labels);
-                for l in 0..labels {
-                    self.right[here + l][lane] = right * coarser.right[there + l][of];
-                    self.down[here + l][lane] = down * coarser.down[there + l][of];
+        let (labels, steps) = (self.labels, self.steps());
+        for band in 0..self.height.div_ceil(ROWS) {
+            let places: [_; ROWS] =
+                std::array::from_fn(|r| coarser.place(0, ((band * ROWS + r) / 2).min(coarser.height - 1)));
+            for step in 0..steps {
+                let from: [_; ROWS] =
+                    std::array::from_fn(|r| (places[r].0 + step.saturating_sub(r).min(self.width - 1) / 2) * labels);
+                let here = (band * steps + step) * labels;
+                for (fine, coarse) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
+                    for (l, fine) in fine[here..here + labels].iter_mut().enumerate() {
+                        *fine = std::array::from_fn(|r| coarse[from[r] + l][places[r].1]);
+                    }
                 }
             }
         }
+        self.clear_edges();
     }
 
-    /// Share of a pixel's costs in each message: one over the number of chains through the pixel. That is two, unless the grid is a
-    /// single row or column, or the pixel is the last of the first row or the first of the last row.
-    #[inline(always)]
-    fn shares(&self, step: usize, corners: [(usize, usize); 2]) -> f32x4 {
-        let shares = f32x4::splat(if self.width.min(self.height) > 1 { 0.5 } else { 1.0 });
-        corners.iter().fold(shares, |shares, &(place, lane)| {
-            if place == step {
-                let mut shares = shares.to_array();
-                shares[lane] = 1.0;
-                f32x4::new(shares)
-            } else {
-                shares
-            }
-        })
-    }
-
-    /// The places of the two pixels with a share of one.
-    fn corners(&self) -> [(usize, usize); 2] {
-        [self.place(self.width - 1, 0), self.place(0, self.height - 1)]
+    /// Takes the messages away that leave the grid, and those of the padding.
+    fn clear_edges(&mut self) {
+        let (labels, steps) = (self.labels, self.steps());
+        for y in 0..self.height.next_multiple_of(ROWS) {
+            let (band, lane) = (y / ROWS * steps, y % ROWS);
+            let clear = |messages: &mut [Step], columns: std::ops::Range<usize>| {
+                let outside = (band..band + lane + columns.start).chain(band + lane + columns.end..band + steps);
+                for step in outside {
+                    messages[step * labels..][..labels].iter_mut().for_each(|values| values[lane] = 0);
+                }
+            };
+            let columns = |there: bool, count: usize| 0..if there { count } else { 0 };
+            clear(&mut self.right, columns(y < self.height, self.width - 1));
+            clear(&mut self.down, columns(y + 1 < self.height, self.width));
+        }
     }
 
     /// The step, in the band above, of the pixel above the first row's in the step `column` of the band that begins at `first`.
@@ -265,150 +255,167 @@ impl Grid {
         (first > 0 && column < self.width).then(|| first - self.width + column)
     }
 
-    /// Sends messages right and down.
-    fn forward(&mut self) {
-        match self.labels {
-            2 => self.send_forward::<2>(),
-            3 => self.send_forward::<3>(),
-            4 => self.send_forward::<4>(),
-            8 => self.send_forward::<8>(),
-            _ => self.send_forward::<MAX_LABELS>(),
+    /// Sends messages right and down, then left and up, so many times.
+    fn pass_messages(&mut self, times: usize) {
+        for _ in 0..times {
+            match self.labels {
+                2 => self.forward_and_back::<2>(),
+                3 => self.forward_and_back::<3>(),
+                4 => self.forward_and_back::<4>(),
+                5 => self.forward_and_back::<5>(),
+                6 => self.forward_and_back::<6>(),
+                8 => self.forward_and_back::<8>(),
+                10 => self.forward_and_back::<10>(),
+                12 => self.forward_and_back::<12>(),
+                _ => self.forward_and_back::<MAX_LABELS>(),
+            }
         }
     }
 
-    /// Sends messages left and up; returns a lower bound of the energy.
-    fn backward(&mut self) -> f64 {
-        match self.labels {
-            2 => self.send_backward::<2>(),
-            3 => self.send_backward::<3>(),
-            4 => self.send_backward::<4>(),
-            8 => self.send_backward::<8>(),
-            _ => self.send_backward::<MAX_LABELS>(),
+    fn forward_and_back<const L: usize>(&mut self) {
+        // Half of a pixel's costs goes along each of the two chains through it; a single row or column is one chain.
+        if self.width.min(self.height) > 1 {
+            self.send_forward::<L, 1>();
+            self.send_backward::<L, 1>();
+        } else {
+            self.send_forward::<L, 0>();
+            self.send_backward::<L, 0>();
         }
     }
 
-    fn send_forward<const L: usize>(&mut self) {
-        let (steps, corners) = (self.steps(), self.corners());
+    fn send_forward<const L: usize, const HALVINGS: i32>(&mut self) {
+        let steps = self.steps();
         for first in (0..self.to_right.len()).step_by(steps) {
-            let (mut from_left, mut from_above) = ([f32x4::ZERO; L], [f32x4::ZERO; L]);
+            let (mut from_left, mut from_above) = ([i16x8::ZERO; L], [i16x8::ZERO; L]);
             for step in first..first + steps {
                 let above = self.above(first, step - first);
-                let shares = self.shares(step, corners);
                 let [costs, right, down] = [&self.costs, &self.right, &self.down].map(|values| at::<L>(values, step));
-                let total: [f32x4; L] = std::array::from_fn(|l| {
-                    let above = above.map_or(0.0, |above| self.down[above * L + l][BEHIND]);
-                    costs[l] + right[l] + down[l] + from_left[l] + lowered(above, from_above[l])
+                let share: [i16x8; L] = std::array::from_fn(|l| {
+                    let above = above.map_or(0, |above| self.down[above * L + l][BEHIND]);
+                    (costs[l] + right[l] + down[l] + from_left[l] + lowered(above, from_above[l])) >> HALVINGS
                 });
-                (from_left, _) = message(&total, shares, &right, f32x4::new(self.to_right[step]));
-                (from_above, _) = message(&total, shares, &down, f32x4::new(self.to_below[step]));
+                from_left = message(&share, &right, i16x8::new(self.to_right[step]));
+                from_above = message(&share, &down, i16x8::new(self.to_below[step]));
                 put(&mut self.right, step, &from_left);
                 put(&mut self.down, step, &from_above);
             }
         }
     }
 
-    fn send_backward<const L: usize>(&mut self) -> f64 {
-        let (steps, corners) = (self.steps(), self.corners());
-        let mut bound = 0.0;
+    fn send_backward<const L: usize, const HALVINGS: i32>(&mut self) {
+        let steps = self.steps();
         for first in (0..self.to_right.len()).step_by(steps).rev() {
-            let mut sums = [0.0f64; ROWS];
             for step in (first..first + steps).rev() {
                 let above = self.above(first, step - first);
                 // Before the first step there is nothing.
                 let before = step.checked_sub(1).filter(|_| step > first);
-                let shares = self.shares(step, corners);
-                let messages = |values| before.map_or([f32x4::ZERO; L], |before| at::<L>(values, before));
+                let messages = |values| before.map_or([i16x8::ZERO; L], |before| at::<L>(values, before));
                 let (left, before_down) = (messages(&self.right), messages(&self.down));
-                let weights = |values: &[Step]| before.map_or(f32x4::ZERO, |before| f32x4::new(values[before]));
+                let weights = |values: &[Step]| before.map_or(i16x8::ZERO, |before| i16x8::new(values[before]));
                 let (weights_left, weights_down) = (weights(&self.to_right), weights(&self.to_below));
-                let up: [f32x4; L] = std::array::from_fn(|l| {
-                    lowered(above.map_or(0.0, |above| self.down[above * L + l][BEHIND]), before_down[l])
+                let up: [i16x8; L] = std::array::from_fn(|l| {
+                    lowered(above.map_or(0, |above| self.down[above * L + l][BEHIND]), before_down[l])
                 });
-                let weights_up = lowered(above.map_or(0.0, |above| self.to_below[above][BEHIND]), weights_down);
+                let weights_up = lowered(above.map_or(0, |above| self.to_below[above][BEHIND]), weights_down);
                 let [costs, right, down] = [&self.costs, &self.right, &self.down].map(|values| at::<L>(values, step));
-                let mut total: [f32x4; L] = std::array::from_fn(|l| costs[l] + right[l] + down[l] + left[l] + up[l]);
-                let low = lowest(&total);
-                total.iter_mut().for_each(|t| *t -= low);
-                let (to_left, removed_left) = message(&total, shares, &left, weights_left);
-                let (to_above, removed_up) = message(&total, shares, &up, weights_up);
-                for removed in [low, removed_left, removed_up] {
-                    sums.iter_mut().zip(removed.to_array()).for_each(|(sum, removed)| *sum += f64::from(removed));
-                }
-                let to_above = to_above.map(f32x4::to_array);
+                let share: [i16x8; L] =
+                    std::array::from_fn(|l| (costs[l] + right[l] + down[l] + left[l] + up[l]) >> HALVINGS);
+                let to_left = message(&share, &left, weights_left);
+                let to_above = message(&share, &up, weights_up).map(i16x8::to_array);
                 if let Some(before) = before {
                     put(&mut self.right, before, &to_left);
                     let down = &mut self.down[before * L..][..L];
-                    down.iter_mut().zip(&to_above).for_each(|(down, to)| *down = [to[1], to[2], to[3], down[BEHIND]]);
+                    for (down, to) in down.iter_mut().zip(&to_above) {
+                        *down = [to[1], to[2], to[3], to[4], to[5], to[6], to[7], down[BEHIND]];
+                    }
                 }
                 if let Some(above) = above {
                     let down = &mut self.down[above * L..][..L];
                     down.iter_mut().zip(&to_above).for_each(|(down, to)| down[BEHIND] = to[0]);
                 }
             }
-            sums.iter().rev().for_each(|sum| bound += sum);
         }
-        bound
     }
 
-    /// Reads out labels: each pixel takes the cheapest label given the labels before it and the messages from after it. Returns their
-    /// energy.
+    /// Reads out labels: each pixel takes the cheapest label given the labels before it and the messages from after it.
     #[inline(never)]
-    fn read_out(&self, labels: &mut [u8]) -> f64 {
+    fn read_out(&self) -> Vec<u8> {
         let steps = self.steps();
-        let mut energy = 0.0;
-        let mut found_in = vec![[0.0; ROWS]; steps];
-        let mut row_above: Vec<f32> = vec![0.0; self.width];
+        let mut labels = vec![0u8; self.width * self.height];
+        let mut found_in = vec![[0; ROWS]; steps];
+        let mut row_above: Vec<i16> = vec![0; self.width];
         for (first, labels) in (0..).step_by(steps).zip(labels.chunks_mut(ROWS * self.width)) {
-            let mut sums = [0.0f64; ROWS];
-            let (mut last, mut weights, mut weights_down) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
+            let (mut last, mut weights, mut weights_down) = (i16x8::ZERO, i16x8::ZERO, i16x8::ZERO);
             for (x, found_in) in found_in.iter_mut().enumerate() {
                 let step = first + x;
                 let (above, weight_above) = match self.above(first, x) {
                     Some(above) => (row_above[x], self.to_below[above][BEHIND]),
-                    None => (0.0, 0.0),
+                    None => (0, 0),
                 };
                 let (up, weights_up) = (lowered(above, last), lowered(weight_above, weights_down));
                 let of_step = |values| labels_of(values, step, self.labels);
                 let each = of_step(&self.costs).iter().zip(of_step(&self.right)).zip(of_step(&self.down));
-                let (mut best, mut prices, mut found) = (f32x4::splat(f32::INFINITY), f32x4::ZERO, f32x4::ZERO);
+                let (mut best, mut found) = (i16x8::MAX, i16x8::ZERO);
                 for (l, ((cost, right), down)) in each.enumerate() {
-                    let label = f32x4::splat(l as f32);
-                    let [cost, right, down] = [cost, right, down].map(|values| f32x4::new(*values));
-                    let fixed = (last.simd_ne(label) & weights) + (up.simd_ne(label) & weights_up);
-                    let value = cost + right + down + fixed;
-                    let better = value.simd_lt(best);
-                    found = better.select(label, found);
-                    prices = better.select(cost + fixed, prices);
-                    best = value.fast_min(best);
+                    let label = i16x8::splat(l as i16);
+                    let [cost, right, down] = [cost, right, down].map(|values| i16x8::new(*values));
+                    let same = (last.simd_eq(label) & weights) + (up.simd_eq(label) & weights_up);
+                    let value = cost + right + down + weights + weights_up - same;
+                    found = value.simd_lt(best).select(label, found);
+                    best = value.min(best);
                 }
-                sums.iter_mut().zip(prices.to_array()).for_each(|(sum, price)| *sum += f64::from(price));
                 *found_in = found.to_array();
-                (last, weights) = (found, f32x4::new(self.to_right[step]));
-                weights_down = f32x4::new(self.to_below[step]);
+                (last, weights) = (found, i16x8::new(self.to_right[step]));
+                weights_down = i16x8::new(self.to_below[step]);
             }
-            sums.iter().for_each(|sum| energy += sum);
             for (k, row) in labels.chunks_mut(self.width).enumerate() {
                 row.iter_mut().zip(&found_in[k..]).for_each(|(label, found)| *label = found[k] as u8);
             }
             row_above.iter_mut().zip(&found_in[BEHIND..]).for_each(|(above, found)| *above = found[BEHIND]);
         }
-        energy
+        labels
     }
 }
 
-/// Writes a grid's rows, each as long as there are values, to every `stride`-th of `steps`; values are cut to ±`most`.
-#[inline(never)]
-fn stagger<'a>(
-    row: impl Fn(usize) -> &'a [f32],
-    [width, height]: [usize; 2],
-    most: f32,
-    steps: &mut [Step],
-    stride: usize,
-) {
-    for y in 0..height {
-        let start = y / ROWS * (width + BEHIND) + y % ROWS;
-        let places = steps[start * stride..].iter_mut().step_by(stride);
-        places.zip(row(y)).for_each(|(step, &value)| step[y % ROWS] = cut(value, most));
+/// A number in units, at most `most`. Adding 2²³ leaves the nearest whole number in the last bits; `as` does not vectorise.
+#[inline(always)]
+fn rounded(value: f32, most: i16) -> i16 {
+    let most = f32::from(most);
+    let value = if value < most { value } else { most };
+    (value + 8_388_608.0).to_bits() as u16 as i16
+}
+
+/// Rows of a band on their way to its steps, between as much padding as they are behind each other.
+struct Band {
+    width: usize,
+    rows: [Vec<i16>; ROWS],
+}
+
+impl Band {
+    fn new(width: usize) -> Band {
+        Band { width, rows: [0; ROWS].map(|_| vec![0; (width + BEHIND).next_multiple_of(ROWS) + BEHIND]) }
+    }
+
+    fn clear(&mut self) {
+        self.rows.iter_mut().for_each(|row| row.fill(0));
+    }
+
+    fn rows(&mut self) -> impl Iterator<Item = &mut [i16]> {
+        let width = self.width;
+        self.rows.iter_mut().map(move |row| &mut row[BEHIND..BEHIND + width])
+    }
+
+    /// Writes the values to every `stride`-th of `places`, one for each step.
+    #[inline(never)]
+    fn stagger(&self, places: &mut [Step], stride: usize) {
+        let mut places = places.iter_mut().step_by(stride);
+        for step in (0..self.width + BEHIND).step_by(ROWS) {
+            let rows: [i16x8; ROWS] =
+                std::array::from_fn(|r| i16x8::from_slice_unaligned(&self.rows[r][BEHIND + step - r..][..ROWS]));
+            for (values, place) in i16x8::transpose(rows).iter().zip(places.by_ref()) {
+                *place = values.to_array();
+            }
+        }
     }
 }
 
@@ -419,33 +426,26 @@ fn labels_of(values: &[Step], step: usize, labels: usize) -> &[Step] {
 
 /// The same where the compiler knows their number.
 #[inline(always)]
-fn at<const L: usize>(values: &[Step], step: usize) -> [f32x4; L] {
-    values.as_chunks::<L>().0[step].map(f32x4::new)
+fn at<const L: usize>(values: &[Step], step: usize) -> [i16x8; L] {
+    values.as_chunks::<L>().0[step].map(i16x8::new)
 }
 
 #[inline(always)]
-fn put<const L: usize>(values: &mut [Step], step: usize, new: &[f32x4; L]) {
-    values.as_chunks_mut::<L>().0[step] = new.map(f32x4::to_array);
+fn put<const L: usize>(values: &mut [Step], step: usize, new: &[i16x8; L]) {
+    values.as_chunks_mut::<L>().0[step] = new.map(i16x8::to_array);
 }
 
 /// The values of each row in the next one, with `above` in the first.
 #[inline(always)]
-fn lowered(above: f32, values: f32x4) -> f32x4 {
-    let [first, second, third, _] = values.to_array();
-    f32x4::new([above, first, second, third])
+fn lowered(above: i16, values: i16x8) -> i16x8 {
+    let [a, b, c, d, e, f, g, _] = values.to_array();
+    i16x8::new([above, a, b, c, d, e, f, g])
 }
 
-/// The smallest value of any label.
+/// The new message along an edge whose message in the opposite direction was `old`.
 #[inline(always)]
-fn lowest<const L: usize>(values: &[f32x4; L]) -> f32x4 {
-    values[1..].iter().fold(values[0], |low, value| value.fast_min(low))
-}
-
-/// The new message along an edge whose message in the opposite direction was `old`, and what was subtracted to make its smallest
-/// entry zero.
-#[inline(always)]
-fn message<const L: usize>(total: &[f32x4; L], shares: f32x4, old: &[f32x4; L], weights: f32x4) -> ([f32x4; L], f32x4) {
-    let source: [f32x4; L] = std::array::from_fn(|l| shares * total[l] - old[l]);
-    let low = lowest(&source);
-    (source.map(|value| (value - low).fast_min(weights)), low)
+fn message<const L: usize>(share: &[i16x8; L], old: &[i16x8; L], weights: i16x8) -> [i16x8; L] {
+    let source: [i16x8; L] = std::array::from_fn(|l| share[l] - old[l]);
+    let low = source[1..].iter().fold(source[0], |low, value| low.min(*value));
+    source.map(|value| (value - low).min(weights))
 }

@@ -25,6 +25,21 @@ impl Potts<'_> {
         self.horizontal.height()
     }
 
+    /// The largest weight; a small number where there are none.
+    pub(super) fn heaviest(&self) -> f32 {
+        let (width, height) = (self.width(), self.height());
+        let mut heaviest = 1e-6;
+        let mut see = |row: &[f32]| row.iter().for_each(|&w| heaviest = if w > heaviest { w } else { heaviest });
+        (0..height).for_each(|y| see(&self.horizontal.row(y)[..width - 1]));
+        (0..height - 1).for_each(|y| see(self.vertical.row(y)));
+        heaviest
+    }
+
+    /// The costs of a row under a label, each cut to ±[`FORBIDDEN`].
+    pub(super) fn costs_of_row(&self, label: usize, y: usize) -> impl Iterator<Item = f32> {
+        self.costs[label].row(y).iter().map(|&cost| cut(cost, FORBIDDEN))
+    }
+
     /// The cost of pixel p under a label, cut to ±[`FORBIDDEN`].
     #[inline]
     pub(super) fn cost(&self, label: usize, p: usize) -> f32 {

@@ -92,7 +92,63 @@ fn optimum(problem: &Potts<'_>) -> f64 {
     least.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Widths, heights and numbers of labels. The solver works on bands of four rows: some grids are part of one, others several.
+/// A lower bound of the energy, from so many iterations of message passing in the numbers of the problem, pixel by pixel. The minima that a
+/// backward pass takes away from a pixel and from its messages are no more than any labelling costs.
+fn bound(problem: &Potts<'_>, iterations: usize) -> f64 {
+    let (width, height, labels) = (problem.width(), problem.height(), problem.costs.len());
+    let pixels = width * height;
+    // The edges of each pixel to its right and lower neighbour: weights and messages.
+    let weights: [Vec<f64>; 2] =
+        [(problem.horizontal, 1, height), (problem.vertical, 0, height - 1)].map(|(plane, less, rows)| {
+            (0..pixels)
+                .map(|p| match p % width < width - less && p / width < rows {
+                    true => f64::from(plane.values()[p]),
+                    false => 0.0,
+                })
+                .collect()
+        });
+    let mut messages: [Vec<Vec<f64>>; 2] = [0; 2].map(|_| vec![vec![0.0; labels]; pixels]);
+    let share = |p: usize| {
+        let [back, ahead] = [[p % width > 0, p >= width], [p % width + 1 < width, p + width < pixels]];
+        let chains = [back, ahead].map(|edges| edges.into_iter().filter(|edge| *edge).count());
+        1.0 / chains[0].max(chains[1]).max(1) as f64
+    };
+    let mut bound = f64::NEG_INFINITY;
+    for pass in 0..2 * iterations {
+        let forward = pass % 2 == 0;
+        let mut sum = 0.0;
+        for k in 0..pixels {
+            let p = if forward { k } else { pixels - 1 - k };
+            let behind = [(0, p % width > 0, 1), (1, p >= width, width)];
+            let before: Vec<(usize, usize)> =
+                behind.iter().filter(|b| b.1).map(|&(d, _, step)| (d, p - step)).collect();
+            let after: Vec<(usize, usize)> = [(0, p % width + 1 < width), (1, p + width < pixels)]
+                .iter()
+                .filter(|a| a.1)
+                .map(|a| (a.0, p))
+                .collect();
+            let mut total: Vec<f64> = (0..labels).map(|l| f64::from(problem.cost(l, p))).collect();
+            for &(d, q) in before.iter().chain(&after) {
+                (0..labels).for_each(|l| total[l] += messages[d][q][l]);
+            }
+            let low = total.iter().copied().fold(f64::INFINITY, f64::min);
+            total.iter_mut().for_each(|t| *t -= low);
+            sum += low;
+            for &(d, q) in if forward { &after } else { &before } {
+                let source: Vec<f64> = (0..labels).map(|l| share(p) * total[l] - messages[d][q][l]).collect();
+                let low = source.iter().copied().fold(f64::INFINITY, f64::min);
+                messages[d][q] = source.iter().map(|s| (s - low).min(weights[d][q])).collect();
+                sum += low;
+            }
+        }
+        if !forward {
+            bound = sum;
+        }
+    }
+    bound
+}
+
+/// Widths, heights and numbers of labels. The solver works on bands of eight rows: some grids are part of one, others several.
 const NARROW: [[usize; 3]; 8] =
     [[3, 3, 3], [9, 1, 2], [1, 9, 2], [8, 19, 2], [5, 14, 3], [4, 9, 4], [3, 21, 6], [2, 10, 9]];
 
@@ -110,7 +166,7 @@ fn narrow_grids_come_within_a_hundredth_of_the_optimum_and_their_bound_is_below_
                 assert!(found >= optimum - 1e-4, "{found} below the optimum {optimum}");
                 excess[k] += (found / optimum - 1.0) / 20.0;
             }
-            let bound = messages::minimise(&problem, 1, 200).bound;
+            let bound = bound(&problem, 200);
             assert!(bound <= optimum + 1e-4, "bound {bound} above the optimum {optimum}");
             assert!(bound > 0.9 * optimum, "bound {bound} is far below {optimum}");
         }
@@ -125,10 +181,9 @@ fn trees_are_solved_exactly_by_messages() {
     for labels in [2, 3, 5] {
         let grid = random_grid(&mut random, 5, 1, labels);
         let problem = grid.problem();
-        let solution = messages::minimise(&problem, 1, 5);
         let optimum = optimum(&problem);
-        assert!((problem.energy(&solution.labels) - optimum).abs() < 1e-5);
-        assert!((solution.bound - optimum).abs() < 1e-4);
+        assert!((problem.energy(&messages::minimise(&problem, 1, 5)) - optimum).abs() < 1e-5);
+        assert!((bound(&problem, 5) - optimum).abs() < 1e-4);
     }
 }
 
@@ -137,7 +192,7 @@ fn the_bound_of_two_labels_is_their_optimum() {
     for seed in 20..24 {
         let grid = scene_like(seed, 16, 18, 2);
         let problem = grid.problem();
-        let (bound, optimum) = (messages::minimise(&problem, 1, 500).bound, optimum(&problem));
+        let (bound, optimum) = (bound(&problem, 500), optimum(&problem));
         assert!((bound / optimum - 1.0).abs() < 1e-5, "{bound} for {optimum}");
         let found = problem.energy(&minimise(&problem, Solver::BEST, None));
         assert!((found / optimum - 1.0).abs() < 1e-5, "{found} for {optimum}");
@@ -146,13 +201,17 @@ fn the_bound_of_two_labels_is_their_optimum() {
 
 #[test]
 fn two_labels_come_near_their_bound() {
-    for seed in 20..24 {
-        let grid = scene_like(seed, 70, 51, 2);
+    let seeds = 20..32u32;
+    let count = f64::from(seeds.end - seeds.start);
+    let excess = seeds.map(|seed| {
+        let grid = scene_like(seed.into(), 70, 51, 2);
         let problem = grid.problem();
-        let bound = messages::minimise(&problem, 1, 500).bound;
-        let found = problem.energy(&minimise(&problem, Solver::BEST, None));
-        assert!(found >= bound - 1e-3 && found <= 1.005 * bound, "{found} for {bound}");
-    }
+        let (bound, found) = (bound(&problem, 300), problem.energy(&minimise(&problem, Solver::BEST, None)));
+        assert!(found >= bound - 1e-3, "{found} below the bound {bound}");
+        found / bound - 1.0
+    });
+    let excess = excess.sum::<f64>() / count;
+    assert!(excess < 0.005, "{excess}");
 }
 
 #[test]
@@ -165,7 +224,7 @@ fn no_solver_is_worse_than_descent_and_the_bound_holds() {
         let mut descended: Vec<u8> = (0..70 * 51).map(cheapest).collect();
         problem.descend(&mut descended, 50);
         let reference = problem.energy(&descended);
-        let bound = messages::minimise(&problem, 1, 60).bound;
+        let bound = bound(&problem, 60);
         for solver in SOLVERS {
             let found = minimise(&problem, solver, None);
             let energy = problem.energy(&found);
@@ -241,7 +300,7 @@ fn scenes_are_solved_to_a_fraction_of_a_per_cent() {
     for seed in [1, 2] {
         let grid = scene_costs(seed, 320, 240, 3);
         let problem = grid.problem();
-        let bound = messages::minimise(&problem, 1, 100).bound;
+        let bound = bound(&problem, 100);
         for (solver, most) in [(Solver::LIGHT, 0.005), (Solver::FAST, 0.002), (Solver::BEST, 0.0005)] {
             let excess = problem.energy(&minimise(&problem, solver, None)) / bound - 1.0;
             assert!(excess < most, "seed {seed}, {solver:?}: {excess:.5} above the bound");
