@@ -108,6 +108,8 @@ pub(crate) fn add_motions(
     let thinning = level.thinning();
     let thinned = level.thinned();
     let rough = RoughCosts::new(&thinned, thinning, proposals);
+    // Gains beside fewer motions, no less than those beside all.
+    let mut most = vec![f64::INFINITY; proposals.len()];
     loop {
         let current = smallest_cost(selected);
         let gains = rough.gains(&current, how.window, model);
@@ -122,12 +124,16 @@ pub(crate) fn add_motions(
             if gains[k] < model.smallest_tried_gain * how.price {
                 break;
             }
+            if best.as_ref().is_some_and(|(gain, _)| most[k] <= *gain) {
+                continue;
+            }
             let (gain, scored) = refined(
                 &thinned,
                 &current_sample,
                 proposals[k],
                 Deflation { window: how.window / thinning as f32, ..how },
             );
+            most[k] = gain;
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 best = Some((gain, scored));
             }
