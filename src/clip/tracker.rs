@@ -277,7 +277,9 @@ impl Tracker {
 /// In a whole clip a frame has a pair with each of its neighbours.
 fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
     let onward = solve_view([last, newest], settings, Expected::Nothing);
-    let back = solve_view([newest, last], settings, Expected::Motions(&onward.reversed()));
+    let inverse = flow(onward.clone()).continued();
+    let labels = continued_labels(&inverse);
+    let back = solve_view([newest, last], settings, Expected::Inverse { motions: &inverse.motions, labels });
     if onward.is_cut() && back.is_cut() {
         return Pairs::default();
     }

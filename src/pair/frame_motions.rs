@@ -1,7 +1,7 @@
 //! The motions of the first frame of a pair at the working size, for clips, which go on from there: no numbering, no full-size labels, no
 //! evidence for the number.
 
-use super::dominant::Dominant;
+use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
 use super::groups::Regions;
 use super::labels::{LabelledPair, label_on, return_shadows};
@@ -12,7 +12,7 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cheapest, costs, inverse};
+use crate::view::cost::{CostModel, cheapest, costs};
 
 /// The motions of a frame to another one, and where they are. The background has label [`BACKGROUND`].
 #[derive(Clone, Debug)]
@@ -41,11 +41,6 @@ impl FrameMotions {
     pub(crate) fn prior(&self) -> Option<Prior> {
         self.prior.clone()
     }
-
-    /// The motions of its objects, the other way round.
-    pub(crate) fn reversed(&self) -> Vec<AffineMotion> {
-        self.motions[BACKGROUND + 1..].iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect()
-    }
 }
 
 /// A fast stream expects of the next pair that everything keeps its motion.
@@ -69,8 +64,11 @@ impl Prior {
 /// Knowledge about a pair before it is solved.
 pub(crate) enum Expected<'a> {
     Nothing,
-    /// Objects may have these motions.
-    Motions(&'a [AffineMotion]),
+    /// The pair the other way round was solved with the inverse of these motions, and these labels of the working size are likely here.
+    Inverse {
+        motions: &'a [AffineMotion],
+        labels: Vec<u8>,
+    },
     /// The labels of a prior's motions are likely to go on. Where they do not explain the pair, its motions are candidates.
     Labels(&'a Prior, Vec<u8>),
 }
@@ -87,7 +85,9 @@ pub(crate) fn frame_motions(
     let pair = || Pair::new(first, pyramid, second, settings);
     let (likely, followed) = match expected {
         Expected::Nothing => (&[][..], None),
-        Expected::Motions(motions) => (motions, None),
+        Expected::Inverse { motions, labels } => {
+            (&motions[BACKGROUND + 1..], Some((inverted(pair(), motions, labels, settings), [0.0; 2])))
+        }
         Expected::Labels(prior, labels) => (&prior.motions[BACKGROUND + 1..], follow(pair(), prior, labels, settings)),
     };
     let (mut labelled, limits) = followed.unwrap_or_else(|| {
@@ -96,7 +96,7 @@ pub(crate) fn frame_motions(
             // Of a pair prepared as one that is followed: costs are in units of its noise.
             let mut followed = pair();
             followed.settle_dominant(Dominant::Sought(Some(&labelled.motions[BACKGROUND])), settings);
-            motions::cost(&motions::scored(&followed, &labelled.motions))
+            motions::cost(&followed, &labelled.motions)
         } else {
             0.0
         };
@@ -132,18 +132,39 @@ fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Setting
     let model = settings.model;
     let dominant = pair.settle_dominant(Dominant::Sought(Some(&prior.motions[BACKGROUND])), settings);
     let objects = &prior.motions[BACKGROUND + 1..];
-    let selected = motions::follow(&pair, dominant, objects, &mut labels, settings);
-    let cost = motions::cost(&selected);
+    let (motions, cost) = motions::follow(&pair, dominant, objects, &mut labels, settings);
     // Costs rise when a motion is missing, but also when more is occluded.
     let enough = if cost < prior.enough {
         // Else costs that rise little by little would never lead to a look for others.
         prior.enough.min((1.0 + model.follow_tolerance) * cost)
-    } else if cost < (1.0 + model.follow_tolerance_searched) * prior.searched
-        && !motions::is_missing(&pair, &selected, settings)
+    } else if cost < (1.0 + model.follow_tolerance_searched) * prior.searched && !is_missing(&pair, &motions, settings)
     {
         (1.0 + model.follow_tolerance) * cost
     } else {
         return None;
     };
-    Some((label_on(pair, &selected, labels, settings), [enough, prior.searched]))
+    Some((label_on(pair, motions, &labels, true, settings), [enough, prior.searched]))
+}
+
+/// Whether another motion would pay for itself.
+fn is_missing(pair: &Pair, motions: &[AffineMotion], settings: &Settings) -> bool {
+    let mut more = motions.to_vec();
+    motions::add_missing(pair, &mut more, settings.most.min(motions.len() + 1), settings);
+    more.len() > motions.len()
+}
+
+/// The labels and motions of a pair that was solved the other way round.
+fn inverted(mut pair: Pair, motions: &[AffineMotion], mut labels: Vec<u8>, settings: &Settings) -> LabelledPair {
+    let (background, objects) = (&motions[BACKGROUND], &motions[BACKGROUND + 1..]);
+    let dominant = match *background {
+        AffineMotion::STATIC => {
+            let width = pair.finest().width();
+            Dominant::Rest(&Objects { motions: objects, labels: &labels, width })
+        }
+        _ => Dominant::Sought(Some(background)),
+    };
+    let dominant = pair.settle_dominant(dominant, settings);
+    let (mut motions, _) = motions::follow(&pair, dominant, objects, &mut labels, settings);
+    motions::add_missing(&pair, &mut motions, settings.most, settings);
+    label_on(pair, motions, &labels, false, settings)
 }

@@ -6,8 +6,8 @@
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
-use super::labels::{LabelledPair, label};
-use super::motions::{refine, scored, select};
+use super::labels::{LabelledPair, label, label_on};
+use super::motions::{add_detail, follow, refine, select};
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
@@ -58,12 +58,12 @@ fn under(
     let rejected = refine(&pair, &mut selected, settings).or(rejected);
     observer.refined(&pair, &selected);
     observer.stage_begins("labels");
-    let labelled = label(pair, &selected, rejected, settings, observer);
+    let labelled = label(pair, motions_of(&selected), rejected, settings, observer);
     observer.labelled(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
 }
 
-/// Carries a search on at the working size of `pair`, from the motions that were found.
+/// Carries a search on at the finer working size of `pair`: motions are refined, and labels get their detail along their borders.
 pub(super) fn carry_on(
     found: LabelledPair,
     mut pair: Pair,
@@ -72,16 +72,25 @@ pub(super) fn carry_on(
 ) -> LabelledPair {
     let scale = found.pair.reduction / pair.reduction;
     let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.scaled(scale)).collect();
-    let rejected = found.rejected.map(|motion| motion.scaled(scale));
     observer.stage_begins("dominant");
-    pair.settle_dominant(Dominant::Known(&motions[BACKGROUND]), settings);
+    let dominant = pair.settle_dominant(Dominant::Known(&motions[BACKGROUND]), settings);
     observer.stage_begins("refinement");
-    let mut selected = scored(&pair, &motions);
-    let rejected = refine(&pair, &mut selected, settings).or(rejected);
+    let [fine, coarse] = [&pair, &found.pair].map(|pair| pair.finest());
+    let step = scale as usize;
+    let mut labels: Vec<u8> = (0..fine.width() * fine.height())
+        .map(|p| found.labels[p / fine.width() / step * coarse.width() + p % fine.width() / step])
+        .collect();
+    let (mut motions, _) = follow(&pair, dominant, &motions[BACKGROUND + 1..], &mut labels, settings);
+    let rejected =
+        add_detail(&pair, &mut motions, settings).or_else(|| found.rejected.map(|motion| motion.scaled(scale)));
     observer.stage_begins("labels");
-    let labelled = label(pair, &selected, rejected, settings, observer);
+    let labelled = LabelledPair { rejected, ..label_on(pair, motions, &labels, false, settings) };
     observer.carried_on(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
+}
+
+fn motions_of(selected: &[ScoredMotion]) -> Vec<AffineMotion> {
+    selected.iter().map(|one| one.motion).collect()
 }
 
 /// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans

@@ -8,22 +8,20 @@ use super::frames::Pair;
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::components::absorb_small;
-use crate::estimation::selection::ScoredMotion;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{counts, length, price_of_motion, weight_of_pixel, worth};
+use crate::labelling::regions::description::{counts, length, price_of_motion, worth};
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::split_bodies;
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
 use crate::labelling::shadows;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::{ColourPrices, add_colours};
-use crate::labelling::terms::data::LabelCosts;
+use crate::labelling::terms::data::{Compared, LabelCosts, compare, estimation_costs, label_costs};
 use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
-use crate::labelling::{BACKGROUND, is_background, objects};
+use crate::labelling::{BACKGROUND, is_background, objects, thinned};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, costs};
 use crate::view::level::Level;
 
 /// A pair with its motions (pixels of the working size) and the label of each working pixel.
@@ -40,7 +38,8 @@ impl LabelledPair {
     /// Description length of both frames at the working size if their noise is as given, nats.
     pub(super) fn length(&self, noise: f32) -> f64 {
         let level = Level { noise, ..self.pair.finest().clone() };
-        length(&self.motions, &estimation_costs(&level, &self.motions), &self.labels, level.width(), level.model)
+        let costs = estimation_costs(&level, &compare(&level, &self.motions, Vec::new()));
+        length(&self.motions, &costs, &self.labels, level.width(), level.model)
     }
 }
 
@@ -50,6 +49,8 @@ struct LabelEnergy<'a> {
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
+    /// The frames along these motions.
+    compared: Compared,
     /// Label costs, corrected for occlusion.
     costs: Vec<Plane>,
     /// Label costs before the correction for occlusion.
@@ -64,12 +65,12 @@ struct LabelEnergy<'a> {
 /// Labels a pair by the selected motions.
 pub(super) fn label(
     pair: Pair,
-    selected: &[ScoredMotion],
+    motions: Vec<AffineMotion>,
     rejected: Option<AffineMotion>,
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> LabelledPair {
-    let mut energy = LabelEnergy::new(&pair, selected, settings);
+    let mut energy = LabelEnergy::new(&pair, motions, settings);
     energy.rejected = rejected;
     energy.solve();
     energy.prune();
@@ -88,18 +89,36 @@ pub(super) fn label(
 }
 
 /// Labels that go on from those expected at the working size: unless regions are merged or split, they are solved once.
-pub(super) fn label_on(pair: Pair, selected: &[ScoredMotion], expected: Vec<u8>, settings: &Settings) -> LabelledPair {
-    let mut energy = LabelEnergy::new(&pair, selected, settings);
-    energy.labels = expected;
+pub(super) fn label_on(
+    pair: Pair,
+    motions: Vec<AffineMotion>,
+    expected: &[u8],
+    regroups: bool,
+    settings: &Settings,
+) -> LabelledPair {
+    let mut energy = LabelEnergy::new(&pair, motions, settings);
+    energy.labels = thinned(expected, pair.finest().width(), 1 << pair.draft);
+    if counts(&energy.labels, energy.motions.len()).last() == Some(&0) {
+        // Some motion is not expected anywhere.
+        energy.solve();
+    }
     energy.prune();
     energy.try_static_background();
     if energy.motions.len() > 1 {
         energy.update_occlusion();
     }
-    energy.regroup();
-    energy.add_colour_costs(&pair);
-    energy.solve_final();
-    energy.prune();
+    if regroups {
+        energy.regroup();
+    }
+    if pair.draft == 0 {
+        energy.add_colour_costs(&pair);
+        energy.solve_final();
+        energy.prune();
+    } else {
+        energy.solve();
+        energy.prune();
+        energy.sharpen(&pair);
+    }
     let (motions, labels, rejected) = energy.finished(&pair);
     LabelledPair { pair, motions, labels, rejected }
 }
@@ -121,7 +140,7 @@ pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
 /// Label costs of motions on the draft level: no motion pays for pixels that are occluded in the second frame, as far as `labels` tell.
 pub(crate) fn visible_costs(pair: &Pair, motions: &[AffineMotion], labels: &[u8], settings: &Settings) -> Vec<Plane> {
     let (level, coherence) = (&pair.levels[pair.draft], settings.coherence);
-    let costs = LabelCosts::new(level, motions, coherence).costs;
+    let costs = label_costs(level, motions, coherence);
     with_visibility(level, motions, &costs, labels, coherence.object_bias)
 }
 
@@ -132,28 +151,20 @@ pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders
     Borders::new(&pair.appearance.pictures[index], level.noise, smoothness, level.model)
 }
 
-/// Estimation costs of every motion on a level, in units of working pixels.
-pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
-    let mut raw = costs(level, motions, CostModel::estimation(level.model));
-    if level.index > 0 {
-        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= weight_of_pixel(level));
-    }
-    raw
-}
-
 impl<'a> LabelEnergy<'a> {
     /// The energy of labels that all are those of the background.
-    fn new(pair: &'a Pair, selected: &[ScoredMotion], settings: &'a Settings) -> LabelEnergy<'a> {
+    fn new(pair: &'a Pair, motions: Vec<AffineMotion>, settings: &'a Settings) -> LabelEnergy<'a> {
         let level = &pair.levels[pair.draft];
-        let motions: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
-        let uncorrected = LabelCosts::new(level, &motions, settings.coherence);
+        let compared = compare(level, &motions, Vec::new());
+        let uncorrected = LabelCosts::new(level, &compared, settings.coherence);
         LabelEnergy {
             level,
             settings,
             borders: borders(pair, pair.draft, settings),
             costs: uncorrected.costs.clone(),
             uncorrected,
-            raw: estimation_costs(level, &motions),
+            raw: estimation_costs(level, &compared),
+            compared,
             labels: vec![BACKGROUND as u8; level.width() * level.height()],
             motions,
             rejected: None,
@@ -166,11 +177,12 @@ impl<'a> LabelEnergy<'a> {
         (self.motions, self.labels, self.rejected)
     }
 
-    /// Computes the costs of all motions anew.
+    /// Computes all costs anew.
     fn recompute_costs(&mut self) {
-        self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
+        self.compared = compare(self.level, &self.motions, std::mem::take(&mut self.compared));
+        self.uncorrected = LabelCosts::new(self.level, &self.compared, self.settings.coherence);
         self.costs = self.uncorrected.costs.clone();
-        self.raw = estimation_costs(self.level, &self.motions);
+        self.raw = estimation_costs(self.level, &self.compared);
     }
 
     fn solve(&mut self) {
@@ -270,7 +282,8 @@ impl<'a> LabelEnergy<'a> {
             let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| is_background(**label));
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
-        let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
+        let rest = compare(self.level, &[AffineMotion::STATIC], Vec::new());
+        let at_rest: f64 = estimation_costs(self.level, &rest).iter().map(own).sum();
         if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0]) {
             self.motions[BACKGROUND] = AffineMotion::STATIC;
             self.recompute_costs();

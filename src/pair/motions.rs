@@ -10,7 +10,7 @@ use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
 use crate::frame::filter::eroded;
 use crate::labelling::regions::description::price_on;
-use crate::labelling::{BACKGROUND, mask_of};
+use crate::labelling::{BACKGROUND, mask_of, thinned};
 use crate::motion::AffineMotion;
 use crate::view::brightness::Photometric;
 use crate::view::level::Level;
@@ -35,6 +35,15 @@ impl Settings {
     /// Refines motions on a level, each on its own pixels.
     fn refit(&self, level: &Level, selected: &mut [ScoredMotion]) {
         refit(level, selected, self.model.rounds, self.refinement);
+    }
+
+    /// Refines motions that come from a sample of the working pixels on all of them.
+    fn complete(&self, pair: &Pair, selected: &mut Vec<ScoredMotion>) {
+        if self.completes {
+            let level = pair.finest();
+            *selected = selected.iter().map(|one| ScoredMotion::new(level, one.motion)).collect();
+            refit(level, selected, 1, self.refinement);
+        }
     }
 
     /// Takes motions away that do not pay for themselves, unless their number is given.
@@ -81,38 +90,57 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
     for level in pair.levels[..pair.selection].iter().rev() {
         let level = &level.thinned();
         *selected = selected.iter().map(|one| ScoredMotion::new(level, one.motion)).collect();
-        let how = Deflation { tries: settings.model.tries_fast, ..settings.deflation(level) };
-        let proposals = fine_proposals(level, selected, settings.tiles);
-        rejected = add_motions(level, selected, &proposals, how).or(rejected);
-        settings.refit(level, selected);
+        rejected = add_fine(level, selected, settings).or(rejected);
+    }
+    if pair.selection > 0 {
+        settings.complete(pair, selected);
     }
     rejected
 }
 
-/// Motions with their costs on the selection level.
-pub(super) fn scored(pair: &Pair, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
-    motions.iter().map(|&motion| ScoredMotion::new(&pair.levels[pair.selection], motion)).collect()
+/// Adds motions to those on a thinned level that only show there, and refines all. Returns the best proposal that was rejected.
+fn add_fine(level: &Level, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
+    let how = Deflation { tries: settings.model.tries_fast, ..settings.deflation(level) };
+    let proposals = fine_proposals(level, selected, settings.tiles);
+    let rejected = add_motions(level, selected, &proposals, how);
+    settings.refit(level, selected);
+    rejected
 }
 
-/// The cost of the pixels, each under the motion that fits it best.
-pub(super) fn cost(scored: &[ScoredMotion]) -> f64 {
-    smallest_cost(scored).total()
+/// Adds motions that only show at the working size. Returns the best proposal that was rejected.
+pub(super) fn add_detail(pair: &Pair, motions: &mut Vec<AffineMotion>, settings: &Settings) -> Option<AffineMotion> {
+    let level = &pair.finest().thinned();
+    let mut selected = scored_on(level, motions);
+    let rejected = add_fine(level, &mut selected, settings);
+    *motions = selected.iter().map(|one| one.motion).collect();
+    rejected
 }
 
-/// The motions with which labels go on, each refined on the pixels that it is expected to have; those that have become needless are left
-/// out, together with their pixels.
+/// Motions with their costs on a level.
+fn scored_on(level: &Level, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
+    motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect()
+}
+
+/// The cost of a sample of the working pixels, each under the motion that fits it best.
+pub(super) fn cost(pair: &Pair, motions: &[AffineMotion]) -> f64 {
+    smallest_cost(&scored_on(&pair.finest().thinned(), motions)).total()
+}
+
+/// The motions with which labels of the working size go on, each refined on the pixels that it is expected to have; those that have become
+/// needless are left out, together with their pixels. And the cost of the sample that they were refined on.
 pub(super) fn follow(
     pair: &Pair,
     dominant: AffineMotion,
     objects: &[AffineMotion],
     labels: &mut [u8],
     settings: &Settings,
-) -> Vec<ScoredMotion> {
-    let level = &pair.levels[pair.selection];
+) -> (Vec<AffineMotion>, f64) {
+    let level = &pair.finest().thinned();
     let (width, height, model) = (level.width(), level.height(), level.model);
+    let expected = thinned(labels, pair.finest().width(), level.stride);
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
-        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)));
+        let region = softened(&eroded(&mask_of(&expected, label as u8, width, height)));
         let how = Alignment::of_region(model.iterations, ridge_of_label(label, model), model);
         let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
         selected.push(ScoredMotion::new(level, motion));
@@ -123,17 +151,18 @@ pub(super) fn follow(
     let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
     let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
     labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
-    selected
+    let cost = smallest_cost(&selected).total();
+    settings.complete(pair, &mut selected);
+    (selected.iter().map(|one| one.motion).collect(), cost)
 }
 
-/// Whether a motion from a single window would pay for itself beside the others.
-pub(super) fn is_missing(pair: &Pair, selected: &[ScoredMotion], settings: &Settings) -> bool {
-    let (base, level) = (&pair.levels[pair.base], &pair.levels[pair.selection]);
-    let dominant = &selected[BACKGROUND].motion;
+/// Adds motions from single windows, at most `most`, that pay for themselves beside these. The first is the dominant one.
+pub(super) fn add_missing(pair: &Pair, motions: &mut Vec<AffineMotion>, most: usize, settings: &Settings) {
+    let level = &pair.levels[pair.selection];
+    let dominant = &motions[BACKGROUND];
     let flow = local_flow(&pair.levels, dominant, pair.base);
-    let proposals = from_tiles(base, dominant, &flow, settings.tiles);
-    let (known, how) = (selected.len(), settings.deflation(level));
-    let mut selected = selected.to_vec();
-    add_motions(level, &mut selected, &proposals, Deflation { most: how.most.min(known + 1), ..how });
-    selected.len() > known
+    let proposals = from_tiles(&pair.levels[pair.base], dominant, &flow, settings.tiles);
+    let mut selected = scored_on(level, motions);
+    add_motions(level, &mut selected, &proposals, Deflation { most, ..settings.deflation(level) });
+    motions.extend(selected[motions.len()..].iter().map(|one| one.motion));
 }

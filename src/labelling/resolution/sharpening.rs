@@ -238,7 +238,7 @@ mod tests {
     use super::*;
     use crate::frame::filter::gaussian;
     use crate::labelling::coherence::tests::COHERENCE;
-    use crate::labelling::terms::data::LabelCosts;
+    use crate::labelling::terms::data::{LabelCosts, compare};
     use crate::labelling::terms::visibility::hidden_under;
     use crate::random::Random;
     use crate::view::level::build;
@@ -280,7 +280,7 @@ mod tests {
         let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
         let labels: Vec<u8> =
             (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
-        let uncorrected = LabelCosts::new(&levels[1], &motions, COHERENCE);
+        let uncorrected = LabelCosts::new(&levels[1], &compare(&levels[1], &motions, Vec::new()), COHERENCE);
         let hidden = hidden_under(&levels[1], &motions, &labels);
         let coarse = CoarseLabelling {
             width: SIZE[0] / 2,

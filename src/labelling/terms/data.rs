@@ -3,8 +3,9 @@
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::coherence::Coherence;
+use crate::labelling::regions::description::weight_of_pixel;
 use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
-use crate::lanes::{each_with, lower};
+use crate::lanes::{each, each_with, lower};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cheapest, cost_where_seen};
@@ -16,7 +17,33 @@ use crate::view::level::Level;
 /// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
 /// objects do not win pixels by moving them out of the frame.
 pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    LabelCosts::new(level, motions, coherence).costs
+    LabelCosts::new(level, &compare(level, motions, Vec::new()), coherence).costs
+}
+
+/// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
+pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
+
+/// Compares the frames along motions, except those that are compared already.
+pub(crate) fn compare(level: &Level, motions: &[AffineMotion], mut known: Compared) -> Compared {
+    let plane = |motion: &AffineMotion| match known.iter().position(|(other, _)| other == motion) {
+        Some(k) => known.swap_remove(k).1,
+        None => cost_where_seen(level, motion, CostModel::labels(level.model)),
+    };
+    let planes: Vec<Plane> = motions.iter().map(plane).collect();
+    motions.iter().copied().zip(planes).collect()
+}
+
+/// Estimation costs of every motion, from the same comparisons: `1/ρ = 1/e + 1/T` for both largest costs T.
+pub(crate) fn estimation_costs(level: &Level, compared: &Compared) -> Vec<Plane> {
+    let (model, weight) = (CostModel::estimation(level.model), weight_of_pixel(level));
+    let less = 1.0 / CostModel::labels(level.model).truncation - 1.0 / model.truncation;
+    let outside = model.outside();
+    let plane = |(_, cost): &(AffineMotion, Plane)| {
+        let mut plane = cost.clone();
+        each(plane.values_mut(), |c| weight * if c.is_finite() { c / (1.0 - less * c) } else { outside });
+        plane
+    };
+    compared.iter().map(plane).collect()
 }
 
 /// Label costs, and the intermediate results that sharpening uses again.
@@ -28,9 +55,8 @@ pub(crate) struct LabelCosts {
 
 impl LabelCosts {
     /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
-    pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
-        let cost = |motion| cost_where_seen(level, motion, CostModel::labels(level.model));
-        let mut costs: Vec<Plane> = motions.iter().map(cost).collect();
+    pub(crate) fn new(level: &Level, compared: &Compared, coherence: Coherence) -> LabelCosts {
+        let mut costs: Vec<Plane> = compared.iter().map(|(_, cost)| cost.clone()).collect();
         let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
         let mut inflation = Plane::filled(level.width(), level.height(), 0.0);
         let mut seen = vec![0.0; level.width()];

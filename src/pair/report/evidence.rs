@@ -4,10 +4,10 @@ use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::regions::description::{length, price_of_motion, worth};
 use crate::labelling::solver::Solver;
-use crate::labelling::terms::data::label_costs;
+use crate::labelling::terms::data::{LabelCosts, compare, estimation_costs};
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
-use crate::pair::labels::{LabelledPair, borders, estimation_costs};
+use crate::pair::labels::{LabelledPair, borders};
 use crate::pair::settings::Settings;
 
 /// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
@@ -19,8 +19,9 @@ pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Cand
     let n = labelled.motions.len();
     let mut motions: Vec<AffineMotion> =
         labelled.motions.iter().chain(&labelled.rejected).copied().take(MAX_MOTIONS).collect();
-    let mut raw = estimation_costs(level, &motions);
-    let mut costs = label_costs(level, &motions, settings.coherence);
+    let compared = compare(level, &motions, Vec::new());
+    let mut raw = estimation_costs(level, &compared);
+    let mut costs = LabelCosts::new(level, &compared, settings.coherence).costs;
     let borders = borders(pair, pair.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&motions, &raw, &solve(&costs), width, level.model));
