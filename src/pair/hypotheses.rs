@@ -63,7 +63,7 @@ fn under(
     labelled
 }
 
-/// Carries a search on at the finer working size of `pair`: motions are refined, and labels get their detail along their borders.
+/// Carries a search on at the finer working size of `pair`: motions are refined, and labels solved once.
 pub(super) fn carry_on(
     found: LabelledPair,
     mut pair: Pair,

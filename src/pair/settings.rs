@@ -140,10 +140,10 @@ impl Settings {
         settings
     }
 
-    /// The settings for the pairs of a clip. Motions are selected on the base level, and with quality `best` refined on all working pixels
-    /// in the end: on real clips that is as good as a selection at the working size. They do not wait for linear terms: fast streams lost by it, in small frames unrelated ones were
-    /// explained too well for a cut to be seen, and whole clips gained no more than chance. Shadows are given back with both qualities, as they
-    /// would be carried from frame to frame.
+    /// The settings for the pairs of a clip. Motions are selected on the base level and, with quality `best`, refined on all working pixels
+    /// in the end: on clips that nothing was tuned on as good as a selection at the working size, for half the time. They do not wait for
+    /// linear terms: fast streams lost by it, in small frames unrelated ones were explained too well for a cut to be seen, and whole clips
+    /// gained no more than chance. Shadows are given back with both qualities, as they would be carried from frame to frame.
     pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let settings = Settings::new(options, size, &Model::DEFAULT);
         let [dominant, refinement] = [Convergence::Translation; 2];

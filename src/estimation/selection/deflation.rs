@@ -108,7 +108,7 @@ pub(crate) fn add_motions(
     let thinning = level.thinning();
     let thinned = level.thinned();
     let rough = RoughCosts::new(&thinned, thinning, proposals);
-    // Gains beside fewer motions, no less than those beside all.
+    // Of those tried before: beside more motions, a proposal gains no more.
     let mut most = vec![f64::INFINITY; proposals.len()];
     loop {
         let current = smallest_cost(selected);
