@@ -63,6 +63,9 @@ macro_rules! model {
     };
 }
 
+/// Standard deviation of a window of twice the area of one of 1.75 pixels.
+const WIDE: f32 = std::f32::consts::SQRT_2 * 1.75;
+
 model! {
     /// The constants of the pipeline of frames. Only for measuring: nothing promises that they stay.
     Model of Constants;
@@ -80,20 +83,56 @@ model! {
     /// Largest noise, grey levels: where no motion fits, misfit passes for noise. Guard.
     largest_noise: f32 = 8.0;
 
-    /// Iterations of an estimate from a start that is close: local flow, a region's motion, the change of brightness or light. The
-    /// search for the dominant motion and the weights of the multibody polynomial take twice as many. Generated.
-    iterations: usize = 3;
-    /// Rounds in which an estimate and what it depends on take turns: a proposal and its region, the selected motions and theirs, a
-    /// change of brightness and the noise, labels and what they hide.
-    rounds: usize = 2;
-    /// Standard deviation of the window over which costs, products of gradients and gains are averaged, pixels looked at. Generated.
-    window: f32 = 1.75;
-    /// Fewest pixels of a region, or on both sides of a border, that anything is estimated from: five for each entry of a motion.
+    /// Iterations of the alignment of a region, from a start that is close. Generated.
+    region_iterations: usize = 3;
+    /// The same of the whole frame, when the dominant motion is looked for. Generated.
+    dominant_iterations: usize = 6;
+    /// Iterations of the local flow on each level. Generated.
+    flow_iterations: usize = 3;
+    /// Iterations of the weights of the multibody polynomial. Generated.
+    algebra_iterations: usize = 6;
+    /// Iterations of the change of brightness. Generated.
+    brightness_iterations: usize = 3;
+    /// Iterations of the change of light in shadows. Generated.
+    light_iterations: usize = 3;
+    /// Rounds in which the pixels of a region go to the better of two motions. Generated.
+    split_rounds: usize = 3;
+    /// Rounds in which a proposal and its region take turns.
+    proposal_rounds: usize = 2;
+    /// Rounds in which the selected motions and their regions take turns.
+    refit_rounds: usize = 2;
+    /// Rounds in which the change of brightness and the noise of a background at rest take turns.
+    rest_rounds: usize = 2;
+    /// Rounds in which labels and the pixels that they hide take turns.
+    visibility_rounds: usize = 2;
+    /// Standard deviation of the window over which costs and gains are averaged, pixels of the level. Generated.
+    cost_window: f32 = 1.75;
+    /// The same of the products of gradients in a local flow, pixels. Generated.
+    flow_window: f32 = 1.75;
+    /// Standard deviation of the window of a change of light, pixels. Generated.
+    light_window: f32 = WIDE;
+    /// Standard deviation of the window in which there is texture or not, pixels. Generated.
+    texture_window: f32 = WIDE;
+    /// Fewest pixels of a region that a motion is estimated from: five for each entry. Generated.
     fewest: usize = 30;
-    /// A small share of a whole.
-    few: f64 = 0.1;
-    /// A weight, probability or cost that does not count.
-    negligible: f32 = 1e-3;
+    /// Fewest pixels that colours are learnt from. Generated.
+    fewest_of_colours: usize = 30;
+    /// Fewest pixels on both sides of a border along which two motions are compared. Generated.
+    fewest_of_border: usize = 30;
+    /// Smallest share of a region that is a body of its own. Generated.
+    smallest_body: f64 = 0.1;
+    /// Motions are distinct if they differ at a place, or this share of the frame's width or height beside it. Generated.
+    distinct_span: f64 = 0.1;
+    /// Weight up to which a pixel does not count in an alignment or a mean.
+    smallest_weight: f32 = 1e-3;
+    /// Added to the share of every colour, so that none is impossible. Generated.
+    colour_prior: f32 = 1e-3;
+    /// Price of a pixel of shift when the search for the dominant motion starts, mean costs: it decides between shifts that are as good.
+    shift_price: f32 = 1e-3;
+    /// Least slope of a reading of the multibody polynomial, as a share of their mean. Guard.
+    least_slope: f32 = 1e-3;
+    /// Least deviation of a frame's grey levels that a gain is computed from. Guard.
+    least_deviation: f32 = 1e-3;
 
     /// Largest gain between the frames, or one over it. Guard: exposure changes less from frame to frame.
     largest_gain: f64 = 1.4;
@@ -175,9 +214,12 @@ model! {
     confidence_neighbours: f32 = 2.25;
     /// Weight of the own label. Fit to generated scenes.
     confidence_own: f32 = 1.4;
-    /// Cost above which a motion does not explain a pixel. It is also the largest cost of a motion at a pixel that it moves behind another
-    /// object, and the cost of a change of light. Fit to generated scenes.
+    /// Cost above which a motion does not explain a pixel. Fit to generated scenes.
     unexplained: f32 = 1.4;
+    /// Largest cost of a motion at a pixel that it moves behind another object. Generated.
+    hidden_cost: f32 = 1.4;
+    /// Cost of a change of light. Generated; real.
+    light_price: f32 = 1.4;
     /// Confidence of being an object: weight of the probability of the motion. Fit to real pairs and generated scenes.
     doubt_motion: f64 = 0.55;
     /// Weight of the share of the outline on the frame's border. Fit to real pairs and generated scenes.
@@ -349,9 +391,9 @@ impl Model {
         self.work_side_fast - 1
     }
 
-    /// Standard deviation of a window of twice the area of [`Model::window`], pixels.
-    pub(crate) fn window_wide(&self) -> f32 {
-        std::f32::consts::SQRT_2 * self.window
+    /// Standard deviation of the window of a local flow on the base level, of twice the area, pixels.
+    pub(crate) fn flow_window_base(&self) -> f32 {
+        std::f32::consts::SQRT_2 * self.flow_window
     }
 
     /// Largest cost of a pixel when it is labelled: half of the one in estimation, as labels must not follow single pixels. Generated,
@@ -367,7 +409,7 @@ impl Model {
 
     /// Standard deviation of the window in which the fit is judged, pixels.
     pub(crate) fn window_of_fit(&self) -> f32 {
-        2.0 * self.window
+        2.0 * self.cost_window
     }
 
     /// κ²: variance of the position that a correct motion predicts, pixels².

@@ -113,7 +113,7 @@ impl<'a> Support<'a> {
         let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
         for y in 0..weights.height() {
             for (x, &w) in weights.row(y).iter().enumerate() {
-                if w > model.negligible {
+                if w > model.smallest_weight {
                     (left, right) = (left.min(x), right.max(x + 1));
                     (top, bottom) = (top.min(y), y + 1);
                     let w = f64::from(w);
@@ -269,7 +269,7 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let (robustness, smallest) = (how.robustness, level.model.negligible);
+        let (robustness, smallest) = (how.robustness, level.model.smallest_weight);
         let position = level.model.position_variance();
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / GREY) as f32);
         // The mean of both gradients, per pixel of this level.

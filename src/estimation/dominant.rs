@@ -56,7 +56,7 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
             let plane = cost_with(level, &shift, photometric, CostModel::estimation(level.model));
             let cost = plane.total() / plane.values().len() as f64
-                + f64::from(level.model.negligible) * (dx * dx + dy * dy).sqrt();
+                + f64::from(level.model.shift_price) * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
             }
@@ -77,7 +77,7 @@ fn descend(
     let model = levels[base].model;
     let affine = Alignment {
         freedom: Freedom::Affine,
-        iterations: 2 * model.iterations,
+        iterations: model.dominant_iterations,
         convergence: how.convergence,
         robustness: model.robustness,
         ridge: model.ridge_background,
@@ -85,7 +85,7 @@ fn descend(
     };
     let translation = Alignment {
         freedom: Freedom::Translation,
-        iterations: 2 * model.iterations,
+        iterations: model.dominant_iterations,
         robustness: model.robustness_loose,
         ..affine
     };

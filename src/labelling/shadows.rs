@@ -47,7 +47,7 @@ pub(crate) fn return_shadows(
         let own = cost(level, &motions[k], CostModel::labels(level.model));
         let values = kept.values_mut().iter_mut().zip(given_back.values_mut()).zip(own.values()).zip(lit.values());
         for (p, (((kept, given_back), own), lit)) in values.enumerate().filter(|(p, _)| usize::from(labels[*p]) == k) {
-            (*kept, *given_back) = (*own, lit + level.model.unexplained + ratios[palette.index(p)]);
+            (*kept, *given_back) = (*own, lit + level.model.light_price + ratios[palette.index(p)]);
         }
     }
     let found = borders.solve(&[given_back, kept], solver);
@@ -60,18 +60,19 @@ pub(crate) fn return_shadows(
 
 /// Cost of the background's motion with a smooth change of light.
 fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
-    let (model, window) = (CostModel::labels(level.model), level.model.window_wide());
+    let (model, window) = (CostModel::labels(level.model), level.model.light_window);
     let mut difference = warp(&level.second, &level.scaled(background));
     difference.values_mut().iter_mut().zip(level.first.values()).for_each(|(second, first)| *second -= first);
     let (noise, position) = (level.noise * level.noise, level.model.position_variance());
     let mut weights = Plane::filled(level.width(), level.height(), 1.0);
     let mut costs = weights.clone();
-    for _ in 0..level.model.iterations {
+    for _ in 0..level.model.light_iterations {
         let mut weighted = difference.clone();
         weighted.values_mut().iter_mut().zip(weights.values()).for_each(|(difference, weight)| *difference *= weight);
         let (sums, totals) = (gaussian(&weighted, window), gaussian(&weights, window));
         for (p, (cost, weight)) in costs.values_mut().iter_mut().zip(weights.values_mut()).enumerate() {
-            let residual = difference.values()[p] - sums.values()[p] / totals.values()[p].max(level.model.negligible);
+            let residual =
+                difference.values()[p] - sums.values()[p] / totals.values()[p].max(level.model.smallest_weight);
             let square = residual * residual / (noise + position * level.energy.values()[p]);
             *cost = square / (1.0 + square / model.truncation);
             let explained = 1.0 - *cost / model.truncation;
@@ -94,12 +95,12 @@ fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -
         }
     }
     let [ground, object] = totals;
-    let (prior, most) = (model.negligible, model.largest_cost());
+    let (prior, most) = (model.colour_prior, model.largest_cost());
     let ratio = |(colour, &[of_ground, of_object]): (usize, &[f32; 2])| {
         let of_ground = brighter(colour).map_or(of_ground, |brighter| f32::max(of_ground, counts[brighter][0]));
         libm::logf((of_object / object + prior) / (of_ground / ground + prior)).clamp(-most, most)
     };
-    (ground >= model.fewest as f32 && object >= model.fewest as f32)
+    (ground >= model.fewest_of_colours as f32 && object >= model.fewest_of_colours as f32)
         .then(|| counts.iter().enumerate().map(ratio).collect())
 }
 

@@ -69,7 +69,7 @@ impl Pair {
         let base = &mut self.levels[self.base];
         let model = base.model;
         base.noise = noise(base, &motion);
-        let how = Alignment::of_region(model.iterations, model.ridge_background, model).until(settings.dominant);
+        let how = Alignment::of_region(model.region_iterations, model.ridge_background, model).until(settings.dominant);
         align(base, &motion, &Support::everything(base), &mut Photometric::default(), how)
     }
 
@@ -91,5 +91,5 @@ impl Pair {
 
 /// How often the change of brightness and the noise of a background at rest take turns.
 fn rest_rounds(settings: &Settings) -> usize {
-    if settings.brightness() { settings.model.rounds } else { 0 }
+    if settings.brightness() { settings.model.rest_rounds } else { 0 }
 }

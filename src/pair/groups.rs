@@ -80,7 +80,7 @@ impl<'a> Regions<'a> {
         let n = self.regions.len();
         let along = &mut self.jumps[pair(n, i, j)];
         let border = along.len();
-        let jump = median_f64(along).filter(|_| 2 * border >= self.model.fewest)?;
+        let jump = median_f64(along).filter(|_| 2 * border >= self.model.fewest_of_border)?;
         let [one, other] = [self.regions[i].on_frame(), self.regions[j].on_frame()];
         // Before a camera at rest nothing that moves is background.
         let [largest, less] = match self.at_rest && i.min(j) == BACKGROUND {

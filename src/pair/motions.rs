@@ -27,14 +27,14 @@ impl Settings {
             price: self.price(level),
             most: self.most,
             tries: self.tries,
-            window: self.model.window,
+            window: self.model.cost_window,
             convergence: self.refinement,
         }
     }
 
     /// Refines motions on a level, each on its own pixels.
     fn refit(&self, level: &Level, selected: &mut [ScoredMotion]) {
-        refit(level, selected, self.model.rounds, self.refinement);
+        refit(level, selected, self.model.refit_rounds, self.refinement);
     }
 
     /// Refines motions that come from a sample of the working pixels on all of them.
@@ -141,7 +141,7 @@ pub(super) fn follow(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
         let region = softened(&eroded(&mask_of(&expected, label as u8, width, height)));
-        let how = Alignment::of_region(model.iterations, ridge_of_label(label, model), model);
+        let how = Alignment::of_region(model.region_iterations, ridge_of_label(label, model), model);
         let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
         selected.push(ScoredMotion::new(level, motion));
     }

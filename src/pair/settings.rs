@@ -96,7 +96,7 @@ impl Settings {
             completes: false,
             most: model.most,
             least: 1,
-            visibility_rounds: model.rounds,
+            visibility_rounds: model.visibility_rounds,
             coherence: Coherence {
                 smoothness,
                 object_bias: model.object_bias,

@@ -25,14 +25,14 @@ impl Photometric {
     pub(crate) fn from_moments(first: &Plane, second: &Plane, model: &Model) -> Photometric {
         let (first_mean, first_deviation) = mean_and_deviation(first);
         let (second_mean, second_deviation) = mean_and_deviation(second);
-        let gain = (second_deviation / first_deviation.max(model.negligible.into()))
+        let gain = (second_deviation / first_deviation.max(model.least_deviation.into()))
             .clamp(1.0 / model.largest_gain, model.largest_gain);
         Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * GREY }
     }
 
     /// Refined between the first frame and the second under the zero motion.
     pub(crate) fn refined_at_rest(mut self, level: &Level) -> Photometric {
-        for _ in 0..level.model.iterations {
+        for _ in 0..level.model.brightness_iterations {
             self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
         }
         self
@@ -60,7 +60,8 @@ impl Photometric {
         // Taken once: they are the same in every step.
         let samples: Vec<Option<f32>> = (0..level.first.values().len()).map(|p| sample(p % width, p / width)).collect();
         let start = Photometric::from_moments(&level.first, second, level.model);
-        (0..level.model.iterations).fold(start, |photometric, _| photometric.step(level, |x, y| samples[y * width + x]))
+        (0..level.model.brightness_iterations)
+            .fold(start, |photometric, _| photometric.step(level, |x, y| samples[y * width + x]))
     }
 
     /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.

@@ -119,7 +119,7 @@ fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64
     let mut weights = data.weights.clone();
     let mut readings = Vec::new();
     let mut close = 0.0;
-    for _ in 0..2 * model.iterations {
+    for _ in 0..model.algebra_iterations {
         // A weight belongs to a row; only their ratios count.
         let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
@@ -130,7 +130,7 @@ fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
-            *w = given / ((r.slope + f64::from(model.negligible) * mean).max(1e-300) * (1.0 + relative * relative));
+            *w = given / ((r.slope + f64::from(model.least_slope) * mean).max(1e-300) * (1.0 + relative * relative));
         }
     }
     group(&readings, data.measurements.positions(), close, 2 * degree + 1, model)

@@ -109,13 +109,13 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
                 plane.values_mut().iter_mut().for_each(|f| *f *= 2.0);
             }
         }
-        for iteration in 0..level.model.iterations {
-            let sigma = if index == base { level.model.window_wide() } else { level.model.window };
+        for iteration in 0..level.model.flow_iterations {
+            let sigma = if index == base { level.model.flow_window_base() } else { level.model.flow_window };
             let sums = windows(level, &samples(level, dominant, &u, &v), sigma);
             step(&mut u, &mut v, &sums, level.model);
             u = median5(&u);
             v = median5(&v);
-            if index == base && iteration + 1 == level.model.iterations {
+            if index == base && iteration + 1 == level.model.flow_iterations {
                 certainty = smaller_eigenvalue(&sums);
             }
         }

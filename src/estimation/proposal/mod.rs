@@ -37,7 +37,7 @@ pub(crate) fn distinct(
         if kept.len() >= most {
             break;
         }
-        let points = [(x, y), (x + model.few * width, y), (x, y + model.few * height)];
+        let points = [(x, y), (x + model.distinct_span * width, y), (x, y + model.distinct_span * height)];
         let alike = |other: &AffineMotion| {
             points.iter().all(|&(x, y)| {
                 let ([u, v], [p, q]) = (motion.flow(x, y), other.flow(x, y));

@@ -151,10 +151,10 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
     let mut improved = improvement(current, &scored.cost, how.window);
     let model = level.model;
     let mut gain = gain_of(&improved, model.margin);
-    for round in 0..model.rounds {
+    for round in 0..model.proposal_rounds {
         let Some(region) = heaviest_region(&improved, current, &scored.cost, model.margin) else { break };
         let support = Support::weighted(&region, model);
-        let affine = Alignment::of_region(model.iterations, model.ridge_object, model).until(how.convergence);
+        let affine = Alignment::of_region(model.region_iterations, model.ridge_object, model).until(how.convergence);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {

@@ -73,5 +73,5 @@ fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [
             }
         }
     }
-    sums.map(|plane| gaussian(&plane, level.model.window))
+    sums.map(|plane| gaussian(&plane, level.model.flow_window))
 }

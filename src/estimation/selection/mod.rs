@@ -31,7 +31,7 @@ impl ScoredMotion {
             motion,
             cost: gaussian(
                 &cost(level, &motion, CostModel::estimation(level.model)),
-                level.model.window / level.stride as f32,
+                level.model.cost_window / level.stride as f32,
             ),
         }
     }

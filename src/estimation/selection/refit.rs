@@ -16,7 +16,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize,
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k, level.model)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment::of_region(model.iterations, ridge_of_label(k, model), model).until(convergence);
+            let how = Alignment::of_region(model.region_iterations, ridge_of_label(k, model), model).until(convergence);
             let motion =
                 align(level, &scored.motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);

@@ -39,7 +39,8 @@ pub(crate) fn best_merger(level: &Level, motions: &[AffineMotion], raw: &[Plane]
         let region = pixels(labels, |label| [a, b].contains(&label));
         let mut mask = Plane::filled(width, level.height(), 0.0);
         region.iter().for_each(|&p| mask.values_mut()[p] = 1.0);
-        let motion = aligned_on(level, &motions[better], &mask, level.model.iterations, ridge_of_label(a, level.model));
+        let motion =
+            aligned_on(level, &motions[better], &mask, level.model.region_iterations, ridge_of_label(a, level.model));
         let area = Area::of(&region, width);
         let cost = cost_within(level, &area, &motion, CostModel::estimation(level.model));
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();

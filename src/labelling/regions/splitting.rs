@@ -44,7 +44,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
         let known = (label, &motions[label]);
         let split = apart(&region, level.width())
             .and_then(|parts| two_bodies(level, known, &region, parts, 0))
-            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), level.model.iterations));
+            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), level.model.split_rounds));
         if let Some((pair, second)) = split {
             motions[label] = pair[0];
             motions.push(pair[1]);
@@ -68,7 +68,7 @@ fn two_bodies(
     let (width, height) = (level.width(), level.height());
     let model = level.model;
     // As far as a Gaussian window of this deviation reaches.
-    let reach = libm::ceilf(3.0 * model.window) as usize;
+    let reach = libm::ceilf(3.0 * model.cost_window) as usize;
     let around = Area::of(region, width).grown(reach, width, height);
     let mut pair = [*motion; 2];
     for round in 0..=rounds {
@@ -78,8 +78,8 @@ fn two_bodies(
             for (&p, &s) in region.iter().zip(&second) {
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
-            *motion = aligned_on(level, motion, &mask, model.iterations, ridge_of_label(label, model));
-            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.window));
+            *motion = aligned_on(level, motion, &mask, model.region_iterations, ridge_of_label(label, model));
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.cost_window));
         }
         if round == rounds {
             break;
@@ -89,7 +89,7 @@ fn two_bodies(
             *s = costs[1].values()[place] < costs[0].values()[place];
         }
         let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
-        if !(model.few..=1.0 - model.few).contains(&share) {
+        if !(model.smallest_body..=1.0 - model.smallest_body).contains(&share) {
             return None;
         }
     }

@@ -86,7 +86,7 @@ fn margins(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
 /// Probability of every label for every colour, all labels equally likely beforehand; from pixels with these weights.
 #[inline(never)]
 fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> Vec<f32> {
-    let smallest = model.fewest as f32 * model.largest_cost();
+    let smallest = model.fewest_of_colours as f32 * model.largest_cost();
     let mut table = vec![0.0f32; n * COLOURS];
     let mut totals = vec![1e-9f32; n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
@@ -97,7 +97,7 @@ fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model:
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
         for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= smallest) {
-            *share = *share / total + model.negligible;
+            *share = *share / total + model.colour_prior;
             sum += *share;
         }
         // A label without enough pixels to learn from gets the average probability for every colour.

@@ -10,7 +10,7 @@ use crate::motion::AffineMotion;
 use crate::view::cost::inverse;
 use crate::view::level::Level;
 
-/// Costs in which a motion pays no more than [`Model::unexplained`] for pixels that it moves behind another object.
+/// Costs in which a motion pays no more than [`Model::hidden_cost`] for pixels that it moves behind another object.
 ///
 /// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
 /// grow into the background around others.
@@ -34,7 +34,7 @@ pub(crate) fn with_visibility(
 
 /// Largest cost of a label where its motion moves a pixel behind another object.
 pub(crate) fn most_where_hidden(label: usize, object_bias: f32, model: &Model) -> f32 {
-    model.unexplained + if label == BACKGROUND { 0.0 } else { object_bias }
+    model.hidden_cost + if label == BACKGROUND { 0.0 } else { object_bias }
 }
 
 /// For every motion, the pixels at which [`with_visibility`] limits its cost.

@@ -12,11 +12,11 @@ use crate::view::cost::{CostModel, cost};
 pub(super) fn unknown(labelled: &LabelledPair, probabilities: &[Plane]) -> Vec<bool> {
     let level = labelled.pair.finest();
     let model = level.model;
-    let texture = gaussian(&level.energy, model.window_wide());
+    let texture = gaussian(&level.energy, model.texture_window);
     let no_texture = model.no_texture * level.noise * level.noise;
     let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
     for (k, motion) in labelled.motions.iter().enumerate() {
-        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.window);
+        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.cost_window);
         let scaled = level.scaled(motion);
         for y in 0..level.height() {
             let path = RowPath::new(&scaled, 0, y);
