@@ -87,6 +87,19 @@ impl AffineMotion {
         AffineMotion::new([a[0], a[1], a[2] * factor, a[3], a[4], a[5] * factor])
     }
 
+    /// The displacement that undoes the motion: `(I + A)⁻¹ − I`; none if the motion is singular.
+    #[inline(never)]
+    pub(crate) fn inverse(&self) -> Option<AffineMotion> {
+        let a = &self.matrix;
+        let (p, q, r, s) = (1.0 + a[0], a[1], a[3], 1.0 + a[4]);
+        let determinant = p * s - q * r;
+        if determinant.abs() < 1e-6 {
+            return None;
+        }
+        let (ip, iq, ir, is) = (s / determinant, -q / determinant, -r / determinant, p / determinant);
+        Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
+    }
+
     /// The same motion in coordinates `x' = (x − centre) / scale`. The flow keeps its unit.
     ///
     /// ```
@@ -156,5 +169,15 @@ mod tests {
         let [p, q] = b.flow((12.0 - 160.0) / 200.0, (77.0 - 90.0) / 200.0);
         assert!((u - p).abs() < 1e-12 && (v - q).abs() < 1e-12);
         assert!(a.relative_error(&b.from_normalised(centre, scale)) < 1e-15);
+    }
+
+    #[test]
+    fn the_inverse_motion_leads_back() {
+        let a = AffineMotion::new([0.03, -0.02, 4.0, 0.01, 0.05, -2.0]);
+        let back = a.inverse().unwrap();
+        let [u, v] = a.flow(13.0, 40.0);
+        let [p, q] = back.flow(13.0 + u, 40.0 + v);
+        assert!((u + p).abs() < 1e-12 && (v + q).abs() < 1e-12);
+        assert!(AffineMotion::new([-1.0, 0.0, 0.0, 0.0, -1.0, 0.0]).inverse().is_none());
     }
 }

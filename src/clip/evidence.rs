@@ -10,7 +10,6 @@ use crate::labelling::regions::description::counts;
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::pair::frame_motions::{FrameMotions, Prior};
-use crate::view::cost::inverse;
 
 /// Odds are multiples of this many nats, so that they take little room when they are kept.
 const STEP: f32 = 0.25;
@@ -72,7 +71,7 @@ impl Flow {
 
     /// Where the pixels go if they keep the motions with which they came.
     pub(crate) fn continued(&self) -> Flow {
-        let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(AffineMotion::STATIC)).collect();
+        let motions = self.motions.iter().map(|motion| motion.inverse().unwrap_or(AffineMotion::STATIC)).collect();
         Flow { motions, measured: false, ..self.clone() }
     }
 }

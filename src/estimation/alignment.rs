@@ -406,7 +406,7 @@ mod tests {
     #[test]
     fn an_affine_motion_with_a_change_of_brightness_is_recovered() {
         let truth = AffineMotion::new([0.01, -0.004, 1.3, 0.006, -0.008, -0.9]);
-        let back = crate::view::cost::inverse(&truth).unwrap();
+        let back = truth.inverse().unwrap();
         let first = Plane::from_fn(96, 80, |x, y| texture(x as f64, y as f64));
         let second = Plane::from_fn(96, 80, |x, y| {
             let [u, v] = back.flow(x as f64, y as f64);
@@ -428,7 +428,7 @@ mod tests {
     fn linear_terms_that_the_prior_slows_down_converge_too() {
         // A zoom about the centre: there is no translation to wait for.
         let truth = AffineMotion::new([0.02, 0.0, -0.95, 0.0, 0.02, -0.79]);
-        let back = crate::view::cost::inverse(&truth).unwrap();
+        let back = truth.inverse().unwrap();
         let first = Plane::from_fn(96, 80, |x, y| texture(x as f64, y as f64));
         let second = Plane::from_fn(96, 80, |x, y| {
             let [u, v] = back.flow(x as f64, y as f64);

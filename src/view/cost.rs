@@ -94,19 +94,6 @@ pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photo
     Comparison { photometric, outside: model.outside(), ..Comparison::new(level, motion, model) }.plane(&level.area())
 }
 
-/// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none if the motion is singular.
-#[inline(never)]
-pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
-    let a = &motion.matrix;
-    let (p, q, r, s) = (1.0 + a[0], a[1], a[3], 1.0 + a[4]);
-    let determinant = p * s - q * r;
-    if determinant.abs() < 1e-6 {
-        return None;
-    }
-    let (ip, iq, ir, is) = (s / determinant, -q / determinant, -r / determinant, p / determinant);
-    Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
-}
-
 /// A level's frames compared along a motion.
 pub(crate) struct Comparison<'a> {
     level: &'a Level,
@@ -264,15 +251,5 @@ mod tests {
             let near = part.iter().zip(&plane.row(7)[left..]).all(|(a, b)| a == b || (a - b).abs() < 1e-4);
             assert!(near, "{count} from {left} on");
         }
-    }
-
-    #[test]
-    fn the_inverse_motion_leads_back() {
-        let a = AffineMotion::new([0.03, -0.02, 4.0, 0.01, 0.05, -2.0]);
-        let back = inverse(&a).unwrap();
-        let [u, v] = a.flow(13.0, 40.0);
-        let [p, q] = back.flow(13.0 + u, 40.0 + v);
-        assert!((u + p).abs() < 1e-12 && (v + q).abs() < 1e-12);
-        assert!(inverse(&AffineMotion::new([-1.0, 0.0, 0.0, 0.0, -1.0, 0.0])).is_none());
     }
 }

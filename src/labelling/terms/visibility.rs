@@ -7,7 +7,6 @@ use crate::labelling::{BACKGROUND, is_background, mask_of, objects};
 use crate::lanes::each_with;
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::inverse;
 use crate::view::level::Level;
 
 /// Costs in which a motion pays no more than [`Model::hidden_cost`] for pixels that it moves behind another object.
@@ -75,7 +74,7 @@ fn covered(level: &Level, motion: &AffineMotion, landed: &[(usize, Plane)], own:
 /// The eroded mask of an object, moved to its place in the second frame.
 fn moved_mask(level: &Level, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
     let mask = eroded(&mask_of(labels, label as u8, level.width(), level.height()));
-    match inverse(&level.scaled(motion)) {
+    match level.scaled(motion).inverse() {
         Some(back) => warp(&mask, &back),
         None => mask,
     }
