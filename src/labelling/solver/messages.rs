@@ -377,12 +377,15 @@ impl Grid {
     }
 }
 
-/// A number in units, at most `most`. Adding 2²³ leaves the nearest whole number in the last bits; `as` does not vectorise.
+/// 2²³: from here on an `f32` has no fraction, and its last bits are a whole number.
+const NO_FRACTION: f32 = 8_388_608.0;
+
+/// The whole number nearest to one of 0 or more, at most `most`. Unlike a cast this vectorises.
 #[inline(always)]
 fn rounded(value: f32, most: i16) -> i16 {
     let most = f32::from(most);
     let value = if value < most { value } else { most };
-    (value + 8_388_608.0).to_bits() as u16 as i16
+    (value + NO_FRACTION).to_bits() as u16 as i16
 }
 
 /// Rows of a band on their way to its steps, between as much padding as they are behind each other.

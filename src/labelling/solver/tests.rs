@@ -109,7 +109,8 @@ fn bound(problem: &Potts<'_>, iterations: usize) -> f64 {
         });
     let mut messages: [Vec<Vec<f64>>; 2] = [0; 2].map(|_| vec![vec![0.0; labels]; pixels]);
     let share = |p: usize| {
-        let [back, ahead] = [[p % width > 0, p >= width], [p % width + 1 < width, p + width < pixels]];
+        let x = p % width;
+        let [back, ahead] = [[x > 0, p >= width], [x + 1 < width, p + width < pixels]];
         let chains = [back, ahead].map(|edges| edges.into_iter().filter(|edge| *edge).count());
         1.0 / chains[0].max(chains[1]).max(1) as f64
     };
@@ -119,14 +120,12 @@ fn bound(problem: &Potts<'_>, iterations: usize) -> f64 {
         let mut sum = 0.0;
         for k in 0..pixels {
             let p = if forward { k } else { pixels - 1 - k };
-            let behind = [(0, p % width > 0, 1), (1, p >= width, width)];
+            let x = p % width;
+            let behind = [(0, x > 0, 1), (1, p >= width, width)];
             let before: Vec<(usize, usize)> =
                 behind.iter().filter(|b| b.1).map(|&(d, _, step)| (d, p - step)).collect();
-            let after: Vec<(usize, usize)> = [(0, p % width + 1 < width), (1, p + width < pixels)]
-                .iter()
-                .filter(|a| a.1)
-                .map(|a| (a.0, p))
-                .collect();
+            let after: Vec<(usize, usize)> =
+                [(0, x + 1 < width), (1, p + width < pixels)].iter().filter(|a| a.1).map(|a| (a.0, p)).collect();
             let mut total: Vec<f64> = (0..labels).map(|l| f64::from(problem.cost(l, p))).collect();
             for &(d, q) in before.iter().chain(&after) {
                 (0..labels).for_each(|l| total[l] += messages[d][q][l]);
