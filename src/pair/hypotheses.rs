@@ -7,7 +7,7 @@
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
 use super::labels::{LabelledPair, label, label_on};
-use super::motions::{add_detail, follow, refine, select};
+use super::motions::{add_detail, follow, motions_of, refine, select};
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
@@ -87,10 +87,6 @@ pub(super) fn carry_on(
     let labelled = LabelledPair { rejected, ..label_on(pair, motions, &labels, false, settings) };
     observer.carried_on(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
-}
-
-fn motions_of(selected: &[ScoredMotion]) -> Vec<AffineMotion> {
-    selected.iter().map(|one| one.motion).collect()
 }
 
 /// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans

@@ -99,7 +99,7 @@ pub(super) fn label_on(
     let mut energy = LabelEnergy::new(&pair, motions, settings);
     energy.labels = thinned(expected, pair.finest().width(), 1 << pair.draft);
     if counts(&energy.labels, energy.motions.len()).last() == Some(&0) {
-        // Some motion is not expected anywhere.
+        // The last motion is not expected anywhere, as where it was added.
         energy.solve();
     }
     energy.prune();

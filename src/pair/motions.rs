@@ -41,7 +41,7 @@ impl Settings {
     fn complete(&self, pair: &Pair, selected: &mut Vec<ScoredMotion>) {
         if self.completes {
             let level = pair.finest();
-            *selected = selected.iter().map(|one| ScoredMotion::new(level, one.motion)).collect();
+            *selected = scored_on(level, &motions_of(selected));
             refit(level, selected, 1, self.refinement);
         }
     }
@@ -89,7 +89,7 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
     let mut rejected = None;
     for level in pair.levels[..pair.selection].iter().rev() {
         let level = &level.thinned();
-        *selected = selected.iter().map(|one| ScoredMotion::new(level, one.motion)).collect();
+        *selected = scored_on(level, &motions_of(selected));
         rejected = add_fine(level, selected, settings).or(rejected);
     }
     if pair.selection > 0 {
@@ -112,8 +112,13 @@ pub(super) fn add_detail(pair: &Pair, motions: &mut Vec<AffineMotion>, settings:
     let level = &pair.finest().thinned();
     let mut selected = scored_on(level, motions);
     let rejected = add_fine(level, &mut selected, settings);
-    *motions = selected.iter().map(|one| one.motion).collect();
+    *motions = motions_of(&selected);
     rejected
+}
+
+/// The motions alone.
+pub(super) fn motions_of(selected: &[ScoredMotion]) -> Vec<AffineMotion> {
+    selected.iter().map(|one| one.motion).collect()
 }
 
 /// Motions with their costs on a level.
@@ -146,14 +151,14 @@ pub(super) fn follow(
         selected.push(ScoredMotion::new(level, motion));
     }
     settings.refit(level, &mut selected);
-    let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
+    let all = motions_of(&selected);
     settings.prune(level, &mut selected);
     let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
     let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
     labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
     let cost = smallest_cost(&selected).total();
     settings.complete(pair, &mut selected);
-    (selected.iter().map(|one| one.motion).collect(), cost)
+    (motions_of(&selected), cost)
 }
 
 /// Adds motions from single windows, at most `most`, that pay for themselves beside these. The first is the dominant one.
