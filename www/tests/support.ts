@@ -268,7 +268,8 @@ async function phase(page: Page, selector: string, name: string): Promise<void> 
     [selector, name, PATIENCE] as const,
   );
   await reached.catch(() => undefined); // another page has taken its place
-  await expect(page.locator(selector)).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
+  const notice = await page.locator('#notice').innerText().catch(() => '');
+  await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
 }
 
 /** Whether the page can be left without a question: nothing is still to be written. */

@@ -8,8 +8,8 @@ import { type Clip, type Picture, fileNameOf, identityOf } from './clip.js';
 
 /** A `<video>` element does not tell its frame rate: this one is assumed. */
 const STEPS_PER_SECOND = 30;
-/** Timeout of a seek, milliseconds. */
-const PATIENCE = 10_000;
+/** Timeout of opening and of a seek, milliseconds. */
+const PATIENCE = 60_000;
 
 /** `null` if the browser cannot play the file. */
 export async function openApproximate(file: File, fingerprint: string): Promise<Clip | null> {
