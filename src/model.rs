@@ -242,6 +242,17 @@ model! {
     /// A larger share of that outline on the frame's border says no more. Real.
     joint_enough: f64 = 0.02;
 
+    /// Weight of how central a figure is. Fit to real pairs and generated scenes.
+    figure_centre: f64 = 17.7;
+    /// Weight of how far its flow is from that of a plane. Fit.
+    figure_plane: f64 = 2.75;
+    /// Weight of its share of the jumps of the flow. Fit.
+    figure_jump: f64 = 7.45;
+    /// Weight of its share of what motions explain better. Fit.
+    figure_gain: f64 = 3.6;
+    /// Weight of its share of what is not in the largest group. Fit.
+    figure_kept: f64 = 9.1;
+
     /// Share by which the costs of followed motions may rise without a look at others. Real clips.
     follow_tolerance: f64 = 0.02;
     /// The same since the last search, where none is found missing. Real clips.

@@ -4,7 +4,7 @@
 //! 2. [`dominant`]: the dominant motion, which is that of the background, and the change of brightness;
 //! 3. [`hypotheses`]: the background moves as the dominant motion says, or is at rest, each with the [`motions`] of its objects;
 //! 4. [`labels`]: the motion of every working pixel;
-//! 5. [`groups`]: motions that are parts of one thing;
+//! 5. [`groups`]: motions that are parts of one thing, and [`figure`]: which of them are the ground;
 //! 6. [`report`]: masks at full size, and what is known of them.
 //!
 //! [`frame_motions`] is the path of the pairs of clips, [`settings`] depend on options and size, and an [`observer`] may look on.
@@ -12,11 +12,13 @@
 pub(crate) mod dominant;
 pub(crate) mod frame_motions;
 pub(crate) mod frames;
+pub(crate) mod figure;
 mod groups;
 mod hypotheses;
 pub(crate) mod labels;
 mod motions;
 pub(crate) mod observer;
+mod planar_flow;
 pub(crate) mod report;
 pub(crate) mod settings;
 

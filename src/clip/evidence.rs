@@ -6,9 +6,8 @@ use super::saved::saved;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
-use crate::labelling::regions::description::counts;
 use crate::motion::AffineMotion;
-use crate::order::descending;
+use crate::pair::figure::GROUND;
 use crate::pair::frame_motions::{FrameMotions, Prior};
 
 /// Odds are multiples of this many nats, so that they take little room when they are kept.
@@ -170,16 +169,13 @@ impl KeptPairs {
     }
 }
 
-/// Log-odds of object against background at every working pixel, nats. The largest group is the background.
+/// Log-odds of object against background at every working pixel, nats.
 pub(crate) fn odds(found: &FrameMotions) -> Plane {
-    let FrameMotions { labels, probabilities, groups, .. } = found;
-    let sizes = counts(labels, groups.len());
-    let total = |group: usize| (0..groups.len()).filter(|&k| groups[k] == group).map(|k| sizes[k]).sum::<usize>();
-    let largest = groups[descending((0..groups.len()).map(|k| total(groups[k]) as f64))[0]];
+    let FrameMotions { probabilities, groups, .. } = found;
     let (width, height) = (probabilities[0].width(), probabilities[0].height());
     let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().doubt));
     for (probability, group) in probabilities.iter().zip(groups) {
-        let sum = if *group == largest { &mut ground } else { &mut odds };
+        let sum = if *group == GROUND { &mut ground } else { &mut odds };
         sum.values_mut().iter_mut().zip(probability.values()).for_each(|(s, p)| *s += p);
     }
     for (odds, ground) in odds.values_mut().iter_mut().zip(ground.values()) {

@@ -3,10 +3,9 @@
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
-use super::groups::Regions;
 use super::labels::{LabelledPair, label_on, return_shadows};
 use super::settings::Settings;
-use super::{hypotheses, motions};
+use super::{figure, hypotheses, motions};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
@@ -23,7 +22,7 @@ pub(crate) struct FrameMotions {
     pub(crate) labels: Vec<u8>,
     /// The probability, 0…1, of every motion at every working pixel.
     pub(crate) probabilities: Vec<Plane>,
-    /// The group of every motion, named by its smallest label: motions of one rigid background share one.
+    /// The group of every motion; that of the ground is [`GROUND`](super::figure::GROUND).
     pub(crate) groups: Vec<usize>,
     /// Expected of the next pair by a fast stream.
     prior: Option<Prior>,
@@ -117,7 +116,7 @@ pub(crate) fn frame_motions(
         }
     }
     let probabilities = probabilities(&costs, &labels, model);
-    let groups = Regions::new(&motions, &labels, level.width(), model).groups();
+    let groups = figure::groups(&motions, &labels, level);
     let [enough, searched] = limits;
     let prior = settings.follows.then(|| Prior { motions: motions.clone(), enough, searched });
     FrameMotions { motions, labels, probabilities, groups, prior, unexplained }

@@ -75,6 +75,19 @@ impl<'a> Regions<'a> {
         self.jumps[pair(self.regions.len(), i, j)].len()
     }
 
+    /// The median jump of the flow across the border of two regions, times its length; pixels of the labels.
+    pub(super) fn total_jump(&mut self, [i, j]: [usize; 2]) -> f64 {
+        let n = self.regions.len();
+        let along = &mut self.jumps[pair(n, i, j)];
+        along.len() as f64 * median_f64(along).unwrap_or(0.0)
+    }
+
+    /// Share of the border of the frame of every region.
+    pub(super) fn shares_of_frame(&self) -> Vec<f64> {
+        let all: usize = self.regions.iter().map(|region| region.outer).sum();
+        self.regions.iter().map(|region| region.outer as f64 / all as f64).collect()
+    }
+
     /// Probability, 0…1, that two regions are parts of one thing; none where their border is too short to tell.
     pub(crate) fn likelihood(&mut self, [i, j]: [usize; 2]) -> Option<f64> {
         let n = self.regions.len();

@@ -12,6 +12,7 @@ mod unknown;
 pub use junctions::Junction;
 pub(crate) use statistics::describe;
 
+use super::figure;
 use super::groups::Regions;
 use super::labels::LabelledPair;
 use super::settings::Settings;
@@ -74,7 +75,7 @@ pub struct SegmentedMotion {
     pub residual: f64,
     /// Bounding box of its pixels: x, y, width, height.
     pub bbox: [usize; 4],
-    /// Group: motions of one rigid background share a number; numbered like labels, 0 is the largest group.
+    /// Group: motions that are parts of one thing share a number; 0 is the ground, the others are numbered like labels.
     pub group: u8,
 }
 
@@ -111,8 +112,8 @@ pub(super) fn report(
     let unknown = options.mark_unknown.then(|| unknown::unknown(&labelled, &sure));
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
-    let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);
-    let group_of = regions.groups();
+    let junctions = junctions::junctions(regions, pair.reduction, &order);
+    let group_of = figure::groups(&labelled.motions, &labelled.labels, level);
     let groups: Vec<usize> = order.iter().map(|&k| group_of[k]).collect();
     let mut confidence = options.confidence.then(|| {
         doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);

@@ -1,4 +1,4 @@
-//! The confidence that what moves in another way than the background, the largest group, is an object.
+//! The confidence that what moves in another way than the ground is an object.
 //!
 //! That a motion is right does not make its pixels an object: in real scenes, parts of the background at another depth move otherwise too.
 //!
@@ -13,8 +13,8 @@
 //! measurement on others.
 
 use crate::frame::Plane;
-use crate::labelling::regions::description::counts;
 use crate::model::Model;
+use crate::pair::figure::GROUND;
 use crate::pair::groups::shares_on_frame;
 
 /// Smallest and largest P that are told apart. A safeguard.
@@ -31,9 +31,8 @@ pub(super) fn doubt_objects(
     let Some(width) = probabilities.first().map(Plane::width) else { return };
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
-    let largest = largest(groups, labels);
     let on_border = shares_on_frame(labels, groups.len(), width);
-    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
+    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != GROUND) {
         let constant =
             model.doubt_constant - model.doubt_frame_border * libm::sqrt(on_border[k]) - model.doubt_misfit * misfit;
         for p in plane.values_mut() {
@@ -42,13 +41,6 @@ pub(super) fn doubt_objects(
             *p = 1.0 / (1.0 + libm::expf(-log_odds as f32));
         }
     }
-}
-
-/// The group with most pixels, which a report calls the background; the first of equals.
-fn largest(groups: &[usize], labels: &[u8]) -> usize {
-    let mut sizes = vec![0usize; groups.len()];
-    counts(labels, groups.len()).iter().zip(groups).for_each(|(count, &group)| sizes[group] += count);
-    (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -65,13 +57,6 @@ mod tests {
         let mut probabilities = [plane(0.9), plane(0.9)];
         doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups, &Model::DEFAULT);
         probabilities.map(|plane| plane.at(5, 3))
-    }
-
-    #[test]
-    fn the_background_is_the_largest_group() {
-        assert_eq!(largest(&[0, 1], &square(4)), 0);
-        assert_eq!(largest(&[0, 1], &[1; 96]), 1);
-        assert_eq!(largest(&[0, 1, 1], &[0, 0, 0, 1, 1, 2, 2]), 1);
     }
 
     #[test]

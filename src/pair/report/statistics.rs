@@ -6,6 +6,7 @@ use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::lanes::{each_with, lane_sum};
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::pair::figure::GROUND;
 
 /// Pixels, residuals, boxes and group numbers of the motions.
 pub(crate) fn describe(
@@ -83,10 +84,10 @@ fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plan
     tallies
 }
 
-/// Groups numbered by decreasing number of pixels.
+/// Groups numbered by decreasing number of pixels, after that of the ground.
 fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
-    let mut totals: Vec<(usize, usize)> = Vec::new();
-    for (&group, &size) in grouping.iter().zip(sizes) {
+    let mut totals: Vec<(usize, usize)> = vec![(GROUND, usize::MAX)];
+    for (&group, &size) in grouping.iter().zip(sizes).filter(|(group, _)| **group != GROUND) {
         match totals.iter_mut().find(|t| t.0 == group) {
             Some(t) => t.1 += size,
             None => totals.push((group, size)),
