@@ -10,9 +10,9 @@
 //! [`frame_motions`] is the path of the pairs of clips, [`settings`] depend on options and size, and an [`observer`] may look on.
 
 pub(crate) mod dominant;
+pub(crate) mod figure;
 pub(crate) mod frame_motions;
 pub(crate) mod frames;
-pub(crate) mod figure;
 mod groups;
 mod hypotheses;
 pub(crate) mod labels;

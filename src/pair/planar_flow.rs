@@ -26,8 +26,8 @@ const TEXTURE: f32 = 3.0;
 const FEWEST: usize = 5;
 /// Distance at which the weight of a point has fallen to a quarter, pixels …
 const NEAR: f64 = 0.7;
-/// … and how often it is doubled in the first round; it is halved from round to round.
-const DOUBLINGS: usize = 4;
+/// … and in the first round; it is halved from round to round.
+const NEAR_AT_FIRST: f64 = 11.2;
 /// Rounds of the fit.
 const ROUNDS: usize = 8;
 
@@ -67,7 +67,7 @@ fn points(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Point> 
 fn fitted(points: &[Point]) -> Vec<f64> {
     let mut plane = vec![0.0; ENTRIES];
     for round in 0..ROUNDS {
-        let near = NEAR * f64::from(1u32 << DOUBLINGS.saturating_sub(round));
+        let near = (NEAR_AT_FIRST / f64::from(1u32 << round)).max(NEAR);
         let (mut gram, mut right) = (vec![0.0; ENTRIES * ENTRIES], vec![0.0; ENTRIES]);
         for point in points {
             let ratio = if round == 0 { 0.0 } else { distance(&plane, point) / near };
