@@ -19,12 +19,13 @@
 use std::io::Cursor;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel, Rgba, RgbaImage};
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE};
 
 mod header;
+mod jpeg;
 
 /// Maximum allocation of a decoder in bytes: three times the largest frame in 16-bit RGBA.
 const MAX_ALLOCATION: usize = 3 * 8 * MAX_SIDE * MAX_SIDE;
@@ -38,6 +39,18 @@ pub struct Picture {
     pub height: usize,
     /// Width × height × 4 bytes: red, green, blue, alpha.
     pub rgba: Vec<u8>,
+    /// Of a file with samples of 16 bits: the smallest and the largest one, alpha aside.
+    pub range: Option<(u16, u16)>,
+}
+
+/// How a file is decoded where the usual way does not fit it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Decoding {
+    /// Takes a JPEG file as far as it goes: the missing part of its scan is grey. Otherwise such a file is unreadable.
+    pub allow_damaged: bool,
+    /// Of samples of 16 bits: those that become 0 and 255. Otherwise 0 and 65535, of which cameras and scanners may use a small part.
+    pub range: Option<(u16, u16)>,
 }
 
 impl Picture {
@@ -67,6 +80,26 @@ impl Picture {
 /// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096 in the header; [`Error::UnreadableImage`] for another format, and for
 /// damaged or truncated data.
 pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
+    decode_image_with(bytes, &Decoding::default())
+}
+
+/// Decodes an image as [`decode_image`] does, in a stated way.
+///
+/// ```
+/// use veronese::codecs::{Decoding, decode_image_with};
+///
+/// let file = b"P5 2 1 65535 \x00\x10\x00\x20"; // PNM, 16 bits: 16 and 32
+/// let dark = decode_image_with(file, &Decoding::default())?;
+/// assert_eq!((dark.rgba[0], dark.rgba[4], dark.range), (0, 0, Some((16, 32))));
+/// let mut decoding = Decoding::default();
+/// decoding.range = dark.range;
+/// assert_eq!(decode_image_with(file, &decoding)?.rgba, [0, 0, 0, 255, 255, 255, 255, 255]);
+/// # Ok::<(), veronese::Error>(())
+/// ```
+///
+/// # Errors
+/// As of [`decode_image`].
+pub fn decode_image_with(bytes: &[u8], decoding: &Decoding) -> Result<Picture> {
     if bytes.is_empty() {
         return Err(unreadable("it is empty"));
     }
@@ -75,14 +108,48 @@ pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
         .filter(|format| *format == ImageFormat::Png || format.reading_enabled())
         .ok_or_else(|| unreadable("it is neither PNG, JPEG, WebP, BMP nor PNM"))?;
     header::check(format, bytes)?;
-    if format == ImageFormat::Jpeg && !jpeg_ends(bytes) {
-        return Err(unreadable("it is a JPEG file without its end"));
-    }
-    let (mut image, orientation) =
-        if format == ImageFormat::Png { png_image(bytes) } else { other_image(bytes, format) }?;
+    let (mut image, orientation) = match format {
+        ImageFormat::Png => png_image(bytes),
+        ImageFormat::Jpeg => other_image(jpeg::image(bytes, decoding.allow_damaged)?, format),
+        _ => other_image(bytes, format),
+    }?;
     image.apply_orientation(orientation);
-    let rgba = image.into_rgba8();
-    Ok(Picture { width: rgba.width() as usize, height: rgba.height() as usize, rgba: rgba.into_raw() })
+    let range = range_of(&image);
+    let rgba = match (range, decoding.range) {
+        (Some(_), Some(stretched)) => stretch(image.into_rgba16(), stretched),
+        _ => image.into_rgba8(),
+    };
+    Ok(Picture { width: rgba.width() as usize, height: rgba.height() as usize, rgba: rgba.into_raw(), range })
+}
+
+/// The smallest and the largest sample of 16 bits, if that is what they have, alpha aside.
+fn range_of(image: &DynamicImage) -> Option<(u16, u16)> {
+    fn of<P: Pixel<Subpixel = u16>>(image: &ImageBuffer<P, Vec<u16>>) -> (u16, u16) {
+        let colours = usize::from(P::CHANNEL_COUNT) - usize::from(P::HAS_ALPHA);
+        let samples = image.pixels().flat_map(|pixel| &pixel.channels()[..colours]);
+        samples.fold((u16::MAX, 0), |(low, high), &sample| (low.min(sample), high.max(sample)))
+    }
+    match image {
+        DynamicImage::ImageLuma16(image) => Some(of(image)),
+        DynamicImage::ImageLumaA16(image) => Some(of(image)),
+        DynamicImage::ImageRgb16(image) => Some(of(image)),
+        DynamicImage::ImageRgba16(image) => Some(of(image)),
+        _ => None,
+    }
+}
+
+/// Samples of 16 bits as bytes, `low` as 0 and `high` as 255, what is beyond them too. Alpha keeps its range.
+fn stretch(image: ImageBuffer<Rgba<u16>, Vec<u16>>, (low, high): (u16, u16)) -> RgbaImage {
+    let span = u32::from(high.saturating_sub(low)).max(1);
+    let byte = |sample: u16, low: u16, span: u32| {
+        ((u32::from(sample.saturating_sub(low)).min(span) * 255 + span / 2) / span) as u8
+    };
+    let (width, height) = image.dimensions();
+    RgbaImage::from_fn(width, height, |x, y| {
+        let Rgba([red, green, blue, alpha]) = *image.get_pixel(x, y);
+        let colour = |sample| byte(sample, low, span);
+        Rgba([colour(red), colour(green), colour(blue), byte(alpha, 0, u32::from(u16::MAX))])
+    })
 }
 
 /// Decodes PNG with the crate `png` directly. The crate `image` unpacks the colour profile when it opens a file, which is not needed and
@@ -128,18 +195,6 @@ fn other_image(bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orien
     header::supported((width as usize, height as usize))?;
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     Ok((DynamicImage::from_decoder(decoder).map_err(unreadable)?, orientation))
-}
-
-/// Whether the marker "end of image" follows the last start of a scan. The decoder fills the rest of a truncated file with grey, which
-/// would be segmented as if it were image content.
-fn jpeg_ends(bytes: &[u8]) -> bool {
-    const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
-    const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
-    let last = |marker: [u8; 2]| bytes.windows(2).rposition(|pair| pair == marker);
-    match (last(START_OF_SCAN), last(END_OF_IMAGE)) {
-        (Some(scan), Some(end)) => scan < end,
-        _ => false,
-    }
 }
 
 fn unreadable(reason: impl std::fmt::Display) -> Error {

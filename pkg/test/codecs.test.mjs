@@ -38,6 +38,31 @@ describe('decodeImage', () => {
     assert.ok(error < 5, `mean difference ${error}`);
   });
 
+  test('reads a JPEG to its own end, and of a damaged one what is allowed', async () => {
+    const plain = await decodeImage(ramp.jpeg);
+    for (const tail of [[0xff, 0xd9, 0xff, 0xda], [0xff, 0xd8, 0xff, 0xda, 0xff, 0xd9], [0xff], [...ramp.jpeg]]) {
+      assert.deepEqual(await decodeImage(Uint8Array.from([...ramp.jpeg, ...tail])), plain);
+    }
+    // The scan lost its second half, and the file has its end.
+    const scan = ramp.jpeg.findLastIndex((byte, at) => byte === 0xda && ramp.jpeg[at - 1] === 0xff);
+    const cut = Uint8Array.from([...ramp.jpeg.subarray(0, scan + Math.floor((ramp.jpeg.length - scan) / 2)), 0xff, 0xd9]);
+    assert.match((await failure(decodeImage(cut))).message, /JPEG file of which a part is missing or damaged/);
+    const { width, height } = await decodeImage(cut, { allowDamaged: true });
+    assert.deepEqual([width, height], [24, 20]);
+    for (const options of [3, { allowDamaged: 1 }, { range: [1] }, { range: [0, 65_536] }, { damaged: true }]) {
+      assert.equal((await failure(decodeImage(cut, options))).code, 'invalid-option');
+    }
+  });
+
+  test('takes samples of 16 bits in the range that is asked for', async () => {
+    const file = encode({ width: 3, height: 1, channels: 1, depth: 16, data: Uint16Array.of(1000, 1510, 1255) });
+    const dark = await decodeImage(file);
+    assert.deepEqual(dark.range, [1000, 1510]);
+    const { data } = await decodeImage(file, { range: dark.range });
+    assert.deepEqual([data[0], data[4], data[8], data[3]], [0, 255, 128, 255]);
+    assert.equal((await decodeImage(png(frame(0)))).range, undefined);
+  });
+
   test('applies an Exif orientation', async () => {
     const plain = await decodeImage(ramp.jpeg);
     const turned = await decodeImage(turnedJpeg());
@@ -100,8 +125,9 @@ describe('a file costs the memory of its pixels, whatever else it claims or carr
   const header = plain.subarray(0, 33);
   /** The picture with one more chunk after its header. */
   const carrying = (kind, ...content) => Buffer.concat([header, chunk(kind, Buffer.concat(content)), plain.subarray(33)]);
-  const fails = (code) => (file) => assert.throws(() => glue.decodeImage(file), { code });
-  const decodes = (file) => assert.deepEqual(glue.decodeImage(file), glue.decodeImage(plain));
+  const decoded = (file) => glue.decodeImage(file, false, new Uint16Array());
+  const fails = (code) => (file) => assert.throws(() => decoded(file), { code });
+  const decodes = (file) => assert.deepEqual(decoded(file), decoded(plain));
   const cases = {
     'a colour profile of 512 MB': [carrying('iCCP', keyword, Buffer.of(0), zeros), decodes],
     'a compressed text': [carrying('zTXt', keyword, Buffer.of(0), zeros), decodes],

@@ -6,14 +6,23 @@ export interface Picture {
   data: Uint8Array;
   width: number;
   height: number;
+  /** Of a file with samples of 16 bits: the smallest and the largest one, alpha aside. */
+  range?: [number, number];
+}
+
+export interface DecodeOptions {
+  /** Takes a JPEG file of which a part is missing or damaged as far as it goes; the rest is grey. Default: false, it is `unreadable-image`. */
+  allowDamaged?: boolean;
+  /** Of samples of 16 bits: those that become 0 and 255. Default: `[0, 65535]`, of which cameras may use a small part. */
+  range?: readonly [number, number];
 }
 
 /**
- * Decodes a PNG, JPEG, WebP, BMP or PNM file; an Exif orientation is applied.
+ * Decodes a PNG, JPEG, WebP, BMP or PNM file; an Exif orientation is applied. What is appended to a JPEG file is not read.
  *
  * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side of 0 or above 4096 pixels.
  */
-export function decodeImage(file: Uint8Array): Promise<Picture>;
+export function decodeImage(file: Uint8Array, options?: DecodeOptions): Promise<Picture>;
 
 /** An 8-bit indexed PNG: one palette index per pixel. Rejects with code `invalid-option`. */
 export function encodeIndexedPng(

@@ -1,22 +1,29 @@
 //! Calls on image files, in the module with codecs only.
 
-use js_sys::{Object, Reflect, Uint8Array};
+use js_sys::{Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 use crate::Failure;
-use veronese::codecs;
+use veronese::codecs::{self, Decoding};
 
-/// Decodes a PNG, JPEG, WebP, BMP or PNM file to `{ data: Uint8Array, width, height }`, RGBA.
+/// Decodes a PNG, JPEG, WebP, BMP or PNM file to `{ data: Uint8Array, width, height }`, RGBA; with `range`, `[smallest, largest]`, if its samples
+/// have 16 bits. `allow_damaged` takes a JPEG file as far as it goes; `range` holds the samples of 16 bits that become 0 and 255, if any.
 ///
 /// # Errors
 /// A `VeroneseError` of code `unreadable-image` or `frame-size-unsupported`.
 #[wasm_bindgen(js_name = decodeImage)]
-pub fn decode_image(bytes: &[u8]) -> Result<JsValue, JsValue> {
-    let picture = codecs::decode_image(bytes).map_err(Failure::from)?;
+pub fn decode_image(bytes: &[u8], allow_damaged: bool, range: &[u16]) -> Result<JsValue, JsValue> {
+    let mut decoding = Decoding::default();
+    decoding.allow_damaged = allow_damaged;
+    decoding.range = if let [low, high] = *range { Some((low, high)) } else { None };
+    let picture = codecs::decode_image_with(bytes, &decoding).map_err(Failure::from)?;
     let pixels = Object::new();
     Reflect::set(&pixels, &"data".into(), &Uint8Array::from(&picture.rgba[..]))?;
     Reflect::set(&pixels, &"width".into(), &(picture.width as u32).into())?;
     Reflect::set(&pixels, &"height".into(), &(picture.height as u32).into())?;
+    if let Some((low, high)) = picture.range {
+        Reflect::set(&pixels, &"range".into(), &Array::of2(&low.into(), &high.into()))?;
+    }
     Ok(pixels.into())
 }
 

@@ -30,6 +30,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write labels.png, result.json and mask-K.png to DIR
       --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
       --overlay              also write overlay.png: the first frame with each motion in its colour
+      --allow-damaged        take a JPEG file of which a part is missing as it is, with a note; otherwise that is an error
       --force                overwrite files in DIR that are not of this program; without it they are an error
 
   veronese batch FRAMES... [options]     segment every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
@@ -38,7 +39,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
       --jobs N               number of pairs processed at once (default: the number of processors)
       --shard I/N            process only part I of N, to share the pairs between N machines
-      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay, --force as for pair
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay, --allow-damaged, --force as for pair
 
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
@@ -52,7 +53,8 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --quality fast|best    speed or accuracy (default: best)
       --look-ahead N         let each frame wait for N others, 0 to 8 (default: the whole clip)
       --masks DIR            masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background,
-                             255: nothing said), and DIR/edits.json
+                             255: nothing said; alone it is the object), a colour for each object on black, or what is not transparent;
+                             DIR/3/NAME.png for object 3 alone; and DIR/edits.json
       --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
                              and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
                              "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
@@ -60,7 +62,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --jobs N               number of frames compared at once (default: one less than the number of processors); the files are the same
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
-      --allow-damaged        as for video
+      --allow-damaged        as for pair and video
       --force                as for pair
 
   veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
@@ -136,7 +138,7 @@ const OPTIONS = {
   force: { type: 'boolean', default: false },
 } as const;
 
-const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'force'];
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'allow-damaged', 'force'];
 const OF_SEQUENCES = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 const OF_CLIPS = ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'];
 const OF_CONVERT = ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'];
@@ -145,7 +147,7 @@ const OF_CONVERT = ['to', 'tolerance', 'grouped', 'image', 'background', 'from',
 const COMMANDS = {
   pair: { options: OF_PAIRS, read: pair },
   batch: { options: ['list', ...OF_SEQUENCES], read: batch },
-  video: { options: ['allow-damaged', ...OF_SEQUENCES], read: video },
+  video: { options: OF_SEQUENCES, read: video },
   clip: { options: OF_CLIPS, read: clip },
   convert: { options: OF_CONVERT, read: convert },
   points: { options: ['motions', 'method', 'seed'], read: points },
@@ -240,7 +242,7 @@ function batch(values: Values, frames: string[]) {
 function video(values: Values, files: string[]) {
   const settings = ofSequences(values);
   const [file] = exactly(1, files, "'video' takes one file") as [string];
-  return { name: 'video' as const, file, allowDamaged: values['allow-damaged'], ...settings };
+  return { name: 'video' as const, file, ...settings };
 }
 
 function ofPairs(values: Values) {
@@ -249,7 +251,7 @@ function ofPairs(values: Values) {
     if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
   const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], confidence };
-  return { options, grouped, overlay, out, force };
+  return { options, grouped, overlay, allowDamaged: values['allow-damaged'], out, force };
 }
 
 /** The part of all pairs to process is counted from 0. */

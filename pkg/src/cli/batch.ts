@@ -7,9 +7,9 @@ import type { SequenceCommand } from './arguments.js';
 import { findFrames, type Frame, readList } from './frames.js';
 import type { Io } from './io.js';
 import { Output } from './output.js';
-import { jsonLine } from './pair.js';
+import { jsonLine, type Report } from './pair.js';
 import { checkPairs, writePair } from './store.js';
-import { complain, print, ProgressBar, type Tally } from './terminal.js';
+import { complain, note, print, ProgressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
 import { videoFrames } from './video.js';
 import type { PairTask, TaskResult } from './work.js';
@@ -50,6 +50,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
       const line = { index: pair.index, name: pair.name, first, second };
       if ('result' in outcome) {
         const { done, report } = outcome.result;
+        for (const { message } of (report as Report).notes ?? []) note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
         tally[done ? 'done' : 'skipped'] += 1;
         await print(io, jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
       } else {
@@ -75,9 +76,9 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
 
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
 async function perform(pair: Pair, command: SequenceCommand, out: Output | undefined): Promise<Outcome> {
-  const { options, grouped, overlay, jobs, force } = command;
+  const { options, grouped, overlay, allowDamaged, jobs, force } = command;
   try {
-    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, withImages: out !== undefined };
+    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay, allowDamaged }, withImages: out !== undefined };
     const result = await threads(jobs).run({ ...task, ...(out && { folder: join(out.folder, pair.name) }) });
     if (out && result.done) await writePair(out, pair.name, result.files, force);
     return { pair, result: { ...result, files: [] } };

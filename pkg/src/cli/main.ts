@@ -7,8 +7,8 @@ import { batch } from './batch.js';
 import type { Io } from './io.js';
 import { idsOf, Output } from './output.js';
 import { isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
-import { jsonLine } from './pair.js';
-import { complain, print } from './terminal.js';
+import { jsonLine, type Report } from './pair.js';
+import { complain, note, print } from './terminal.js';
 import { threads } from './threads.js';
 
 const EXIT = { done: 0, failed: 1, usage: 2 } as const;
@@ -39,16 +39,17 @@ async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, 
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') return (await import('./convert.js')).convert(command, outputIn(command.out ?? command.folder, command));
-  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command));
-  if (command.name === 'pair') return pair(command, command.out === undefined ? undefined : outputIn(command.out, command));
+  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command), io);
+  if (command.name === 'pair') return pair(command, command.out === undefined ? undefined : outputIn(command.out, command), io);
   return jsonLine((await threads(1).run({ kind: 'points', file: command.file, options: command.options })).report);
 }
 
-async function pair({ first, second, ...settings }: PairCommand, output: Output | undefined): Promise<string> {
+async function pair({ first, second, ...settings }: PairCommand, output: Output | undefined, io: Io): Promise<string> {
   const inputs = [first, second];
   await output?.check(possibleFiles(settings), idsOf(inputs));
   const frames = inputs.map((name) => ({ name }));
   const { report, files } = await threads(1).run({ kind: 'pair', frames, settings, withImages: output !== undefined });
+  for (const each of (report as Report).notes ?? []) note(io, each);
   const json = jsonLine(report);
   await output?.writeAll([...files, { name: RESULT, bytes: Buffer.from(json) }], isImageOfPair);
   return json;

@@ -13,6 +13,8 @@ export interface PairSettings {
   /** Whether the images show groups instead of motions. */
   grouped: boolean;
   overlay: boolean;
+  /** Whether pictures count of which a part is missing. */
+  allowDamaged: boolean;
 }
 
 export interface InputFile {
@@ -20,7 +22,15 @@ export interface InputFile {
   bytes: Uint8Array;
 }
 
-export type Report = Omit<Segmentation, 'labels' | 'confidence'>;
+/** What was assumed of a file, or why nothing was found. */
+export interface Note {
+  /** In kebab-case. */
+  code: string;
+  /** A sentence. */
+  message: string;
+}
+
+export type Report = Omit<Segmentation, 'labels' | 'confidence'> & { notes?: Note[] };
 
 /** Segments first and second; `withImages` also makes the image files. */
 export async function segmentFiles(
@@ -28,11 +38,11 @@ export async function segmentFiles(
   settings: PairSettings,
   withImages: boolean,
 ): Promise<{ report: Report; images: OutputFile[] }> {
-  const pictures: Picture[] = [];
-  for (const input of inputs) pictures.push(await decoded(input));
+  const { pictures, notes } = await decodedAlike(inputs, settings.allowDamaged);
   const [first, second] = pictures as [Picture, Picture];
   const segmentation = await api.segmentPair(first, second, settings.options);
-  const { labels: _, confidence: __, ...report } = segmentation;
+  const { labels: _, confidence: __, ...rest } = segmentation;
+  const report = { ...rest, ...(notes.length > 0 && { notes }) };
   return { report, images: withImages ? await images(settings, segmentation, first) : [] };
 }
 
@@ -54,13 +64,60 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
   return files;
 }
 
+/** The pictures in files, with samples of 16 bits on one scale. */
+async function decodedAlike(inputs: readonly InputFile[], allowDamaged: boolean): Promise<{ pictures: Picture[]; notes: Note[] }> {
+  const notes: Note[] = [];
+  const read = async (range?: Range) => {
+    const pictures: Picture[] = [];
+    notes.length = 0;
+    for (const input of inputs) pictures.push(await decoded(input, { allowDamaged, range, onNote: (note) => notes.push(note) }));
+    return pictures;
+  };
+  const pictures = await read();
+  const range = narrowRange(pictures.map((picture) => picture.range));
+  if (!range) return { pictures, notes };
+  const stretched = await read(range);
+  return { pictures: stretched, notes: [...notes, rangeNote(range)] };
+}
+
+export type Range = readonly [number, number];
+
+/** Samples of 16 bits are stretched where they fill less than this share of their range. */
+const NARROW = 0.25;
+
+/** The range of samples of 16 bits in all of some pictures, where it is a small part of what there is. */
+export function narrowRange(ranges: readonly (Range | undefined)[]): Range | undefined {
+  const all = ranges.filter((range) => range !== undefined);
+  if (all.length === 0 || all.length < ranges.length) return undefined;
+  const [low, high] = [Math.min(...all.map(([low]) => low)), Math.max(...all.map(([, high]) => high))];
+  return high > low && high - low < NARROW * 65_536 ? [low, high] : undefined;
+}
+
+export function rangeNote([low, high]: Range): Note {
+  return { code: 'range-stretched', message: `the samples of 16 bits go from ${low} to ${high} only: these are taken for black and white` };
+}
+
+export interface Decoding {
+  allowDamaged?: boolean | undefined;
+  range?: Range | undefined;
+  /** Hears what was assumed of the file. */
+  onNote?: (note: Note) => void;
+}
+
 /** The picture in a file; the error of one that is none names it. */
-export async function decoded({ name, bytes }: InputFile): Promise<Picture> {
+export async function decoded({ name, bytes }: InputFile, { allowDamaged = false, range, onNote }: Decoding = {}): Promise<Picture> {
+  const stretched = range && { range };
   try {
-    return await decodeImage(bytes);
+    return await decodeImage(bytes, stretched);
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);
-    throw new VeroneseError(code, `${name}: ${message}`);
+    const damage = new VeroneseError(code, `${name}: ${message}`);
+    if (code !== 'unreadable-image') throw damage;
+    const picture = await decodeImage(bytes, { ...stretched, allowDamaged: true }).catch(() => undefined);
+    if (!picture) throw damage;
+    if (!allowDamaged) throw new VeroneseError(code, `${damage.message}; '--allow-damaged' takes it as it is`);
+    onNote?.({ code: 'damaged-image', message: `${damage.message}; what is missing is grey` });
+    return picture;
   }
 }
 

@@ -28,6 +28,11 @@ export function warn({ stderr }: Io, sentence: string): void {
   stderr.write(`veronese: warning: ${sentence}\n`);
 }
 
+/** One line on stderr of what was assumed. */
+export function note({ stderr }: Io, { message }: { message: string }): void {
+  stderr.write(`veronese: note: ${message.replace(/\s+/g, ' ').trim()}\n`);
+}
+
 export interface Tally {
   done: number;
   skipped: number;

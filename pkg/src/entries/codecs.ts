@@ -1,9 +1,9 @@
 // Image files under Node: the WebAssembly build that has everything of the others and reads and writes files.
 
-import type { Picture } from '../../types/codecs.js';
+import type { DecodeOptions, Picture } from '../../types/codecs.js';
 import { Api } from '../calls/api.js';
 import { taken } from '../calls/taking.js';
-import { checkedBytes, invalidInput, isWhole, reading } from '../common/checks.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole, reading } from '../common/checks.js';
 import { colourBytes } from '../common/palette.js';
 import { Core } from '../module/core.js';
 import { glue } from './glue-codecs.js';
@@ -18,9 +18,18 @@ export const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs
 /** The calls of the package on this build: what decodes also segments, so the command line loads one module only. */
 export const api = new Api(core, core);
 
-export async function decodeImage(file: Uint8Array): Promise<Picture> {
+export async function decodeImage(file: Uint8Array, options?: DecodeOptions): Promise<Picture> {
   const bytes = takenBytes('the file', file);
-  return (await core.call((glue) => glue.decodeImage(bytes))) as Picture;
+  const { allowDamaged, range } = reading(() => decoding(options));
+  return (await core.call((glue) => glue.decodeImage(bytes, allowDamaged, range))) as Picture;
+}
+
+function decoding(options: unknown): { allowDamaged: boolean; range: Uint16Array } {
+  const { allowDamaged = false, range = [] } = entriesOf(options, ['allowDamaged', 'range']);
+  if (typeof allowDamaged !== 'boolean') throw invalidOption('allowDamaged', 'true or false', allowDamaged);
+  const isSample = (value: unknown): value is number => isWhole(value, 0, 65_535);
+  if (!isListOf(range, isSample) || ![0, 2].includes(range.length)) throw invalidOption('range', 'two whole numbers from 0 to 65535', range);
+  return { allowDamaged, range: Uint16Array.from(range) };
 }
 
 export async function encodeIndexedPng(
