@@ -386,12 +386,12 @@ describe('veronese video', () => {
       const chunks = [];
       for (let at = 0; at < stream.length; at += size) chunks.push(stream.subarray(at, at + size));
       const found = [];
-      for await (const picture of pixmaps(chunks)) found.push(Buffer.from(picture));
+      for await (const picture of pixmaps(chunks, 'a.mp4')) found.push(Buffer.from(picture));
       assert.deepEqual(found, pictures, String(size));
     }
-    const read = async (bytes) => { for await (const _ of pixmaps([bytes])); };
-    await assert.rejects(read(stream.subarray(0, -1)), { code: 'unreadable-video' });
-    await assert.rejects(read(Buffer.alloc(64, 'x')), { code: 'unreadable-video' });
+    const read = async (bytes) => { for await (const _ of pixmaps([bytes], 'a.mp4')); };
+    await assert.rejects(read(stream.subarray(0, -1)), { code: 'unreadable-video', message: "'a.mp4': the last frame is cut off" });
+    await assert.rejects(read(Buffer.alloc(64, 'x')), { code: 'unreadable-video', message: /^'a\.mp4': ffmpeg gave something else/ });
     await assert.rejects(read(Buffer.from('P6\n99999 10\n255\n')), { code: 'frame-size-unsupported' });
   });
 });

@@ -5,10 +5,10 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
-import { decode } from 'fast-png';
+import { decode, encode } from 'fast-png';
 import { davisPalette, segmentClip, version } from 'veronese';
 import { clip as framesOf, lines, tracksOf, tree } from './support/folders.mjs';
-import { frame, png } from './support/frames.mjs';
+import { frame, png, ramp } from './support/frames.mjs';
 import { entries, veronese } from './support/program.mjs';
 
 const COUNT = 6;
@@ -164,6 +164,45 @@ describe('veronese clip', () => {
   });
 });
 
+describe('frames as cameras write them', () => {
+  /** The frames with 16 bits of which a camera uses 12, the first 8 of them nearly all dark. */
+  const deep = (k) => {
+    const { data, width, height } = clipFrame(k);
+    const samples = Uint16Array.from({ length: width * height }, (_, p) => 300 + 4 * data[4 * p + 1]);
+    return encode({ width, height, channels: 1, depth: 16, data: samples });
+  };
+
+  test('samples of 16 bits in a small part of their range are stretched alike in all frames, and that is said', async (t) => {
+    const { frames, one, out, path } = clip(t);
+    for (let k = 0; k < COUNT; k++) writeFileSync(one(k), deep(k));
+    const { code, stderr, stdout } = await veronese(['clip', '--quality', 'fast', frames, '--out', out]);
+    assert.equal(code, 0, stderr);
+    assert.match(stderr, /^veronese: note: the samples of 16 bits go from \d+ to \d+ only: [^\n]+\n$/);
+    assert.deepEqual(lines(stdout).at(-1), { done: true, objects: 1 });
+    assert.equal(tracksOf(out).notes[0].code, 'range-stretched');
+    const pair = await veronese(['pair', one(0), one(4), '--out', path('pair')]);
+    assert.match(pair.stderr, /note: the samples of 16 bits/);
+    assert.equal(JSON.parse(pair.stdout).count, 2);
+    assert.equal(JSON.parse(readFileSync(path('pair', 'result.json'), 'utf8')).notes[0].code, 'range-stretched');
+  });
+
+  test('a JPEG of which a part is missing is an error that names it, unless that is allowed', async (t) => {
+    const { path, file } = framesOf(t, 0);
+    const scan = ramp.jpeg.findLastIndex((byte, at) => byte === 0xda && ramp.jpeg[at - 1] === 0xff);
+    const cut = Uint8Array.from([...ramp.jpeg.subarray(0, scan + 60), 0xff, 0xd9]);
+    const names = [ramp.jpeg, ramp.jpeg, cut, ramp.jpeg].map((bytes, k) => file(`f${k}.jpg`, bytes));
+    const { lines } = await fails([...names, '--out', path('out')], 'unreadable-image');
+    assert.deepEqual(lines.map(({ name }) => name), ['f0', 'f1']);
+    const clip = await veronese(['clip', ...names, '--allow-damaged', '--out', path('all')]);
+    assert.deepEqual([clip.code, clip.stderr.match(/note: .*f2\.jpg: .*; what is missing is grey\n/g)?.length], [0, 1], clip.stderr);
+    assert.equal(tracksOf(path('all')).notes[0].code, 'damaged-image');
+    const refused = await veronese(['pair', names[0], names[2]]);
+    assert.match(refused.stderr, /^veronese: error: unreadable-image: .*f2\.jpg: .*; '--allow-damaged' takes it as it is\n$/);
+    const pair = await veronese(['pair', names[0], names[2], '--allow-damaged']);
+    assert.deepEqual([pair.code, JSON.parse(pair.stdout).notes[0].code], [0, 'damaged-image']);
+  });
+});
+
 describe('veronese clip VIDEO', () => {
   const skip = spawnSync('ffmpeg', ['-version']).status !== 0 && 'the program ffmpeg is not installed';
 
@@ -181,4 +220,78 @@ describe('veronese clip VIDEO', () => {
     await fails([file, '--every', '6', '--out', path('one')], 'too-few-frames');
     assert.equal(existsSync(path('one', 'labels')), false);
   });
+
+  /** The frames as a video, written with these arguments. */
+  function video(t, name, ...args) {
+    const made = clip(t);
+    const file = made.path(name);
+    const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-framerate', '10', '-i', join(made.frames, 'f%d.png'), ...args, file]);
+    assert.equal(status, 0, String(stderr));
+    return { ...made, file };
+  }
+  const labelsAt = (out, k) => decode(readFileSync(join(out, 'labels', `0000${k}.png`)));
+
+  const KINDS = {
+    '10 bits': ['yuv420p10le', 'ffv1'],
+    '12 bits of each colour': ['gbrp12le', 'ffv1'],
+    'grey of 16 bits': ['gray16le', 'ffv1'],
+    grey: ['gray', 'ffv1'],
+    'with alpha': ['rgba', 'png'],
+    'an odd size': ['yuv444p', 'ffv1', '-vf', 'crop=63:47:0:0'],
+  };
+  for (const [kind, [format, codec, ...more]] of Object.entries(KINDS)) {
+    test(`reads ${kind}`, { skip }, async (t) => {
+      const { file, out, frames, path } = video(t, 'a.mkv', ...more, '-c:v', codec, '-pix_fmt', format);
+      const { lines } = await run([file, '--out', out]);
+      await run([frames, '--out', path('straight')]);
+      const [found, straight] = [labelsAt(out, 2), decode(readFileSync(path('straight', 'labels', 'f2.png')))];
+      let [both, either] = [0, 0];
+      found.data.forEach((label, p) => {
+        const other = straight.data[Math.floor(p / found.width) * straight.width + (p % found.width)];
+        both += Number(label > 0 && other > 0);
+        either += Number(label > 0 || other > 0);
+      });
+      assert.deepEqual(lines.at(-1), { done: true, objects: 1 });
+      assert.ok(both / either > 0.9, `${both / either}`);
+    });
+  }
+
+  test('says of a video that it is HDR, and reads it', { skip }, async (t) => {
+    const { file, out } = video(t, 'a.mkv', '-vf', 'format=yuv420p10le,setparams=color_primaries=bt2020:color_trc=smpte2084:colorspace=bt2020nc', '-c:v', 'ffv1');
+    const { code, stderr } = await veronese(['clip', '--quality', 'fast', file, '--out', out]);
+    assert.equal(code, 0, stderr);
+    assert.match(stderr, /^veronese: note: '.*a\.mkv' is HDR \(PQ\): [^\n]+\n$/);
+    assert.equal(tracksOf(out).notes[0].code, 'video-hdr');
+  });
+
+  test('the rate and the times of the frames are in tracks.json and in what is converted', { skip }, async (t) => {
+    const steady = video(t, 'a.mkv', '-c:v', 'ffv1', '-pix_fmt', 'bgr0');
+    await run([steady.file, '--out', steady.out]);
+    assert.deepEqual([tracksOf(steady.out).frameRate, tracksOf(steady.out).timestamps], [10, [0, 0.1, 0.2, 0.3, 0.4, 0.5]]);
+    await run([steady.file, '--every', '2', '--out', steady.path('second')]);
+    assert.deepEqual([tracksOf(steady.path('second')).frameRate, tracksOf(steady.path('second')).timestamps], [5, [0, 0.2, 0.4]]);
+    const { file, out, path } = video(t, 'a.mkv', '-vf', "setpts='(N+2*gte(N,3)+4)*0.1/TB'", '-fps_mode', 'passthrough', '-c:v', 'ffv1', '-pix_fmt', 'bgr0');
+    await run([file, '--out', out]);
+    const { frameRate, timestamps } = tracksOf(out);
+    assert.deepEqual(timestamps, [0, 0.1, 0.2, 0.5, 0.6, 0.7]);
+    assert.ok(Math.abs(frameRate - 5 / 0.7) < 1e-5, String(frameRate));
+    const { code, stderr } = await veronese(['convert', out, '--to', 'label-studio-video,mot', '--out', path('to')]);
+    assert.equal(code, 0, stderr);
+    const [{ predictions: [{ result: [{ value }] }] }] = JSON.parse(readFileSync(path('to', 'label-studio-video.json'), 'utf8'));
+    assert.deepEqual(value.sequence.map(({ time }) => time), timestamps);
+    assert.match(readFileSync(path('to', 'mot', 'seqinfo.ini'), 'utf8'), /frameRate=7\n/);
+    // Finished work is used again, and of a folder of frames nothing is known.
+    await run([file, '--out', out]);
+    assert.deepEqual(tracksOf(out).timestamps, timestamps);
+    await run([steady.frames, '--out', steady.path('frames-out')]);
+    assert.equal(tracksOf(steady.path('frames-out')).frameRate, undefined);
+  });
+
+  for (const name of ['a.gif', 'a.apng', 'a.png']) {
+    test(`an animation is a clip: ${name}`, { skip }, async (t) => {
+      const { file, out } = video(t, name, ...(name === 'a.gif' ? [] : ['-f', 'apng']));
+      const { lines } = await run([file, '--out', out]);
+      assert.equal(lines.length, COUNT + 1);
+    });
+  }
 });

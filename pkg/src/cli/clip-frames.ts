@@ -9,14 +9,33 @@ import type { FrameFile } from './clip-store.js';
 import { readInput, sha256 } from './files.js';
 import { findFrames, isVideo, readList } from './frames.js';
 import type { Io } from './io.js';
-import { decoded } from './pair.js';
-import { type Video, videoFrames, VideoReader } from './video.js';
+import { decodeImage } from '../entries/codecs.js';
+import { decoded, type Note, narrowRange, type Range, rangeNote } from './pair.js';
+import { timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */
 interface Seen extends FrameFile {
   /** As errors name it. */
   name: string;
   failure?: { thrown: unknown };
+}
+
+/** Within how many bytes from the beginning an animation says that it is one. */
+const ANIMATED = 65_536;
+
+interface Times {
+  frameRate?: number;
+  timestamps?: number[];
+}
+
+/** Where frames come from, and what is known of all of them. */
+interface Source {
+  content: (index: number) => Promise<Uint8Array | undefined>;
+  close?: () => Promise<void>;
+  allowDamaged?: boolean;
+  range?: Range | undefined;
+  times?: Times;
+  notes?: Note[];
 }
 
 export class ClipFrames {
@@ -27,15 +46,22 @@ export class ClipFrames {
   size: { width: number; height: number } | undefined;
   /** The first frame that could not be read. */
   failure: { index: number; thrown: unknown } | undefined;
-  readonly #content: (index: number) => Promise<Uint8Array | undefined>;
-  readonly #close: () => Promise<void>;
+  /** When frames were taken, where that is known. */
+  readonly times: Times;
+  /** Samples of 16 bits that are black and white, where that was chosen. */
+  readonly range: Range | undefined;
+  /** What was assumed, as far as frames were read. */
+  readonly notes: Note[];
+  readonly #source: Source;
   #first = '';
 
-  constructor(files: readonly Seen[], paths: readonly string[], content: (index: number) => Promise<Uint8Array | undefined>, close = async () => {}) {
+  constructor(files: readonly Seen[], paths: readonly string[], source: Source) {
     this.files = files;
     this.paths = paths;
-    this.#content = content;
-    this.#close = close;
+    this.#source = source;
+    this.times = source.times ?? {};
+    this.range = source.range;
+    this.notes = [...(source.notes ?? []), ...(source.range ? [rangeNote(source.range)] : [])];
     if (files.length < 2) {
       throw new VeroneseError('too-few-frames', `a clip needs two frames, found ${files.length === 0 ? 'none' : 'one'}`);
     }
@@ -56,16 +82,21 @@ export class ClipFrames {
   };
 
   async close(): Promise<void> {
-    await this.#close();
+    await this.#source.close?.();
+  }
+
+  /** Each note once, however often a frame is read. */
+  #add(note: Note): void {
+    if (!this.notes.some(({ message }) => message === note.message)) this.notes.push(note);
   }
 
   async #read(index: number): Promise<Picture> {
     const { name, failure, sha256: known } = this.files[index] as Seen;
     if (failure) throw failure.thrown;
-    const bytes = await this.#content(index);
+    const bytes = await this.#source.content(index);
     if (!bytes) throw new VeroneseError('unreadable-video', `${name} is missing: the video had ${this.length} frames when it was read before`);
     if (sha256(bytes) !== known) throw new VeroneseError('invalid-input', `${name} has changed since it was read before`);
-    const picture = await decoded({ name, bytes });
+    const picture = await decoded({ name, bytes }, { allowDamaged: this.#source.allowDamaged, range: this.range, onNote: (note) => this.#add(note) });
     const { width, height } = picture;
     if (!this.size) [this.size, this.#first] = [{ width, height }, name];
     if (width !== this.size.width || height !== this.size.height) {
@@ -79,19 +110,40 @@ export class ClipFrames {
 /** Throws where there are too few frames, or two of one name. */
 export async function clipFrames({ frames: names, list, every, allowDamaged }: ClipCommand, io: Io): Promise<ClipFrames> {
   const [name = ''] = names;
-  if (names.length === 1 && list === undefined && isVideo(name)) return framesOfVideo({ file: name, every, allowDamaged }, io);
+  if (names.length === 1 && list === undefined && (isVideo(name) || (await isAnimation(name)))) return framesOfVideo({ file: name, every, allowDamaged }, io);
   const paths = findFrames(names, await readList(list, io.stdin)).filter((_, index) => index % every === 0);
   checkStems(paths);
   const files: Seen[] = [];
+  const ranges: (Range | undefined)[] = [];
   for (const path of paths) {
     const frame = { name: path, stem: stemOf(path), file: basename(path) };
     try {
-      files.push({ ...frame, sha256: sha256(await readInput(path)) });
+      const bytes = await readInput(path);
+      files.push({ ...frame, sha256: sha256(bytes) });
+      ranges.push(await rangeOf(bytes));
     } catch (thrown) {
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, paths, (index) => readInput(paths[index] as string));
+  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, range: narrowRange(ranges) });
+}
+
+/** Whether an image has several frames: a PNG with the control of an animation, a WebP with its flag. */
+async function isAnimation(name: string): Promise<boolean> {
+  if (!/\.(png|webp)$/i.test(name)) return false;
+  const bytes = await readInput(name).catch(() => new Uint8Array());
+  const text = Buffer.from(bytes.subarray(0, ANIMATED)).toString('latin1');
+  if (text.startsWith('RIFF')) return text.slice(8, 16) === 'WEBPVP8X' && ((bytes[20] ?? 0) & 2) > 0;
+  const control = text.indexOf('acTL');
+  return control > 0 && control < `${text}IDAT`.indexOf('IDAT');
+}
+
+/** The range of the samples in a file that has 16 bits of each. What cannot be read is an error when it is. */
+async function rangeOf(bytes: Uint8Array): Promise<Range | undefined> {
+  const isDeepPng = bytes[0] === 0x89 && bytes[24] === 16;
+  const isPnm = bytes[0] === 0x50 && bytes[1] !== undefined && bytes[1] >= 0x32 && bytes[1] <= 0x37;
+  if (!isDeepPng && !isPnm) return undefined;
+  return (await decodeImage(bytes).catch(() => undefined))?.range;
 }
 
 function checkStems(paths: readonly string[]): void {
@@ -112,13 +164,16 @@ function stemOf(path: string): string {
 async function framesOfVideo(video: Video, io: Io): Promise<ClipFrames> {
   const { file, every } = video;
   const files: Seen[] = [];
+  const about: VideoInfo = { times: [] };
   const seen = (number: number) => ({ name: `${basename(file)}#${number}`, stem: String(number).padStart(5, '0'), file: `${basename(file)}#${number}` });
   try {
-    for await (const { bytes } of videoFrames(video, io)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
+    for await (const { bytes } of videoFrames(video, io, about)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
   } catch (thrown) {
     if (files.length === 0) throw thrown;
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
   const reader = new VideoReader({ ...video, quiet: true }, io);
-  return new ClipFrames(files, [file], (index) => reader.read(index), () => reader.close());
+  const notes = about.light ? [{ code: 'video-hdr', message: `'${file}' is HDR (${about.light}): its brightness is taken as that of a usual video, without tone mapping` }] : [];
+  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), times: timesOf(about, files.length, every), notes };
+  return new ClipFrames(files, [file], source);
 }

@@ -1,6 +1,7 @@
 // The results of a clip in a folder: the images of each frame, and last tracks.json, which records what they were made from.
 
 import { join } from 'node:path';
+import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipChange, ClipTracks } from '../../types/index.js';
 import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { lookAt, readWritten, sha256, writing } from './files.js';
@@ -12,12 +13,17 @@ export interface Record extends ClipTracks {
   version: 1;
   width: number;
   height: number;
+  /** Of a video: frames per second on average, and the time of each frame in seconds from the first. */
+  frameRate?: number;
+  timestamps?: number[];
   /** Names of the frames' images. */
   frames: string[];
   /** Names of the frames' own files. */
   files: string[];
   /** The changes by corrections, where there are any. */
   changes?: ClipChange[];
+  /** What was assumed, where something was. */
+  notes?: readonly AnnotationNote[];
   settings: { overlay: boolean; [name: string]: unknown };
   /** Hash of the settings and the frames. */
   job: string;
@@ -79,10 +85,10 @@ export class ClipStore {
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the record. */
-  async end(frames: readonly FrameFile[], { width, height }: { width: number; height: number }, tracks: ClipTracks, changes: ClipChange[]): Promise<void> {
+  async end(frames: readonly FrameFile[], about: Pick<Record, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
-    const record: Record = { version: 1, width, height, ...names, ...tracks, ...(changes.length > 0 && { changes }), settings, job };
+    const record: Record = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };
     await writing(this.#output.folder, () => {
       this.#output.removeOld((path) => /^(labels|overlay)\//.test(path), imagesOf(frames, settings));
       this.#output.write(TRACKS, jsonLine(record));

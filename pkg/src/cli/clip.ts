@@ -18,7 +18,7 @@ import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
 import { jsonLine } from './pair.js';
-import { print, ProgressBar, warn } from './terminal.js';
+import { note, print, ProgressBar, warn } from './terminal.js';
 import { oneForEach } from './threads.js';
 
 const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
@@ -32,12 +32,14 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const progress = new Passes(frames.length, io);
   try {
     const said = await readCorrections(command, frames);
+    const notes = () => [...(said?.notes ?? []), ...frames.notes];
+    for (const each of said?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
     const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, software });
     const record = store.finished(frames.files);
     if (record) return await report(record, io);
 
-    const kept = new KeptClip(output, { ...options, markUnknown: undefined, software }, frames.files);
+    const kept = new KeptClip(output, { ...options, markUnknown: undefined, software, range: frames.range }, frames.files);
     await kept.check();
     const accepted = await acceptedAsSeen(out, said, frames, { store, kept });
     // If this run is interrupted, the next one has them.
@@ -58,7 +60,8 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const tracks = segmented.tracks();
     if (streams) await kept.clear();
     const changes = await segmented.changes();
-    await store.end(frames.files, frames.size as { width: number; height: number }, tracks, changes);
+    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, notes());
+    for (const each of frames.notes) note(io, each);
     if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
     await print(io, lastLine(tracks.objects, changes));
   } catch (thrown) {

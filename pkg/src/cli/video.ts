@@ -4,7 +4,9 @@ import { execFile, spawn } from 'node:child_process';
 import { type Stats, statSync } from 'node:fs';
 import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
+import { createInterface } from 'node:readline';
 import { promisify } from 'node:util';
+import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { checkName, type Frame } from './frames.js';
 import type { Io } from './io.js';
@@ -27,27 +29,68 @@ export interface Video {
   quiet?: boolean;
 }
 
+/** What ffmpeg says of a video while it is read. */
+export interface VideoInfo {
+  /** Of each frame that is taken, seconds; NaN where there is none. */
+  times: number[];
+  /** Frames per second. */
+  frameRate?: number;
+  /** How brightness is coded, where it is not the usual way. */
+  light?: string;
+}
+
+/** Codes of brightness that go beyond that of a usual screen, as ffmpeg calls them. */
+const LIGHT: Record<string, string> = { smpte2084: 'PQ', 'arib-std-b67': 'HLG' };
+
+/** Times that differ by less than this are those of a constant rate: containers round them, some to milliseconds. */
+const ROUNDED = 0.0021;
+
+/** Rate and times of the frames, from the first one on, as far as they are known and none is before the one before it. */
+export function timesOf({ times, frameRate }: VideoInfo, count: number, every: number): { frameRate?: number; timestamps?: number[] } {
+  const rate = frameRate === undefined ? {} : { frameRate: frameRate / every };
+  const timestamps = times.slice(0, count).map((time) => Number((time - (times[0] as number)).toFixed(6)));
+  if (timestamps.length < count || !isRising(timestamps)) return rate;
+  const steady = frameRate !== undefined && timestamps.every((time, k) => Math.abs(time - (k * every) / frameRate) < ROUNDED);
+  const last = timestamps.at(-1) as number;
+  if (steady || last === 0) return { ...rate, timestamps };
+  return { frameRate: Number(((count - 1) / last).toFixed(6)), timestamps };
+}
+
+/** Takes down what a line of ffmpeg says of the video. */
+function note(about: VideoInfo, line: string): void {
+  const [, time] = /\bn: *\d+ pts: *\S+ pts_time: *(\S+)/.exec(line) ?? [];
+  if (time !== undefined) about.times.push(Number(time));
+  // The first is that of the file; what is written has another.
+  if (about.frameRate !== undefined || !/Stream #0:\d+.*: Video:/.test(line)) return;
+  const rate = Number(/([\d.]+)(k?) fps\b/.exec(line)?.[1]);
+  if (isFrameRate(rate)) about.frameRate = rate;
+  const light = Object.keys(LIGHT).find((name) => line.includes(name));
+  if (light !== undefined) about.light = LIGHT[light] as string;
+}
+
 /**
  * Every K-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are taken.
  * Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`, the last one after all frames if ffmpeg gave them but complained.
  */
-export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, io: Io): AsyncGenerator<Frame, void, undefined> {
+export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, io: Io, about?: VideoInfo): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
   const status = statusOf(file);
   if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
-  const input = ['-nostdin', '-v', 'error', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
-  const chosen = every === 1 ? [] : ['-vf', `select=not(mod(n\\,${every}))`];
+  const input = ['-nostdin', '-hide_banner', '-nostats', '-v', 'level+info', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
+  const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter((_, __, [, chain]) => chain);
   // Each frame that is in the file, and none twice, whatever its time is.
   const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
-  const ffmpeg = spawn('ffmpeg', [...input, ...chosen, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', 'pipe:1'], {
+  const ffmpeg = spawn('ffmpeg', [...input, ...filters, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', '-pix_fmt', 'rgb24', 'pipe:1'], {
     stdio: ['ignore', 'pipe', 'pipe'],
   });
   const end = () => void ffmpeg.kill('SIGKILL');
   io.signal.addEventListener('abort', end);
   let said = '';
-  ffmpeg.stderr.setEncoding('utf8').on('data', (text: string) => {
-    said = (said + text).slice(-KEPT);
+  createInterface(ffmpeg.stderr).on('line', (line) => {
+    const [, problem] = /\[(?:panic|fatal|error)\] (.*)$/.exec(line) ?? [];
+    if (problem !== undefined) said = `${said}${problem}\n`.slice(-KEPT);
+    else if (about) note(about, line);
   });
   const ended = new Promise<string | undefined>((resolve) => {
     ffmpeg.once('error', (error) => resolve(error.message));
@@ -55,7 +98,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
   });
   try {
     let number = 0;
-    for await (const bytes of pixmaps(ffmpeg.stdout)) {
+    for await (const bytes of pixmaps(ffmpeg.stdout, file)) {
       yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, number, bytes };
       number += every;
     }
@@ -187,7 +230,7 @@ function lastLine(text: string): string | undefined {
 }
 
 /** Cuts a stream of binary pixmaps into its pictures. */
-export async function* pixmaps(stream: AsyncIterable<Uint8Array>): AsyncGenerator<Uint8Array, void, undefined> {
+export async function* pixmaps(stream: AsyncIterable<Uint8Array>, file: string): AsyncGenerator<Uint8Array, void, undefined> {
   let chunks: Uint8Array[] = [];
   let held = 0;
   let needed: number | undefined;
@@ -198,7 +241,7 @@ export async function* pixmaps(stream: AsyncIterable<Uint8Array>): AsyncGenerato
       if (needed === undefined) {
         if (held === 0) break;
         chunks = [Buffer.concat(chunks)];
-        needed = lengthOf(chunks[0] as Buffer);
+        needed = lengthOf(chunks[0] as Buffer, file);
         if (needed === undefined) break; // The header is not whole yet.
       }
       if (held < needed) break;
@@ -209,18 +252,18 @@ export async function* pixmaps(stream: AsyncIterable<Uint8Array>): AsyncGenerato
       needed = undefined;
     }
   }
-  if (held > 0) throw new VeroneseError('unreadable-video', 'the last frame is cut off');
+  if (held > 0) throw new VeroneseError('unreadable-video', `'${file}': the last frame is cut off`);
 }
 
 /** The length in bytes of the pixmap that begins here, or undefined while its header is not whole. */
-function lengthOf(bytes: Buffer): number | undefined {
+function lengthOf(bytes: Buffer, file: string): number | undefined {
   const header = bytes.subarray(0, 40).toString('latin1');
   const [text, width, height] = /^P6\s(\d+)\s(\d+)\s255\s/.exec(header) ?? [];
   if (text === undefined) {
     if (bytes.length < 40) return undefined;
-    throw new VeroneseError('unreadable-video', 'ffmpeg gave something else than frames');
+    throw new VeroneseError('unreadable-video', `'${file}': ffmpeg gave something else than frames of 8 bits: ${JSON.stringify(header.slice(0, 20))}`);
   }
   const sides = [Number(width), Number(height)] as const;
-  if (Math.max(...sides) > LONGEST_SIDE) throw new VeroneseError('frame-size-unsupported', `the frames have ${sides.join(' × ')} pixels`);
+  if (Math.max(...sides) > LONGEST_SIDE) throw new VeroneseError('frame-size-unsupported', `the frames of '${file}' have ${sides.join(' × ')} pixels`);
   return text.length + 3 * sides[0] * sides[1];
 }
