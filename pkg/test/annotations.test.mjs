@@ -7,7 +7,7 @@ import { deflateSync, gzipSync } from 'node:zlib';
 import { zipSync } from 'fflate';
 import * as formats from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
-import { chunk } from './support/chunks.mjs';
+import { chunk, pngOf } from './support/chunks.mjs';
 import { drawnClip } from './support/clip.mjs';
 import { drawn, labelImages } from './support/masks.mjs';
 import { soaking } from './support/soak.mjs';
@@ -394,7 +394,7 @@ describe('what is none of that', () => {
     'a polygon of Supervisely': [supervisely({ geometryType: 'polygon' }), /object that is no bitmap/],
     'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
 
-    'a PNG of colours': [Uint8Array.from(png).fill(2, 25, 26), /has no labels: it is not an indexed or grey PNG/],
+    'a picture': [pngOf([32, 32, 8, 2], ['IDAT', deflateSync(Buffer.from(Array.from({ length: 32 * 97 }, (_, at) => (at % 97 === 0 ? 0 : at * 7919))))]), /it has \d+ colours, so nobody knows which pixels are of which object: save it/],
     'half of a PNG': [png.slice(0, png.length - 30), /it is damaged/, 'unreadable-image'],
     'the beginning of a PNG': [png.slice(0, 20), /it has no header/, 'unreadable-image'],
     'a large PNG': [Uint8Array.from(png).fill(255, 18, 20), /it has 65535 × 4 pixels|it has \d+ × 4 pixels/, 'unreadable-image'],

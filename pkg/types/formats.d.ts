@@ -381,7 +381,7 @@ export interface AnnotationFile {
   bytes: Uint8Array;
 }
 
-/** The formats of {@link readAnnotations}: `cvat` is of images or of a video, `png` has the number of an object for each pixel. */
+/** The formats of {@link readAnnotations}: `cvat` is of images or of a video, `png` are masks of any kind, each file a frame. */
 export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese';
 
 /** One frame that was annotated. */
@@ -398,6 +398,15 @@ export interface Annotations {
   frames: Map<string, AnnotatedFrame>;
   /** Names of the objects, or of their classes, where there are some. */
   names: Record<number, string>;
+  /** What files were taken for that do not say it themselves, and what was left out. */
+  notes: AnnotationNote[];
+}
+
+export interface AnnotationNote {
+  /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `mask-smoothed`, `boxes-left-out` … */
+  code: string;
+  /** A sentence that names the file. */
+  message: string;
 }
 
 /**

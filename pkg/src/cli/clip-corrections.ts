@@ -1,7 +1,8 @@
 // Folders of annotations: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
 
-import { readdirSync } from 'node:fs';
-import { extname, join } from 'node:path';
+import { readdirSync, statSync } from 'node:fs';
+import { basename, extname, join } from 'node:path';
+import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
 import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
@@ -9,7 +10,11 @@ import { isListOf, isObject, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
-import { sha256 } from './files.js';
+import { encodeColourPng } from '../entries/codecs.js';
+import { readAnnotations } from '../formats/reading/annotations.js';
+import { isPng } from '../formats/reading/frame.js';
+import { readInput, sha256 } from './files.js';
+import { decoded } from './pair.js';
 
 export const EDITS = 'edits.json';
 
@@ -25,10 +30,24 @@ interface Edits {
 
 type FullPrompt = Extract<ClipPrompt, { object: number }>;
 
-/** The annotations of a folder. */
-interface Folder extends Edits {
-  said: ClipCorrection[];
+/** The label images of a folder, by the names of their frames. */
+interface Images {
+  images: LabelImage[];
   paths: string[];
+  notes: AnnotationNote[];
+}
+
+interface LabelImage {
+  path: string;
+  stem: string;
+  labels: Uint8Array;
+  width: number;
+  height: number;
+}
+
+/** The annotations of a folder. */
+interface Folder extends Edits, Images {
+  said: ClipCorrection[];
   sha256: string;
 }
 
@@ -43,12 +62,14 @@ export interface Corrections {
   paths: string[];
   /** Hash of the content of each folder that has annotations. */
   hashes: { masks?: string; corrections?: string };
+  /** What masks were taken for. */
+  notes: AnnotationNote[];
 }
 
 /** Undefined without annotations. Throws an error that names the file. */
 export async function readCorrections(folders: { [folder in 'masks' | 'corrections']: string | undefined }, frames: ClipFrames): Promise<Corrections | undefined> {
-  const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames);
-  const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames);
+  const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames, givenMasks);
+  const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames, paintedLabels);
   const both = [masks, corrections].filter((folder) => folder !== undefined);
   if (both.length === 0) return undefined;
   const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
@@ -72,20 +93,19 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
     edits,
     paths: both.flatMap(({ paths }) => paths),
     hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
+    notes: masks?.notes ?? [],
   };
 }
 
 /** Undefined without annotations. */
-async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | undefined> {
+async function readFolder(folder: string, frames: ClipFrames, read: (folder: string, names: string[]) => Promise<Images>): Promise<Folder | undefined> {
   const names = namesIn(folder).sort();
+  const found = await read(folder, names);
   const said: ClipCorrection[] = [];
-  for (const name of names.filter((name) => extname(name).toLowerCase() === '.png' && !name.startsWith('.'))) {
-    const path = join(folder, name);
-    const stem = name.slice(0, -extname(name).length);
+  for (const { path, stem, labels, width, height } of found.images) {
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
     if (said.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
-    const { labels, width, height } = await readLabels(path, { foreign: true });
     const size = frames.size ?? (await frames.read(0));
     if (width !== size.width || height !== size.height) {
       throw new VeroneseError('frame-size-mismatch', `'${path}' has ${width}×${height} pixels, the frames have ${size.width}×${size.height}`);
@@ -99,7 +119,47 @@ async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | 
   if (said.length === 0 && Object.keys(edits).length + prompts.length + propagate.size === 0 && accepted === undefined) return undefined;
   const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
   const content = [hashes, edits, ...propagate, prompts, accepted];
-  return { said, ...told, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify(content)) };
+  const paths = [...new Set([...names.map((name) => join(folder, name)), ...found.paths])];
+  return { ...found, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
+}
+
+/** Label images as the program writes them, painted over: 255 says nothing. */
+async function paintedLabels(folder: string, names: string[]): Promise<Images> {
+  const images: LabelImage[] = [];
+  for (const name of names.filter((name) => isImage(name) && extname(name).toLowerCase() === '.png')) {
+    const path = join(folder, name);
+    images.push({ path, stem: stemOf(name), ...(await readLabels(path, { foreign: true })) });
+  }
+  return { images, paths: [], notes: [] };
+}
+
+/** Masks as people have them, in the folder or in one for each object. */
+async function givenMasks(folder: string, names: string[]): Promise<Images> {
+  const objects = names.filter((name) => /^\d+$/.test(name) && statSync(join(folder, name)).isDirectory());
+  const inside = [...names, ...objects.flatMap((name) => namesIn(join(folder, name)).sort().map((file) => join(name, file)))];
+  const paths = inside.filter(isImage).map((name) => join(folder, name));
+  if (paths.length === 0) return { images: [], paths, notes: [] };
+  const files = await Promise.all(paths.map(async (path) => ({ name: path.replaceAll('\\', '/'), bytes: await pngOf(path) })));
+  const { frames, notes } = readAnnotations(files);
+  const pathOf = (stem: string) => paths.find((path) => stemOf(basename(path)) === stem) as string;
+  const images = [...frames].map(([stem, frame]) => ({ path: pathOf(stem), stem, labels: frame.read(), width: frame.width, height: frame.height }));
+  return { images, paths, notes };
+}
+
+/** A mask as PNG; of the other formats its pixels. */
+async function pngOf(path: string): Promise<Uint8Array> {
+  const bytes = await readInput(path);
+  if (isPng(bytes)) return bytes;
+  const { width, height, data } = await decoded({ name: path, bytes });
+  return encodeColourPng(width, height, data);
+}
+
+function isImage(name: string): boolean {
+  return /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i.test(name) && !basename(name).startsWith('.');
+}
+
+function stemOf(name: string): string {
+  return name.slice(0, -extname(name).length);
 }
 
 function namesIn(folder: string): string[] {

@@ -10,18 +10,21 @@ import { EDITS } from './clip-corrections.js';
 import { TRACKS, tracksOf } from './clip-folder.js';
 import { readInput } from './files.js';
 import { readJson } from './label-files.js';
+import type { Io } from './io.js';
 import type { Output } from './output.js';
+import { note } from './terminal.js';
 
 /** Of files in a folder those that can be annotations, or name their classes. */
 const POSSIBLE = /\.(json|xml|png|txt|zip)$/i;
 
 /** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
-export async function convertBack({ source, clip }: CorrectionsCommand, output: Output): Promise<string> {
+export async function convertBack({ source, clip }: CorrectionsCommand, output: Output, io: Io): Promise<string> {
   await output.check([EDITS]);
   const frames = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
   for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path) });
-  const { format, frames: annotated, names } = readAnnotations(files, frames && { frames });
+  const { format, frames: annotated, names, notes } = readAnnotations(files, frames && { frames });
+  for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {
       for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
@@ -29,7 +32,7 @@ export async function convertBack({ source, clip }: CorrectionsCommand, output: 
     },
     (path) => /^[^/]+\.png$/.test(path),
   );
-  return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size })}\n`;
+  return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size, ...(notes.length > 0 && { notes }) })}\n`;
 }
 
 /** The names of a clip's frames. */

@@ -6,7 +6,11 @@ import { LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
+/** By type, samples of a pixel: grey, colours, indices, grey with alpha, colours with alpha. */
+const SAMPLES: Record<number, number> = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 const [GREY, INDEXED] = [0, 3];
+/** Of an interlaced picture, pass by pass: first column and row, and the steps between them. */
+const PASSES = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]] as const;
 /** Compressed data are taken in pieces of this size, bytes: what is longer than the picture is noticed before it fills the memory. */
 const PIECE = 65_536;
 
@@ -35,10 +39,10 @@ export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indic
   return { indices: depth === 8 ? rows : unpacked(rows, depth, width, height), width, height };
 }
 
-/** The size, and whether the samples have 16 bits. Throws as {@link decodeIndices} does. */
+/** The size, and whether the samples are grey levels of 16 bits. Throws as {@link decodeIndices} does. */
 export function headOf(file: Uint8Array): Size & { isDeep: boolean } {
-  const { width, height, depth } = opened(file);
-  return { width, height, isDeep: depth === 16 };
+  const { width, height, depth, type } = opened(file);
+  return { width, height, isDeep: depth === 16 && type === GREY };
 }
 
 /** The levels of a grey PNG of 16 bits. Throws as {@link decodeIndices} does. */
@@ -48,9 +52,65 @@ export function decodeDeep(file: Uint8Array): Size & { levels: Uint16Array } {
     throw new VeroneseError('invalid-input', 'is not a grey PNG of 16 bits without interlacing');
   }
   const rows = rowsOf(png);
-  const levels = new Uint16Array(rows.length / 2);
-  for (let at = 0; at < levels.length; at++) levels[at] = ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number);
-  return { levels, width: png.width, height: png.height };
+  return { levels: samplesOf(rows, 16, png.width, png.height) as Uint16Array, width: png.width, height: png.height };
+}
+
+/** A picture of any kind as it is in the file. */
+export interface Samples extends Size {
+  /** Of a pixel. */
+  channels: number;
+  /** Row by row, most significant first where they have 16 bits. */
+  samples: Uint8Array | Uint16Array;
+  depth: number;
+  /** Red, green, blue of each index, where the samples are indices. */
+  palette?: Uint8Array;
+  /** Alpha of the first indices, if there is some. */
+  alpha?: Uint8Array;
+}
+
+/** The samples of any PNG. Throws `unreadable-image`. */
+export function decodeSamples(file: Uint8Array): Samples {
+  const png = opened(file);
+  const { width, height, depth, type, palette, alpha } = png;
+  const channels = SAMPLES[type];
+  const isKnown = channels !== undefined && ([8, 16].includes(depth) || (channels === 1 && [1, 2, 4].includes(depth)));
+  if (!isKnown || (type === INDEXED && !palette)) throw unreadable('is damaged');
+  const rows = png.isPlain ? samplesOf(rowsOf(png, channels), depth, width * channels, height) : interlaced(png, channels);
+  return { width, height, depth, channels, samples: rows, ...(type === INDEXED && { palette, alpha }) };
+}
+
+/** The passes of an interlaced picture, each a picture of its own, put together. */
+function interlaced(png: Png, channels: number): Uint8Array | Uint16Array {
+  const { width, height, depth } = png;
+  const parts = PASSES.map(([left, top, across, down]) => ({
+    left, top, across, down,
+    width: Math.ceil((width - left) / across),
+    height: Math.ceil((height - top) / down),
+  })).filter((part) => part.width > 0 && part.height > 0);
+  const rowOf = (part: Size) => Math.ceil((part.width * channels * depth) / 8);
+  const length = parts.reduce((sum, part) => sum + (rowOf(part) + 1) * part.height, 0);
+  const all = inflated(png.data, length);
+  if (all.length !== length) throw unreadable('is damaged');
+  const samples = depth === 16 ? new Uint16Array(width * height * channels) : new Uint8Array(width * height * channels);
+  let at = 0;
+  for (const part of parts) {
+    const row = rowOf(part);
+    const bytes = unfiltered(all.subarray(at, (at += (row + 1) * part.height)), row, part.height, Math.ceil((depth * channels) / 8));
+    const own = samplesOf(bytes, depth, part.width * channels, part.height);
+    for (let y = 0, from = 0; y < part.height; y++) {
+      for (let x = 0; x < part.width; x++, from += channels) {
+        const to = ((part.top + y * part.down) * width + part.left + x * part.across) * channels;
+        for (let channel = 0; channel < channels; channel++) samples[to + channel] = own[from + channel] as number;
+      }
+    }
+  }
+  return samples;
+}
+
+function samplesOf(bytes: Uint8Array, depth: number, width: number, height: number): Uint8Array | Uint16Array {
+  if (depth < 8) return unpacked(bytes, depth, width, height);
+  if (depth === 8) return bytes;
+  return Uint16Array.from({ length: bytes.length / 2 }, (_, at) => ((bytes[2 * at] as number) << 8) | (bytes[2 * at + 1] as number));
 }
 
 interface Png extends Size {
@@ -59,22 +119,27 @@ interface Png extends Size {
   /** Deflated, filtered row by row, not interlaced. */
   isPlain: boolean;
   data: Uint8Array[];
+  palette?: Uint8Array;
+  alpha?: Uint8Array;
 }
 
 function opened(file: Uint8Array): Png {
   if (!SIGNATURE.every((byte, at) => file[at] === byte)) throw unreadable('is not a PNG');
   let header: Uint8Array | undefined;
   const data: Uint8Array[] = [];
+  const colours: Pick<Png, 'palette' | 'alpha'> = {};
   for (const { name, content } of chunks(file)) {
     if (name === 'IHDR') header = content;
     if (name === 'IDAT') data.push(content);
+    if (name === 'PLTE') colours.palette = content;
+    if (name === 'tRNS') colours.alpha = content;
   }
   if (header?.length !== 13) throw unreadable('has no header');
   const view = viewOf(header);
   const [width, height] = [view.getUint32(0), view.getUint32(4)];
   if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_SIDE) throw unreadable(`has ${width} × ${height} pixels`);
   const isPlain = header.subarray(10).every((value) => value === 0);
-  return { width, height, depth: view.getUint8(8), type: view.getUint8(9), isPlain, data };
+  return { width, height, depth: view.getUint8(8), type: view.getUint8(9), isPlain, data, ...colours };
 }
 
 function viewOf({ buffer, byteOffset, byteLength }: Uint8Array): DataView {
@@ -107,12 +172,12 @@ function* chunks(file: Uint8Array): Generator<{ name: string; content: Uint8Arra
 }
 
 /** The bytes of all rows, as many as a pixel of this depth and width needs. */
-function rowsOf({ data, width, height, depth }: Png): Uint8Array {
-  const row = Math.ceil((width * depth) / 8);
+function rowsOf({ data, width, height, depth }: Png, channels = 1): Uint8Array {
+  const row = Math.ceil((width * channels * depth) / 8);
   const length = (row + 1) * height;
   const rows = inflated(data, length);
   if (rows.length !== length) throw unreadable('is damaged');
-  return unfiltered(rows, row, height, Math.ceil(depth / 8));
+  return unfiltered(rows, row, height, Math.ceil((depth * channels) / 8));
 }
 
 /** The content of a zlib stream in pieces. Throws `unreadable-image` where that is more than `most` bytes, or damaged. */

@@ -14,15 +14,15 @@ import {
   UNLABELLED,
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import { decodeIndices, headOf } from '../indexed-png.js';
 import { checkPath } from '../names.js';
 import { decodeVeronese } from '../veronese-json.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { type Context, decoding, isObjectNumber, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
+import { type Context, isObjectNumber, isPng, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
 import { readLabelMe } from './labelme.js';
-import { isMots, readMots, readMotsPng } from './mots.js';
+import { readMasks } from './masks.js';
+import { areMots, isMots, readMots, readMotsPng } from './mots.js';
 import { readSupervisely } from './supervisely.js';
 
 /** Most bytes in an archive: more than the annotations of any clip. */
@@ -43,10 +43,8 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
   const all = sources.flatMap((source) => (isArchive(source.bytes) ? naming(source.name, () => unpacked(source)) : [source]));
   // Images beside a document are the frames that it is about.
   const documents = all.flatMap((source) => (isPng(source.bytes) ? [] : naming(source.name, () => recognised(source))));
-  const pictures = (): Recognised[] =>
-    all.filter(({ bytes }) => isPng(bytes)).map((source) => naming(source.name, () => recognisedPng(source)));
-  const [first, ...others] = documents.length > 0 ? documents : pictures();
-  if (!first) throw invalidInput(nothingIn(all));
+  const [first, ...others] = documents;
+  if (!first) return ofPictures(all, names);
   const other = others.find(({ format }) => format !== first.format);
   if (other) {
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
@@ -55,8 +53,22 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
   const context = contextOf(all, names);
   const frames = [first, ...others].flatMap(({ source, read }) => naming(source.name, () => read(context)));
   if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame`);
-  return { format: first.format, ...numbered(frames) };
+  return { format: first.format, ...numbered(frames), notes: [] };
 }
+
+/** Annotations that are pictures themselves. */
+function ofPictures(all: readonly Source[], names: readonly string[] | undefined): Annotations {
+  const pictures = all.filter(({ bytes }) => isPng(bytes));
+  const [first] = pictures;
+  if (!first) throw invalidInput(nothingIn(all));
+  if (areMots(pictures)) {
+    const context = contextOf(all, names);
+    return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))), notes: [] };
+  }
+  const { frames, notes } = readMasks(pictures);
+  return { format: 'png', ...numbered(frames), notes };
+}
+
 
 function namesOf(options: unknown): readonly string[] | undefined {
   const { frames } = entriesOf(options, ['frames']);
@@ -96,11 +108,6 @@ function recognised(source: Source): Recognised[] {
   return isMots(text) ? [{ source, format: 'mots', read: (context) => readMots(source, text, context) }] : [];
 }
 
-function recognisedPng(source: Source): Recognised {
-  const { isDeep } = decoding('it', () => headOf(source.bytes));
-  return { source, format: isDeep ? 'mots-png' : 'png', read: (context) => [isDeep ? readMotsPng(source, context) : readPng(source)] };
-}
-
 function recognisedJson(source: Source): Recognised[] {
   const { name, bytes } = source;
   const text = textOf(bytes);
@@ -124,13 +131,6 @@ function recognisedJson(source: Source): Recognised[] {
 function nothingIn(files: readonly Source[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
   return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks, veronese`;
-}
-
-/** The index is the number of the object, and 255 is unlabelled. */
-function readPng({ name, bytes }: Source): ReadFrame {
-  const { width, height } = decoding('it', () => headOf(bytes));
-  const indices = () => decoding('it', () => decodeIndices(bytes, { foreign: true })).indices;
-  return { name: stemOf(name), file: name, width, height, objects: [], draw: ({ labels }) => labels.set(indices()) };
 }
 
 function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
@@ -192,10 +192,6 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
     });
   }
   return { frames, names };
-}
-
-function isPng(bytes: Uint8Array): boolean {
-  return bytes[0] === 0x89 && bytes[1] === 0x50;
 }
 
 function isArchive(bytes: Uint8Array): boolean {

@@ -66,6 +66,10 @@ export class Unnumbered {
   }
 }
 
+export function isPng(bytes: Uint8Array): boolean {
+  return bytes[0] === 0x89 && bytes[1] === 0x50;
+}
+
 /** A number that an object may have here. */
 export function isObjectNumber(value: unknown): value is number {
   return isWhole(value, 1, UNLABELLED - 1);

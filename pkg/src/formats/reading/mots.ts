@@ -1,7 +1,7 @@
 // MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; instance 0 is a region to ignore.
 
 import { invalidInput, isWhole, UNLABELLED } from '../../common/checks.js';
-import { decodeDeep } from '../indexed-png.js';
+import { decodeDeep, headOf } from '../indexed-png.js';
 import { decompressed } from './coco-rle.js';
 import {
   checkSize,
@@ -11,6 +11,7 @@ import {
   isObjectNumber,
   type Known,
   known,
+  naming,
   type ReadFrame,
   type Shape,
   type Source,
@@ -18,11 +19,23 @@ import {
 } from './frame.js';
 
 const CLASS = 1000;
+const WHITE = 65_535;
 const LINE = /^(\d+) (\d+) (\d+) (\d+) (\d+) (\S+)$/;
 
 /** Whether text begins as MOTS does. */
 export function isMots(text: string): boolean {
   return LINE.test(/^.*/.exec(text)?.[0].trimEnd() ?? '');
+}
+
+/** Whether pictures are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
+export function areMots(pictures: readonly Source[]): boolean {
+  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return false;
+  const seen = new Set<number>();
+  for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodeDeep(bytes))).levels) seen.add(level);
+  seen.delete(0);
+  const [first] = seen;
+  // White on black is no number.
+  return first !== undefined && !(seen.size === 1 && first === WHITE) && [...seen].every((level) => level >= CLASS);
 }
 
 /** Frames without objects are left out: they may not have been annotated. */

@@ -1,0 +1,194 @@
+// Masks as people have them: what each kind of file is taken for, by `convert --to corrections` and by `clip --masks`, and what is said of it.
+
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { describe, test } from 'node:test';
+import { deflateSync } from 'node:zlib';
+import { decode, encode } from 'fast-png';
+import { davisPalette } from 'veronese';
+import { readAnnotations } from 'veronese/formats';
+import { pngOf } from './support/chunks.mjs';
+import { clipFolder } from './support/clip.mjs';
+import { clip as framesOf, labelsOf, lines, tracksOf } from './support/folders.mjs';
+import { frame } from './support/frames.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
+
+const SIZE = { width: 48, height: 36 };
+const PIXELS = SIZE.width * SIZE.height;
+const picture = (of) => Array.from({ length: PIXELS }, (_, p) => of(p % SIZE.width, Math.floor(p / SIZE.width)));
+const square = (x, y) => x >= 8 && x < 20 && y >= 6 && y < 18;
+const other = (x, y) => x >= 26 && x < 40 && y >= 10 && y < 30;
+const ONE = picture((x, y) => Number(square(x, y)));
+const TWO = picture((x, y) => (square(x, y) ? 1 : other(x, y) ? 2 : 0));
+/** A PNG of lists of samples, or of numbers, for each pixel. */
+const file = (pixels, { depth = 8 } = {}) => {
+  const samples = pixels.flat();
+  const data = depth === 16 ? Uint16Array.from(samples) : Uint8Array.from(samples);
+  return encode({ ...SIZE, channels: samples.length / PIXELS, depth, data });
+};
+const [BLACK, RED, BLUE, WHITE] = [[0, 0, 0], [200, 30, 10], [10, 20, 220], [255, 255, 255]];
+const coloured = (...colours) => file(TWO.map((number) => colours[number]));
+const indexed = (labels, colours) => pngOf([SIZE.width, SIZE.height, 8, 3], ['PLTE', Buffer.from(colours.flat())], ['IDAT', deflateSync(rowsOf(labels))]);
+const rowsOf = (labels) => Buffer.from(Array.from({ length: SIZE.height }, (_, y) => [0, ...labels.slice(y * SIZE.width, (y + 1) * SIZE.width)]).flat());
+
+/** How much of each pixel, from 0 to 1, is in a disc, with an edge of some pixels. */
+const disc = (centre, radius, edge) => picture((x, y) => Math.min(1, Math.max(0, (radius - Math.hypot(x - centre[0], y - centre[1])) / edge + 0.5)));
+const mixed = (share, from, to) => share.map((part) => from.map((value, channel) => Math.round(value + part * (to[channel] - value))));
+
+/** A picture in seven passes. */
+function interlaced(rows) {
+  const passes = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+  const bytes = [];
+  for (const [left, top, across, down] of passes) {
+    for (let y = top; y < SIZE.height; y += down) {
+      bytes.push(0);
+      for (let x = left; x < SIZE.width; x += across) bytes.push(...rows[y * SIZE.width + x]);
+    }
+  }
+  const header = pngOf([SIZE.width, SIZE.height, 8, 2], ['IDAT', deflateSync(Buffer.from(bytes))]);
+  header[28] = 1;
+  return header;
+}
+
+const KINDS = {
+  'white on black': [file(ONE.map((is) => is * 255)), ONE, /255 is the object, number 1/],
+  'a number on black': [file(ONE.map((is) => is * 7)), ONE.map((is) => is * 7)],
+  'white on black, indexed': [indexed(ONE.map((is) => is * 255), davisPalette()), ONE, /255 is the object/],
+  'white on black, 16 bits': [file(ONE.map((is) => is * 65_535), { depth: 16 }), ONE, /65535 is the object/],
+  'numbers of 16 bits': [file(TWO, { depth: 16 }), TWO],
+  'white on black, in colours': [file(ONE.map((is) => (is ? WHITE : BLACK))), ONE, /255 is the object/],
+  'numbers, and 255 of which nothing is said': [file(TWO.map((number, p) => (p < 48 ? 255 : number))), TWO.map((number, p) => (p < 48 ? 255 : number))],
+  'a colour for each object': [coloured(BLACK, RED, BLUE), TWO, /black is the background, each of 2 colours is an object/],
+  'colours on white': [coloured(WHITE, RED, BLUE), TWO, /white is the background/],
+  'colours of 16 bits': [file(TWO.map((number) => [BLACK, RED, BLUE][number].map((value) => value * 257)), { depth: 16 }), TWO, /each of 2 colours/],
+  'colours of the DAVIS palette': [file(TWO.map((number) => davisPalette()[number && number + 3])), TWO.map((number) => number && number + 3), /each of 2 colours/],
+  'interlaced colours': [interlaced(TWO.map((number) => [BLACK, RED, BLUE][number])), TWO, /each of 2 colours/],
+  'indices with black at the end': [indexed(TWO.map((number) => (number + 2) % 3), [RED, BLUE, BLACK]), TWO, /black is the background/],
+  'what is not transparent': [file(ONE.map((is) => [90, 90, 90, is * 255])), ONE, /what is not transparent is the object/],
+  'black that is not transparent': [file(ONE.map((is) => [0, is * 255])), ONE, /what is not transparent/],
+  'a thing cut out of a picture': [file(ONE.map((is, p) => [(p * 7) % 251, (p * 11) % 241, (p * 13) % 239, is * 255])), ONE, /what is not transparent/],
+  'colours on nothing': [file(TWO.map((number) => [...[BLACK, RED, BLUE][number], number > 0 ? 255 : 0])), TWO, /each of 2 colours/],
+  'no object': [file(ONE.map(() => 0)), ONE.map(() => 0)],
+};
+
+const read = (bytes, name = 'f1.png') => readAnnotations([{ name, bytes }]);
+
+describe('what a mask is taken for', () => {
+  for (const [name, [bytes, labels, note]] of Object.entries(KINDS)) {
+    test(name, () => {
+      const { frames, notes } = read(bytes);
+      assert.deepEqual([...frames.get('f1').read()], labels);
+      assert.equal(notes.length, note ? 1 : 0, JSON.stringify(notes));
+      if (!note) return;
+      assert.match(notes[0].message, note);
+      assert.match(notes[0].message, /^'f1\.png': /);
+    });
+  }
+
+  for (const edge of [1.5, 3, 9]) {
+    test(`an edge of ${edge} pixels, cut at half`, () => {
+      const share = disc([22, 17], 12, edge);
+      const wanted = share.map((part) => Number(part >= 0.5));
+      const kinds = { grey: mixed(share, [0], [255]), colours: mixed(share, BLACK, RED), number: mixed(share, [0], [200]) };
+      for (const [kind, pixels] of Object.entries(kinds)) {
+        const { frames, notes } = read(file(pixels));
+        const found = frames.get('f1').read().map(Number);
+        const value = kind === 'number' ? 200 : 1;
+        assert.deepEqual(new Set(found), new Set([0, value]), kind);
+        const wrong = found.filter((label, p) => (label > 0) !== (wanted[p] > 0)).length;
+        assert.ok(wrong <= 12, `${kind}: ${wrong} pixels`);
+        assert.match(notes[0].message, /edges are smoothed/);
+      }
+    });
+  }
+
+  test('smoothed edges of two objects that touch', () => {
+    const share = picture((x) => Math.min(1, Math.max(0, (x - 22) / 4)));
+    const pixels = mixed(share, RED, BLUE).map((pixel, p) => (p < 6 * 48 ? BLACK : pixel));
+    const found = [...read(file(pixels)).frames.get('f1').read()];
+    assert.deepEqual(new Set(found), new Set([0, 1, 2]));
+    assert.ok(found.every((label, p) => p < 6 * 48 || Math.abs((p % 48) - 24) <= 1 || label === (p % 48 < 24 ? 1 : 2)));
+  });
+
+  test('small and thin objects are no edges', () => {
+    const labels = TWO.map((number, p) => (p % 48 === 44 && p > 480 && p < 1200 ? 9 : p === 100 ? 5 : number));
+    assert.deepEqual([...read(file(labels)).frames.get('f1').read()], labels);
+    assert.deepEqual(read(file(labels)).notes, []);
+  });
+
+  test('255 among indices is what the other files say', () => {
+    const sources = [TWO, ONE.map((is) => is * 255)].map((labels, k) => ({ name: `f${k}.png`, bytes: indexed(labels, davisPalette()) }));
+    const { frames, notes } = readAnnotations(sources);
+    assert.deepEqual([...frames.get('f1').read()], ONE.map((is) => is * 255));
+    assert.deepEqual(notes, []);
+  });
+
+  test('a colour is one object in all files; what was assumed is said once', () => {
+    const sources = [coloured(BLACK, RED, BLUE), coloured(BLACK, BLUE, RED)].map((bytes, k) => ({ name: `f${k}.png`, bytes }));
+    const { frames, notes } = readAnnotations(sources);
+    assert.deepEqual([...frames.get('f1').read()], TWO.map((number) => [0, 2, 1][number]));
+    assert.deepEqual(notes.map(({ message }) => message), ["'f0.png' and 1 more: black is the background, each of 2 colours is an object"]);
+  });
+
+  const UNCLEAR = {
+    'a picture': file(picture((x, y) => [x * 5, y * 7, (x * y) % 251])),
+    'colours without a background': coloured([9, 9, 90], RED, BLUE),
+    'noise at every edge': file(picture((x, y) => (square(x, y) ? 255 : square(x - 1, y - 1) || square(x + 1, y + 1) ? 20 + ((x * 37 + y * 91) % 200) : other(x, y) ? 40 + ((x * 37 + y * 91) % 150) : 0))),
+  };
+  for (const [name, bytes] of Object.entries(UNCLEAR)) {
+    test(`${name}: nobody knows`, () => {
+      assert.throws(() => read(bytes), { code: 'invalid-input', message: /^'f1\.png': it has .*, so nobody knows which pixels .*: save it without smoothing/ });
+    });
+  }
+});
+
+describe('masks and the program', () => {
+  const png = (is) => file(is.map((one) => one * 255));
+
+  test('clip --masks says what it takes masks for, and tracks.json too', async (t) => {
+    const { frames, out, path } = framesOf(t, 3, (k) => frame(k / 2, SIZE));
+    const given = (folder, name, bytes) => {
+      mkdirSync(dirname(path(folder, name)), { recursive: true });
+      writeFileSync(path(folder, name), bytes);
+    };
+    const run = async (folder) => veronese(['clip', frames, '--quality', 'fast', '--masks', path(folder), '--out', out]);
+    given('white', 'f0.png', png(ONE));
+    given('one', 'f0.png', file(ONE));
+    given('each', join('1', 'f0.png'), png(ONE));
+    const white = await run('white');
+    assert.deepEqual([white.code, white.stderr.replace(path('white'), '')], [0, "veronese: note: '/f0.png': 255 is the object, number 1, and 0 the background\n"]);
+    assert.equal(tracksOf(out).notes[0].code, 'mask-white');
+    const labels = labelsOf(out, 2);
+    assert.deepEqual([...labelsOf(out, 0)].map((label) => Number(label === 1)), ONE);
+    for (const folder of ['one', 'each']) {
+      const { code, stderr } = await run(folder);
+      assert.deepEqual([code, stderr], [0, '']);
+      assert.deepEqual(labelsOf(out, 2), labels);
+    }
+  });
+
+  test('convert --to masks reads back to the same objects', async (t) => {
+    const folder = temporaryFolder(t);
+    const { frames, tracks } = clipFolder(folder.path('clip'));
+    for (const args of [['clip', '--to', 'masks', '--background', '--out', 'all'], ['all/masks', '--to', 'corrections', '--out', 'back']]) {
+      const [source, to, format, ...rest] = args;
+      const places = rest.map((arg, k) => (rest[k - 1] === '--out' ? folder.path(arg) : arg));
+      const { code, stderr } = await veronese(['convert', folder.path(source), to, format, ...places]);
+      assert.deepEqual([code, stderr], [0, '']);
+    }
+    frames.forEach((labels, k) => {
+      const found = decode(readFileSync(folder.path('back', `${tracks.frames[k]}.png`))).data;
+      assert.deepEqual(Uint8Array.from(found), labels.map((label) => (label === 255 ? 0 : label)));
+    });
+  });
+
+  test('convert says what it takes them for, and writes numbers', async (t) => {
+    const folder = temporaryFolder(t);
+    const source = folder.file('a.png', coloured(BLACK, RED, BLUE));
+    const { stdout, stderr } = await veronese(['convert', source, '--to', 'corrections', '--out', folder.path('out')]);
+    assert.match(stderr, /^veronese: note: '.*a\.png': black is the background, each of 2 colours is an object\n$/);
+    assert.equal(lines(stdout)[0].notes[0].code, 'mask-colours');
+    assert.deepEqual([...decode(readFileSync(folder.path('out', 'a.png'))).data], TWO);
+  });
+});
