@@ -30,6 +30,7 @@ const IMAGES = {
   'cvat-polygon': (...all) => [file('cvat.xml', formats.encodeCvatXml(...all, { shape: 'polygon' }))],
   labelme: (...all) => [file('labelme.json', formats.encodeLabelMe(...all))],
   'labelme-polygon': (...all) => [file('labelme.json', formats.encodeLabelMe(...all, { shape: 'polygon' }))],
+  'label-studio': (...all) => [file('label-studio.json', [formats.encodeLabelStudio(...all)])],
   supervisely: (...all) => [file('ann/first.png.json', formats.encodeSupervisely(...all))],
   davis: (labels, width, height) => [file('first.png', formats.encodeDavis(labels, width, height))],
   veronese: (...all) => [file('veronese.json', formats.encodeVeronese(...all))],
@@ -74,7 +75,7 @@ describe('one image', () => {
         const found = frames.get('first');
         assert.deepEqual([found.width, found.height], [width, height]);
         // Without numbers of their own, objects are counted in their order.
-        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'supervisely'].includes(name);
+        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'label-studio', 'supervisely'].includes(name);
         if (name.startsWith('cvat-poly')) {
           const numbers = new Map([[0, 0], ...Object.entries(called).map(([number, name]) => [Number(name.slice(6)), Number(number)])]);
           assert.deepEqual(found.read(), ground(labels).map((label) => numbers.get(label)));
@@ -281,6 +282,106 @@ describe('files of other programs', () => {
   });
 });
 
+describe('annotations as people have them', () => {
+  const image = { id: 1, file_name: '0001.png', width: 8, height: 6 };
+  const ring = [1, 1, 5, 1, 5, 4, 1, 4];
+  const coco = (...annotations) => ({ images: [image], categories: [{ id: 0, name: 'car' }], annotations: annotations.map((one, id) => ({ id, image_id: 1, category_id: 0, ...one })) });
+  const cvat = (inside) => `<annotations><image id="0" name="0001.png" width="8" height="6">${inside}</image></annotations>`;
+  const labelMe = (...shapes) => ({ imagePath: '0001.png', imageWidth: 8, imageHeight: 6, shapes: shapes.map((one) => ({ label: 'car', ...one })) });
+  const polygon = { points: [[1, 1], [5, 1], [5, 4], [1, 4]] };
+  const supervisely = (...objects) => ({ size: { width: 8, height: 6 }, objects: objects.map((one) => ({ classTitle: 'car', ...one })) });
+  const task = (...result) => [{ id: 3, data: { image: '/data/upload/1/0a1b2c3d-0001.png' }, annotations: [{ result: result.map((one) => ({ original_width: 8, original_height: 6, ...one })) }] }];
+  const percent = ([x, y]) => [(100 * x) / 8, (100 * y) / 6];
+  const datumaro = (...annotations) => ({
+    info: {},
+    categories: { label: { labels: [{ name: 'car', parent: '' }] } },
+    items: [{ id: '0001', image: { path: '0001.png', size: [6, 8] }, annotations: annotations.map((one, id) => ({ id, label_id: 0, group: 0, ...one })) }],
+  });
+  /** A mask of 4 × 3 pixels at (1, 1) beside a box of 2 × 1 at (6, 4). */
+  const BOTH = {
+    coco: coco({ segmentation: [ring] }, { segmentation: [], bbox: [6, 4, 2, 1] }),
+    cvat: cvat('<polygon label="car" points="1,1;5,1;5,4;1,4"/><box label="car" xtl="6.2" ytl="4.0" xbr="7.9" ybr="4.9"/>'),
+    labelme: labelMe({ ...polygon }, { shape_type: 'rectangle', points: [[8, 5], [6, 4]] }),
+    supervisely: supervisely(
+      { geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]], interior: [] } },
+      { geometryType: 'rectangle', points: { exterior: [[6, 4], [7, 4]], interior: [] } },
+    ),
+    'label-studio': task(
+      { type: 'polygonlabels', value: { points: polygon.points.map(percent), polygonlabels: ['car'] } },
+      { type: 'rectanglelabels', value: { x: 75, y: 66.7, width: 25, height: 16, rectanglelabels: ['car'] } },
+    ),
+    datumaro: datumaro({ type: 'polygon', points: ring }, { type: 'bbox', bbox: [6, 4, 2, 1] }),
+  };
+  const labels = [...'00000000', ...'01111000', ...'01111000', ...'01111000', ...'000000..', ...'00000000'].map((digit) => (digit === '.' ? 255 : Number(digit)));
+
+  for (const [format, content] of Object.entries(BOTH)) {
+    test(`${format}: a box beside a mask is a prompt, around which the mask says nothing`, () => {
+      const found = readAnnotations([file('0001.png.json', content)]);
+      assert.equal(found.format, format);
+      assert.deepEqual([...found.frames.get('0001').read()], labels);
+      assert.deepEqual(found.boxes, [{ frame: '0001', object: 2, box: [6, 4, 2, 1] }]);
+      assert.deepEqual(found.names, { 1: 'car', 2: 'car' });
+      assert.deepEqual(found.notes.map(({ code }) => code), ['boxes-taken']);
+    });
+  }
+
+  test('boxes alone, on frames without any mask', () => {
+    const { frames, boxes } = read(formats.encodeCvatVideo([drawn('01'), drawn('11')], { labels: [1] }, { shape: 'box' }));
+    assert.equal(frames.size, 0);
+    assert.deepEqual(boxes, [{ frame: '00000', object: 1, box: [1, 0, 1, 1] }, { frame: '00001', object: 1, box: [0, 0, 2, 1] }]);
+    const turned = read(cvat('<box label="car" xtl="2" ytl="2" xbr="6" ybr="4" rotation="90"/>'));
+    assert.deepEqual(turned.boxes, [{ frame: '0001', object: 1, box: [3, 1, 2, 4] }]);
+  });
+
+  test('what has no inside is left out and counted; nothing of it refuses the file', () => {
+    const point = { shape_type: 'point', points: [[1, 1]] };
+    const { notes } = read(labelMe(polygon, point, point, { shape_type: 'linestrip', points: [[1, 1], [2, 2]] }));
+    assert.deepEqual(notes, [{ code: 'shapes-left-out', message: "'file-0': left out shapes of type \"point\" (2), shapes of type \"linestrip\" (1)" }]);
+    assert.match(read(cvat('<polygon label="car" points="1,1;5,1;5,4"/><points label="a" points="1,1"/>')).notes[0].message, /<points> elements \(1\)/);
+    assert.match(read(coco({ segmentation: [ring] }, { segmentation: null })).notes[0].message, /without a mask \(1\)/);
+    assert.match(read(coco({ segmentation: [ring] }, { segmentation: [], bbox: [20, 20, 3, 3] })).notes[0].message, /boxes outside the frame \(1\)/);
+  });
+
+  test("COCO: a polygon without a list around it, and numbers that Python writes", () => {
+    const flat = coco({ segmentation: ring, area: 0 });
+    const text = JSON.stringify(flat).replace('"area":0', '"area":NaN,"note":"NaN","score":-Infinity');
+    assert.deepEqual([...read(text).frames.get('0001').read()], labels.map((label) => label % 255));
+    assert.throws(() => read(JSON.stringify(coco({ id: 7, segmentation: [[1, 2, 3, 4, 5, 0]] })).replace('5,0]', '5,NaN]')).frames.get('0001').read(), {
+      message: /^'file-0': image "0001\.png", annotation 7: a polygon has a vertex/,
+    });
+  });
+
+  test('Label Studio: brushes, the last annotation that was not skipped, names of images', () => {
+    const { labels, width, height } = drawn('0110', '0121', '0000');
+    const [{ value }, other] = formats.encodeLabelStudio(labels, width, height, { labels: [1, 2], names: { 1: 'a', 2: 'b' } }).predictions[0].result;
+    const result = [value, other.value].map((value) => ({ type: 'brushlabels', original_width: 4, original_height: 3, value }));
+    const tasks = [
+      { data: { image: '/data/local-files/?d=clips%2Fone%2F0001.jpg' }, annotations: [{ result: [] }, { result }, { was_cancelled: true, result: [] }] },
+      { data: { img: 's3://bucket/0002.png' }, predictions: [{ result: [result[1], { type: 'choices', value: {} }] }] },
+    ];
+    const { frames, names, notes } = read(tasks);
+    assert.deepEqual([...frames.keys()], ['0001', '0002']);
+    assert.deepEqual([...frames.get('0001').read()], [...labels]);
+    assert.deepEqual([names, notes], [{ 1: 'a', 2: 'b' }, []]);
+    const damaged = task({ id: 'x', type: 'brushlabels', value: { format: 'rle', rle: value.rle.slice(0, 9), brushlabels: ['a'] } });
+    assert.throws(() => read(damaged).frames.get('0001').read(), { message: /^'file-0': task 3, image "0001\.png".*|result "x": the run lengths/ });
+  });
+
+  test('Datumaro: run lengths, groups and the order of layers', () => {
+    const counts = formats.encodeCocoRle(drawn('0110', '0110').labels, 4, 2);
+    const document = datumaro();
+    document.items[0].image.size = [2, 4];
+    document.items[0].annotations = [
+      { id: 0, type: 'polygon', label_id: 0, group: 4, z_order: 2, points: [0, 0, 2, 0, 2, 1, 0, 1] },
+      { id: 1, type: 'mask', label_id: 0, group: 0, z_order: 1, rle: counts },
+      { id: 2, type: 'caption', caption: 'a car' },
+    ];
+    const { frames, names } = read(document);
+    assert.deepEqual([...frames.get('0001').read()], [4, 4, 1, 0, 0, 1, 1, 0]);
+    assert.deepEqual(names, { 1: 'car', 4: 'car' });
+  });
+});
+
 describe('what is none of that', () => {
   const image = { id: 1, file_name: 'f.jpg', width: 4, height: 4 };
   const coco = (change = {}, annotation = {}) => ({
@@ -329,8 +430,9 @@ describe('what is none of that', () => {
     'annotations that are none': [coco({ annotations: [1] }), /"annotations" must be a list of objects/],
     'an annotation of no image': [coco({}, { image_id: 2 }), /of the image 2, and there is none/],
     'a category without a name': [coco({ categories: [{ id: 1, name: 3 }] }), /name of a category must be text/],
-    'a box alone': [segmentation([]), /has no mask/],
-    'no mask': [segmentation(null), /has no mask/],
+    'neither mask nor box': [segmentation([]), /annotates no frame: .*left out annotations without a mask \(1\)/],
+    'no mask': [segmentation(null), /annotates no frame/],
+    'a mask that is wrong, of many': [coco({}, { id: 77, segmentation: [[0, 0, 1, 1]] }), /image "f\.jpg", annotation 77: a polygon must have three/],
     'too few counts': [rle([0, 15]), /must be of 16 pixels, not 15/],
     'too many': [rle([0, 17]), /must be of 16 pixels, not 17/],
     'a negative count': [rle([0, 17, -1]), /whole numbers from 0/],
@@ -360,7 +462,8 @@ describe('what is none of that', () => {
     'another XML': ['<html></html>', /is no annotation of CVAT/],
     'entities that grow': [`<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]>${cvat('<mask label="&c;"/>')}`, /is not XML: Named entity isn't defined/],
     'an entity from a file': [`<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/hostname">]>${cvat('<mask label="&b;"/>')}`, /is not XML: Named entity isn't defined/],
-    'a box in CVAT': [cvat('<box label="a" xtl="0" ytl="0" xbr="2" ybr="2"/>'), /has a <box>, and only masks and polygons/],
+    'a box of CVAT without sides': [cvat('<box label="a" xtl="0" ytl="0" xbr="2"/>'), /image "f\.jpg": a box must have four numbers/],
+    'a line of CVAT': [cvat('<polyline label="a" points="0,0;1,1"/>'), /annotates no frame: .*left out <polyline> elements \(1\)/],
     'an image of CVAT without size': [cvat('<polygon label="a" points="0,0;1,0;1,1"/>', 'name="f.jpg"'), /width and height of an image/],
     'no points': [polygon(''), /three vertices or more/],
     'points that are no numbers': [polygon('0,0;NaN,1;2,2'), /no pair of numbers/],
@@ -373,9 +476,8 @@ describe('what is none of that', () => {
     'a track of no size': [track('<polygon frame="0" points="0,0;1,0;1,1"/>', ''), /width and height of the video, in <original_size>,/],
     'a track of no frame': [track('<polygon points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
     'a track before the first frame': [track('<polygon frame="-1" points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
-    'boxes on a video': [formats.encodeCvatVideo([drawn('01')], {}, { shape: 'box' }), /has a <box>/],
 
-    'a rectangle in LabelMe': [labelMe({ points: corners, shape_type: 'rectangle' }), /shape of type "rectangle"/],
+    'a rectangle in LabelMe of one corner': [labelMe({ points: [[1, 1]], shape_type: 'rectangle' }), /a box must have four numbers/],
     'a shape without a label': [labelMe({ label: 3, points: corners }), /label of a shape must be text/],
     'points of LabelMe that are none': [labelMe({ points: [1, 2, 3] }), /must each be x and y/],
     'a mask that is no PNG': [labelMe({ points: corners, shape_type: 'mask', mask: 'AAAA' }), /a mask is not a PNG/, 'unreadable-image'],
@@ -391,7 +493,8 @@ describe('what is none of that', () => {
     'a large frame of MOTS': ['1 1001 1 1 5000 0', /width and height of line 1/],
 
     'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
-    'a polygon of Supervisely': [supervisely({ geometryType: 'polygon' }), /object that is no bitmap/],
+    'a polygon of Supervisely without points': [supervisely({ geometryType: 'polygon' }), /object 1, "a": its points must be lists/],
+    'a bitmap without data': [supervisely({}), /object 1, "a": it is a bitmap without data/],
     'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
 
     'a picture': [pngOf([32, 32, 8, 2], ['IDAT', deflateSync(Buffer.from(Array.from({ length: 32 * 97 }, (_, at) => (at % 97 === 0 ? 0 : at * 7919))))]), /it has \d+ colours, so nobody knows which pixels are of which object: save it/],

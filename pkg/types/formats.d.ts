@@ -382,7 +382,7 @@ export interface AnnotationFile {
 }
 
 /** The formats of {@link readAnnotations}: `cvat` is of images or of a video, `png` are masks of any kind, each file a frame. */
-export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese';
+export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'label-studio' | 'datumaro' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese';
 
 /** One frame that was annotated. */
 export interface AnnotatedFrame {
@@ -398,12 +398,15 @@ export interface Annotations {
   frames: Map<string, AnnotatedFrame>;
   /** Names of the objects, or of their classes, where there are some. */
   names: Record<number, string>;
+  /** Objects of which a frame has a box and no mask: prompts for `segmentClip`, [first column, first row, width, height]. */
+  boxes: { frame: string; object: number; box: [number, number, number, number] }[];
   /** What files were taken for that do not say it themselves, and what was left out. */
   notes: AnnotationNote[];
 }
 
 export interface AnnotationNote {
-  /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `mask-smoothed`, `boxes-left-out` … */
+  /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `mask-smoothed`, `shapes-left-out`,
+   * `boxes-taken`. */
   code: string;
   /** A sentence that names the file. */
   message: string;

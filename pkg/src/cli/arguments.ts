@@ -87,7 +87,8 @@ export const HELP = `veronese segments two video frames by motion: how many moti
 
   veronese convert SOURCE --to corrections --out DIR
                                          read masks back, for --corrections of clip: NAME.png for each annotated frame, and edits.json; SOURCE
-                                         is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks
+                                         is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS,
+                                         Supervisely, PNG masks
       --clip DIR             the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)
       --force                as for pair
 

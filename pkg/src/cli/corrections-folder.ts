@@ -23,16 +23,16 @@ export async function convertBack({ source, clip }: CorrectionsCommand, output: 
   const frames = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
   for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path) });
-  const { format, frames: annotated, names, notes } = readAnnotations(files, frames && { frames });
+  const { format, frames: annotated, names, boxes, notes } = readAnnotations(files, frames && { frames });
   for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {
       for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
-      await write(EDITS, `${JSON.stringify({ names })}\n`);
+      await write(EDITS, `${JSON.stringify({ names, ...(boxes.length > 0 && { prompts: boxes }) })}\n`);
     },
     (path) => /^[^/]+\.png$/.test(path),
   );
-  return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size, ...(notes.length > 0 && { notes }) })}\n`;
+  return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size, ...(boxes.length > 0 && { boxes: boxes.length }), ...(notes.length > 0 && { notes }) })}\n`;
 }
 
 /** The names of a clip's frames. */

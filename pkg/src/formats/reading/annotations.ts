@@ -1,7 +1,7 @@
 // Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
 
 import { unzipSync } from 'fflate';
-import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, Annotations } from '../../../types/formats.js';
+import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, Annotations } from '../../../types/formats.js';
 import {
   checkedBytes,
   entriesOf,
@@ -20,7 +20,9 @@ import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
 import { type Context, isObjectNumber, isPng, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
+import { readDatumaro } from './datumaro.js';
 import { readLabelMe } from './labelme.js';
+import { readLabelStudio } from './label-studio.js';
 import { readMasks } from './masks.js';
 import { areMots, isMots, readMots, readMotsPng } from './mots.js';
 import { readSupervisely } from './supervisely.js';
@@ -50,10 +52,15 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
     throw invalidInput(sentence);
   }
-  const context = contextOf(all, names);
+  const left = new LeftOut();
+  const context = contextOf(all, names, left);
   const frames = [first, ...others].flatMap(({ source, read }) => naming(source.name, () => read(context)));
-  if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame`);
-  return { format: first.format, ...numbered(frames), notes: [] };
+  const notes = left.notes();
+  if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
+  const found = numbered(frames);
+  const count = found.boxes.length;
+  if (count > 0) notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${count})` });
+  return { format: first.format, ...found, notes };
 }
 
 /** Annotations that are pictures themselves. */
@@ -62,7 +69,7 @@ function ofPictures(all: readonly Source[], names: readonly string[] | undefined
   const [first] = pictures;
   if (!first) throw invalidInput(nothingIn(all));
   if (areMots(pictures)) {
-    const context = contextOf(all, names);
+    const context = contextOf(all, names, new LeftOut());
     return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))), notes: [] };
   }
   const { frames, notes } = readMasks(pictures);
@@ -82,7 +89,24 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-function contextOf(all: readonly Source[], names: readonly string[] | undefined): Context {
+/** What files have and is not read, counted. */
+class LeftOut {
+  readonly #counts = new Map<string, Map<string, number>>();
+
+  readonly add = (file: string, kind: string): void => {
+    const kinds = this.#counts.get(file) ?? new Map<string, number>();
+    this.#counts.set(file, kinds.set(kind, (kinds.get(kind) ?? 0) + 1));
+  };
+
+  notes(): AnnotationNote[] {
+    return [...this.#counts].map(([file, kinds]) => {
+      const counts = [...kinds].map(([kind, count]) => `${kind} (${count})`).join(', ');
+      return { code: 'shapes-left-out', message: `'${file}': left out ${counts}` };
+    });
+  }
+}
+
+function contextOf(all: readonly Source[], names: readonly string[] | undefined, left: LeftOut): Context {
   const folderOf = (name: string) => name.slice(0, name.lastIndexOf('/') + 1);
   return {
     nameOf(index) {
@@ -95,6 +119,7 @@ function contextOf(all: readonly Source[], names: readonly string[] | undefined)
       const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);
       return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
     },
+    leaveOut: left.add,
   };
 }
 
@@ -111,26 +136,41 @@ function recognised(source: Source): Recognised[] {
 function recognisedJson(source: Source): Recognised[] {
   const { name, bytes } = source;
   const text = textOf(bytes);
-  let document: unknown;
-  try {
-    document = JSON.parse(text);
-  } catch {
-    throw invalidInput('it is not JSON');
-  }
+  const document = parsed(text);
+  if (isListOf(document, isTask) && document.length > 0) return [{ source, format: 'label-studio', read: (context) => readLabelStudio(document, name, context) }];
   if (!isObject(document)) return [];
   const json = document;
-  const found = (format: AnnotationFormat, read: () => ReadFrame[]): Recognised[] => [{ source, format, read }];
-  if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', () => readYouTubeVis(json, name));
-  if ('annotations' in json && 'images' in json) return found('coco', () => readCoco(json, name));
-  if ('shapes' in json && 'imagePath' in json) return found('labelme', () => [readLabelMe(json, name)]);
+  const found = (format: AnnotationFormat, read: (context: Context) => ReadFrame[]): Recognised[] => [{ source, format, read }];
+  if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
+  if ('annotations' in json && 'images' in json) return found('coco', (context) => readCoco(json, name, context));
+  if ('shapes' in json && 'imagePath' in json) return found('labelme', (context) => [readLabelMe(json, name, context)]);
   if (json['format'] === 'veronese') return found('veronese', () => [readVeronese(json, name)]);
-  if ('size' in json && 'objects' in json) return found('supervisely', () => [readSupervisely(json, name)]);
+  if (isTask(json)) return found('label-studio', (context) => readLabelStudio([json], name, context));
+  if ('items' in json && 'categories' in json) return found('datumaro', (context) => readDatumaro(json, name, context));
+  if ('size' in json && 'objects' in json) return found('supervisely', (context) => [readSupervisely(json, name, context)]);
   return [];
+}
+
+function isTask(value: unknown): value is Record<string, unknown> {
+  return isObject(value) && isObject(value['data']) && ['annotations', 'completions', 'predictions'].some((name) => Array.isArray(value[name]));
+}
+
+/** JSON, also as Python writes it: what is no number there is nothing here. */
+function parsed(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch {
+    try {
+      return JSON.parse(text.replace(/"(?:[^"\\]|\\.)*"|-?\b(?:NaN|Infinity)\b/g, (token) => (token.startsWith('"') ? token : 'null')));
+    } catch {
+      throw invalidInput('it is not JSON');
+    }
+  }
 }
 
 function nothingIn(files: readonly Source[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
-  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks, veronese`;
+  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, PNG masks, veronese`;
 }
 
 function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
@@ -141,7 +181,7 @@ function readVeronese(document: Record<string, unknown>, file: string): ReadFram
 }
 
 /** Objects keep the numbers that they have in the file, where that is possible; the others get those that are free, in their order. */
-function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'names'> {
+function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'names' | 'boxes'> {
   const objects = new Map<string, { number?: number; name?: string }>();
   for (const { objects: some } of read) {
     for (const { key, number, name } of some) {
@@ -170,7 +210,8 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
   }
   const frames = new Map<string, AnnotatedFrame>();
   const files = new Map<string, string>();
-  for (const { name, file, width, height, draw } of read) {
+  const boxes: Annotations['boxes'] = [];
+  for (const { name, file, width, height, draw, objects: own, boxes: some = [] } of read) {
     const before = files.get(keyOf(name));
     if (before === file) throw wrong(file, `has two frames called '${name}'`);
     if (before !== undefined) throw wrong(file, `and '${before}' are both of the frame '${name}'`);
@@ -180,6 +221,9 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
       const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${one.width}×${one.height}`;
       throw new VeroneseError('frame-size-mismatch', sentence);
     }
+    for (const { key, box } of some) if (labels.get(key)) boxes.push({ frame: name, object: labels.get(key) as number, box });
+    // Nobody has drawn masks in a frame of boxes alone.
+    if (some.length > 0 && some.length === new Set(own.map(({ key }) => key)).size) continue;
     frames.set(name, {
       width,
       height,
@@ -191,7 +235,7 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
         }),
     });
   }
-  return { frames, names };
+  return { frames, names, boxes };
 }
 
 function isArchive(bytes: Uint8Array): boolean {

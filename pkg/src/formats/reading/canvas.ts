@@ -1,7 +1,7 @@
 // The labels of one frame, on which shapes are drawn. A pixel is in a polygon if its centre is, by the even-odd rule; of shapes that overlap
 // the later one is on top. Files may come from anywhere, so the work is bounded: it is counted in borders crossed and pixels filled.
 
-import { invalidInput } from '../../common/checks.js';
+import { invalidInput, UNLABELLED } from '../../common/checks.js';
 
 /** Shapes may cover the whole frame so many times over, and small frames more often. Real ones overlap a few times in some places. */
 const LAYERS = 16;
@@ -64,6 +64,14 @@ export class Canvas {
     for (let y = 0, at = 0; y < box.height; y++) {
       const start = (box.top + y) * this.width + box.left;
       for (let x = 0; x < box.width; x++) if (pixels[at++]) this.labels[start + x] = label;
+    }
+  }
+
+  /** The ground inside a box: whether it is of an object there is not known. */
+  open([left, top, width, height]: readonly [number, number, number, number]): void {
+    this.#spend(width * height);
+    for (let y = top; y < top + height; y++) {
+      for (let at = y * this.width + left, end = at + width; at < end; at++) if (this.labels[at] === 0) this.labels[at] = UNLABELLED;
     }
   }
 

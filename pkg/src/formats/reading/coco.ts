@@ -1,14 +1,28 @@
 // COCO's instances, of images and of videos as in YouTube-VIS.
 
-import { invalidInput, isObject } from '../../common/checks.js';
+import { invalidInput, isNumber, isObject } from '../../common/checks.js';
 import type { Canvas } from './canvas.js';
 import { decompressed } from './coco-rle.js';
-import { checkSize, frameOfShapes, isObjectNumber, known, listOf, type ReadFrame, type Shape, stemOf, Unnumbered } from './frame.js';
+import {
+  checkSize,
+  type Context,
+  frameOfShapes,
+  isObjectNumber,
+  known,
+  listOf,
+  placed,
+  quoted,
+  type ReadFrame,
+  type Shape,
+  stemOf,
+  Unnumbered,
+  within,
+} from './frame.js';
 
 type Json = Record<string, unknown>;
 
 /** Images of which nothing is annotated are left out: a list of images also has those at which nobody has looked. */
-export function readCoco(document: Json, file: string): ReadFrame[] {
+export function readCoco(document: Json, file: string, context: Context): ReadFrame[] {
   const categories = categoriesOf(document);
   const images = new Map<unknown, { image: Json; shapes: Shape[]; unnumbered: Unnumbered }>();
   for (const image of listOf(document['images'], 'images')) {
@@ -16,23 +30,27 @@ export function readCoco(document: Json, file: string): ReadFrame[] {
     images.set(image['id'], { image, shapes: [], unnumbered: new Unnumbered() });
   }
   for (const annotation of listOf(document['annotations'], 'annotations')) {
+    const { attributes, segmentation, bbox, id } = annotation;
+    const which = `annotation ${quoted(id)}`;
     const found = images.get(annotation['image_id']);
-    if (!found) throw invalidInput(`an annotation is of the image ${JSON.stringify(annotation['image_id'])}, and there is none`);
-    const { attributes, segmentation } = annotation;
+    if (!found) throw invalidInput(`${which} is of the image ${quoted(annotation['image_id'])}, and there is none`);
     const track = (isObject(attributes) ? attributes['track_id'] : undefined) ?? annotation['track_id'];
     const name = categories.get(annotation['category_id']);
     const key = isId(track) ? `track ${track}` : found.unnumbered.keyOf(name);
-    found.shapes.push(shapeOf(key, track, name, segmentation));
+    if (!isMask(segmentation) && !isBox(bbox)) context.leaveOut(file, 'annotations without a mask');
+    else found.shapes.push(placed(`image ${quoted(found.image['file_name'])}, ${which}`, () => shapeOf(key, track, name, segmentation, bbox)));
   }
   return [...images.values()].flatMap(({ image, shapes }) => {
     if (shapes.length === 0) return [];
-    const size = checkSize(image['width'], image['height'], 'an image');
-    return [frameOfShapes({ name: stemOf(image['file_name']), file, ...size }, shapes)];
+    return within(`image ${quoted(image['id'])}`, () => {
+      const size = checkSize(image['width'], image['height'], 'an image');
+      return [frameOfShapes({ name: stemOf(image['file_name']), file, ...size }, shapes, context)];
+    });
   });
 }
 
 /** Frames in which no object is are left out, as are images of {@link readCoco}. */
-export function readYouTubeVis(document: Json, file: string): ReadFrame[] {
+export function readYouTubeVis(document: Json, file: string, context: Context): ReadFrame[] {
   const categories = categoriesOf(document);
   const videos = new Map<unknown, { size: { width: number; height: number }; names: unknown[]; shapes: Map<number, Shape[]> }>();
   for (const video of listOf(document['videos'], 'videos')) {
@@ -45,21 +63,21 @@ export function readYouTubeVis(document: Json, file: string): ReadFrame[] {
   for (const annotation of listOf(document['annotations'], 'annotations')) {
     const { id, video_id: of, category_id: category, segmentations } = annotation;
     const video = videos.get(of);
-    if (!video) throw invalidInput(`an annotation is of the video ${JSON.stringify(of)}, and there is none`);
+    if (!video) throw invalidInput(`annotation ${quoted(id)} is of the video ${quoted(of)}, and there is none`);
     if (!Array.isArray(segmentations) || segmentations.length !== video.names.length) {
-      throw invalidInput('"segmentations" must have an entry for each frame, null where the object is not to be seen');
+      throw invalidInput(`annotation ${quoted(id)}: "segmentations" must have an entry for each frame, null where the object is not to be seen`);
     }
     const name = categories.get(category);
     const key = isId(id) ? `${videos.size > 1 ? String(of) : ''} track ${id}` : unnumbered.keyOf(name);
     for (const [index, segmentation] of segmentations.entries()) {
-      if (segmentation === null) continue;
+      if (segmentation === null || segmentation === undefined) continue;
       const shapes = video.shapes.get(index) ?? [];
       video.shapes.set(index, shapes);
-      shapes.push(shapeOf(key, id, name, segmentation));
+      shapes.push(placed(`frame ${quoted(video.names[index])}, annotation ${quoted(id)}`, () => shapeOf(key, id, name, segmentation)));
     }
   }
   return [...videos.values()].flatMap(({ size, names, shapes }) =>
-    [...shapes].sort(([a], [b]) => a - b).map(([index, all]) => frameOfShapes({ name: stemOf(names[index]), file, ...size }, all)),
+    [...shapes].sort(([a], [b]) => a - b).map(([index, all]) => frameOfShapes({ name: stemOf(names[index]), file, ...size }, all, context)),
   );
 }
 
@@ -72,7 +90,7 @@ function categoriesOf(document: Json): Map<unknown, string> {
   );
 }
 
-function isId(id: unknown): id is number | string {
+export function isId(id: unknown): id is number | string {
   return typeof id === 'number' || typeof id === 'string';
 }
 
@@ -81,17 +99,29 @@ function idOf({ id }: Json, what: string): number | string {
   throw invalidInput(`${what} must have an id`);
 }
 
-function shapeOf(key: string, number: unknown, name: string | undefined, segmentation: unknown): Shape {
+/** Other programs write an empty list, or nothing, where there is a box alone. */
+function isMask(segmentation: unknown): boolean {
+  return isObject(segmentation) || (Array.isArray(segmentation) && segmentation.length > 0);
+}
+
+function isBox(bbox: unknown): bbox is number[] {
+  return Array.isArray(bbox) && bbox.length === 4;
+}
+
+function shapeOf(key: string, number: unknown, name: string | undefined, segmentation: unknown, bbox?: unknown): Shape {
   const shape = known(key, isObjectNumber(number) ? number : undefined, name);
+  if (!isMask(segmentation) && isBox(bbox)) return { ...shape, box: bbox.map(Number) };
   if (Array.isArray(segmentation) && segmentation.length > 0) {
-    const rings: unknown[] = segmentation;
+    // Some programs leave out the list around the only polygon.
+    const rings: unknown[] = segmentation.length >= 6 && segmentation.every(isNumber) ? [segmentation] : segmentation;
     return { ...shape, draw: (canvas, label) => rings.forEach((ring) => canvas.polygon(Array.isArray(ring) ? ring : [], label)) };
   }
   if (!isObject(segmentation)) throw invalidInput('an annotation has no mask: its segmentation must be polygons or run lengths');
-  return { ...shape, draw: (canvas, label) => runs(canvas, segmentation, label) };
+  return { ...shape, draw: (canvas, label) => columnsOf(canvas, segmentation, label) };
 }
 
-function runs(canvas: Canvas, { size, counts }: Json, label: number): void {
+/** Run lengths with their size. */
+export function columnsOf(canvas: Canvas, { size, counts }: Json, label: number): void {
   const { width, height } = canvas;
   if (!Array.isArray(size) || size.length !== 2 || size[0] !== height || size[1] !== width) {
     throw invalidInput(`run lengths must be of the frame's size, [${height}, ${width}], not ${JSON.stringify(size)?.slice(0, 40)}`);

@@ -10,23 +10,28 @@ import {
   frameOfShapes,
   isObjectNumber,
   known,
+  placed,
+  quoted,
   type ReadFrame,
   type Shape,
   stemOf,
   Unnumbered,
+  within,
 } from './frame.js';
 
-type Draw = (canvas: Canvas, label: number) => void;
+type Drawing = { draw: (canvas: Canvas, label: number) => void } | { box: number[] };
 
 /** Elements without pixels. */
 const REMARKS = ['attribute', 'tag'];
+/** Elements with an inside; a box says where an object is. */
+const READ = ['polygon', 'mask', 'box'];
 
 /** Images, and frames of a video, without shapes are left out: files also list those at which nobody has looked. */
 export function readCvat(text: string, file: string, context: Context): ReadFrame[] {
   const root = parsed(text);
   if (root.name !== 'annotations') throw invalidInput('it is no annotation of CVAT: its element is not <annotations>');
   const tracks = childrenOf(root, 'track');
-  const images = childrenOf(root, 'image').flatMap((image) => framesOf(image, file));
+  const images = childrenOf(root, 'image').flatMap((image) => framesOf(image, file, context));
   return tracks.length > 0 ? [...images, ...videoOf(root, tracks, file, context)] : images;
 }
 
@@ -46,28 +51,27 @@ function childrenOf({ children }: XmlElement, name?: string): XmlElement[] {
   return children.filter((child): child is XmlElement => child instanceof XmlElement && (name === undefined || child.name === name));
 }
 
-interface Layered extends Shape {
-  z: number;
-}
+type Layered = Shape & { z: number };
 
-function framesOf(image: XmlElement, file: string): ReadFrame[] {
+function framesOf(image: XmlElement, file: string, context: Context): ReadFrame[] {
   const unnumbered = new Unnumbered();
   const identityOf = ({ attributes }: XmlElement, track: string | undefined): [key: string, id?: string] => {
     const { label, group_id: group = '0' } = attributes;
     if (track !== undefined) return [`track ${track}`, track];
     return group === '0' ? [unnumbered.keyOf(label)] : [`group ${group} ${label}`, group];
   };
-  const shapes = childrenOf(image).flatMap((element): Layered[] => {
-    if (REMARKS.includes(element.name)) return [];
+  const { name, width, height } = image.attributes;
+  const shapes = childrenOf(image).flatMap((element, at): Layered[] => {
+    if (!isRead(element, file, context)) return [];
     const track = childrenOf(element, 'attribute').find(({ attributes }) => attributes['name'] === 'track_id');
-    return [shapeOf(element, element.attributes['label'], ...identityOf(element, track?.text))];
+    const place = `image ${quoted(name)}, shape ${at + 1}`;
+    return [shapeOf(place, element, element.attributes['label'], ...identityOf(element, track?.text))];
   });
   if (shapes.length === 0) return [];
-  const { name, width, height } = image.attributes;
-  return [frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes)];
+  return [within(`image ${quoted(name)}`, () => frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes, context))];
 }
 
-function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, { nameOf }: Context): ReadFrame[] {
+function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, context: Context): ReadFrame[] {
   const [extent] = childrenOf(root, 'meta').flatMap((meta) => descendantsOf(meta, 'original_size'));
   const [width, height] = ['width', 'height'].map((side) => number(extent && childrenOf(extent, side)[0]?.text));
   const size = checkSize(width, height, 'the video, in <original_size>,');
@@ -75,15 +79,15 @@ function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, 
   for (const track of tracks) {
     const { id, label } = track.attributes;
     for (const element of childrenOf(track)) {
-      if (REMARKS.includes(element.name) || element.attributes['outside'] === '1') continue;
+      if (element.attributes['outside'] === '1' || !isRead(element, file, context)) continue;
       const index = number(element.attributes['frame']);
-      if (!Number.isInteger(index) || index < 0) throw invalidInput('the frame of a shape must be a whole number from 0');
+      if (!Number.isInteger(index) || index < 0) throw invalidInput(`track ${quoted(id)}: the frame of a shape must be a whole number from 0`);
       const shapes = frames.get(index) ?? [];
       frames.set(index, shapes);
-      shapes.push(shapeOf(element, label, `track ${id}`, id));
+      shapes.push(shapeOf(`track ${quoted(id)}, frame ${index}`, element, label, `track ${id}`, id));
     }
   }
-  return [...frames].sort(([a], [b]) => a - b).map(([index, shapes]) => frameOf({ name: nameOf(index), file, ...size }, shapes));
+  return [...frames].sort(([a], [b]) => a - b).map(([index, shapes]) => frameOf({ name: context.nameOf(index), file, ...size }, shapes, context));
 }
 
 /** Of a task, a job, or the tasks of a project. */
@@ -91,23 +95,40 @@ function descendantsOf(element: XmlElement, name: string): XmlElement[] {
   return childrenOf(element).flatMap((child) => (child.name === name ? [child] : descendantsOf(child, name)));
 }
 
-function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly Layered[]): ReadFrame {
-  return frameOfShapes(frame, [...shapes].sort((a, b) => a.z - b.z));
+function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly Layered[], context: Context): ReadFrame {
+  return frameOfShapes(frame, [...shapes].sort((a, b) => a.z - b.z), context);
 }
 
-function shapeOf(element: XmlElement, name: string | undefined, key: string, id?: string): Layered {
+/** Whether a shape is read; another is counted. */
+function isRead({ name }: XmlElement, file: string, { leaveOut }: Context): boolean {
+  if (READ.includes(name)) return true;
+  if (!REMARKS.includes(name)) leaveOut(file, `<${name}> elements`);
+  return false;
+}
+
+function shapeOf(place: string, element: XmlElement, name: string | undefined, key: string, id?: string): Layered {
   const given = number(id);
   const object = known(key, isObjectNumber(given) ? given : undefined, name);
-  return { ...object, z: number(element.attributes['z_order']) || 0, draw: drawing(element) };
+  return { ...placed(place, () => ({ ...object, ...drawing(element) })), z: number(element.attributes['z_order']) || 0 };
 }
 
-function drawing({ name, attributes }: XmlElement): Draw {
+function drawing({ name, attributes }: XmlElement): Drawing {
   const { points = '', rle = '', left, top, width, height } = attributes;
-  if (name === 'polygon') return (canvas, label) => canvas.polygon(points.split(/[,;]/).map(number), label);
-  if (name === 'mask') {
-    return (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox([left, top, width, height].map(number), canvas), label);
-  }
-  throw invalidInput(`it has a <${name}>, and only masks and polygons say which pixels an object has`);
+  if (name === 'polygon') return { draw: (canvas, label) => canvas.polygon(points.split(/[,;]/).map(number), label) };
+  if (name === 'box') return { box: boxOf(attributes) };
+  return {
+    draw: (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox([left, top, width, height].map(number), canvas), label),
+  };
+}
+
+/** The box around one that may be turned, in degrees about its middle. */
+function boxOf(attributes: XmlElement['attributes']): number[] {
+  const [left, top, right, bottom] = ['xtl', 'ytl', 'xbr', 'ybr'].map((side) => number(attributes[side])) as [number, number, number, number];
+  const angle = ((number(attributes['rotation']) || 0) * Math.PI) / 180;
+  const [cosine, sine] = [Math.abs(Math.cos(angle)), Math.abs(Math.sin(angle))];
+  const [width, height] = [right - left, bottom - top];
+  const [across, down] = angle === 0 ? [width, height] : [width * cosine + height * sine, width * sine + height * cosine];
+  return [(left + right - across) / 2, (top + bottom - down) / 2, across, down];
 }
 
 /** Not a number where there is none; `Number` takes empty text for 0. */

@@ -22,12 +22,15 @@ export interface ReadFrame {
   height: number;
   objects: Known[];
   draw: (canvas: Canvas, labelOf: (key: string) => number) => void;
+  /** Of objects that have a box and no mask here: where they are. */
+  boxes?: { key: string; box: PixelBox }[];
 }
 
-/** One shape, and the object that it is of. */
-export interface Shape extends Known {
-  draw: (canvas: Canvas, label: number) => void;
-}
+/** First column, first row, width and height. */
+export type PixelBox = [left: number, top: number, width: number, height: number];
+
+/** One shape, and the object that it is of: it says which pixels that has, or just the box that holds them. */
+export type Shape = Known & ({ draw: (canvas: Canvas, label: number) => void } | { box: readonly number[] });
 
 /** A file, or what is in an archive. */
 export interface Source {
@@ -41,14 +44,60 @@ export interface Context {
   nameOf: (index: number) => string;
   /** The lines of the file `labels.txt` in the same folder: the names of classes by number, from 1. */
   classesOf: (source: Source) => string[];
+  /** Counts what the file has and is not read: a kind of shape, in the plural. */
+  leaveOut: (file: string, kind: string) => void;
 }
 
-/** A frame of shapes, drawn one after another. */
-export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly Shape[]): ReadFrame {
+/** A frame of shapes, drawn one after another. Inside a box nothing is known of the ground. */
+export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes'>, shapes: readonly Shape[], { leaveOut }: Context): ReadFrame {
+  const masks = shapes.filter((shape) => 'draw' in shape);
+  const seen = new Set(masks.map(({ key }) => key));
+  const boxes: { key: string; box: PixelBox }[] = [];
+  for (const shape of shapes) {
+    if ('draw' in shape) continue;
+    const box = withinFrame(shape.box, frame);
+    if (!box) leaveOut(frame.file, 'boxes outside the frame');
+    else if (seen.has(shape.key)) leaveOut(frame.file, 'boxes of objects that have a mask or another box');
+    else boxes.push({ key: shape.key, box });
+    seen.add(shape.key);
+  }
   const draw = (canvas: Canvas, labelOf: (key: string) => number) => {
-    for (const shape of shapes) shape.draw(canvas, labelOf(shape.key));
+    for (const shape of masks) shape.draw(canvas, labelOf(shape.key));
+    for (const { box } of boxes) canvas.open(box);
   };
-  return { ...frame, objects: shapes.map(({ key, number, name }) => known(key, number, name)), draw };
+  const objects = shapes.filter(({ key }) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key));
+  return { ...frame, objects: objects.map(({ key, number, name }) => known(key, number, name)), draw, ...(boxes.length > 0 && { boxes }) };
+}
+
+/** The pixels of a box that are in the frame. */
+function withinFrame(box: readonly number[], { width, height }: { width: number; height: number }): PixelBox | undefined {
+  const [x, y, w, h] = box as PixelBox;
+  if (!box.every(Number.isFinite)) throw invalidInput('a box must have four numbers');
+  const [left, top] = [Math.max(0, Math.floor(x)), Math.max(0, Math.floor(y))];
+  const [right, bottom] = [Math.min(width, Math.ceil(x + w)), Math.min(height, Math.ceil(y + h))];
+  return right > left && bottom > top ? [left, top, right - left, bottom - top] : undefined;
+}
+
+/** Reads a part of a file: its errors say which. */
+export function within<T>(place: string, read: () => T): T {
+  try {
+    return read();
+  } catch (thrown) {
+    if (thrown instanceof VeroneseError) throw new VeroneseError(thrown.code, `${place}: ${thrown.message}`);
+    throw thrown;
+  }
+}
+
+/** A shape of which errors in drawing say where it is in the file, too. */
+export function placed(place: string, read: () => Shape): Shape {
+  const shape = within(place, read);
+  if (!('draw' in shape)) return shape;
+  return { ...shape, draw: (canvas, label) => within(place, () => shape.draw(canvas, label)) };
+}
+
+/** A text of the file in an error. */
+export function quoted(value: unknown): string {
+  return JSON.stringify(value)?.slice(0, 60) ?? 'nothing';
 }
 
 export function known(key: string, number: number | undefined, name: string | undefined): Known {

@@ -12,6 +12,7 @@ import {
   type Known,
   known,
   naming,
+  placed,
   type ReadFrame,
   type Shape,
   type Source,
@@ -39,7 +40,8 @@ export function areMots(pictures: readonly Source[]): boolean {
 }
 
 /** Frames without objects are left out: they may not have been annotated. */
-export function readMots(source: Source, text: string, { nameOf, classesOf }: Context): ReadFrame[] {
+export function readMots(source: Source, text: string, context: Context): ReadFrame[] {
+  const { nameOf, classesOf } = context;
   const names = classesOf(source);
   const frames = new Map<number, { width: number; height: number; shapes: Shape[] }>();
   for (const [k, line] of text.split('\n').entries()) {
@@ -52,11 +54,11 @@ export function readMots(source: Source, text: string, { nameOf, classesOf }: Co
     frames.set(Number(frame), entry);
     if (entry.width !== size.width || entry.height !== size.height) throw invalidInput(`line ${k + 1}: the frame has had another size`);
     const labelOf = (label: number) => (isIgnored(Number(id)) ? UNLABELLED : label);
-    entry.shapes.push({ ...objectOf(Number(id), names), draw: (canvas, label) => canvas.columns(decompressed(runs), labelOf(label)) });
+    entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw: (canvas, label) => canvas.columns(decompressed(runs), labelOf(label)) })));
   }
   return [...frames]
     .sort(([a], [b]) => a - b)
-    .map(([frame, { shapes, ...size }]) => frameOfShapes({ name: nameOf(frame - 1), file: source.name, ...size }, shapes));
+    .map(([frame, { shapes, ...size }]) => frameOfShapes({ name: nameOf(frame - 1), file: source.name, ...size }, shapes, context));
 }
 
 export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
