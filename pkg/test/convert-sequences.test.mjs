@@ -52,6 +52,7 @@ describe('a clip', () => {
     assert.deepEqual(readdirSync(join(out, 'supervisely', 'ann')), names('.jpg.json'));
     assert.deepEqual(readdirSync(join(out, 'yolo', 'labels')), names('.txt'));
     assert.equal(read(out, 'yolo', 'names.txt'), 'object\ncar\n');
+    assert.equal(read(out, 'yolo', 'data.yaml'), 'train: images\nval: images\nnames:\n  0: "object"\n  1: "car"\n');
     assert.deepEqual(read(out, 'yolo', 'labels', 'f002.txt').split('\n').map((line) => line[0]), ['0', '1', '1', undefined]);
     assert.deepEqual(json(out, 'label-studio.json').map(({ data }) => data.image), tracks.files);
     assert.deepEqual([...new Set(json(out, 'cvat-points.json').map(({ frame }) => frame))], [0, 1, 2, 3, 4, 5, 6]);

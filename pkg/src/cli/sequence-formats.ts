@@ -104,6 +104,7 @@ async function davis(sequence: Sequence, _: SequenceSettings, write: Write): Pro
 }
 
 const YOLO_NAMES = 'yolo/names.txt';
+const YOLO_DATA = 'yolo/data.yaml';
 
 /** The classes have the same numbers in all frames. */
 async function yolo(sequence: Sequence, { tolerance }: SequenceSettings, write: Write): Promise<void> {
@@ -114,6 +115,9 @@ async function yolo(sequence: Sequence, { tolerance }: SequenceSettings, write: 
     await write(`yolo/labels/${frame.stem}.txt`, text);
   }
   await write(YOLO_NAMES, lines(classes));
+  // Labels are looked for in the folder beside that of the images, where the frames belong. Quoted as JSON, names are YAML too.
+  const numbered = classes.map((name, number) => `  ${number}: ${JSON.stringify(name)}`);
+  await write(YOLO_DATA, lines(['train: images', 'val: images', 'names:', ...numbered]));
 }
 
 async function masks(sequence: Sequence, _: SequenceSettings, write: Write): Promise<void> {
@@ -155,7 +159,7 @@ export const SEQUENCE_FORMATS = {
   'labelme-polygon': images(
     each(({ stem }) => `labelme-polygon/${stem}.json`, (all, { tolerance }) => formats.encodeLabelMe(...all, { shape: 'polygon', tolerance })),
   ),
-  yolo: images({ convert: yolo, files: [YOLO_NAMES] }),
+  yolo: images({ convert: yolo, files: [YOLO_NAMES, YOLO_DATA] }),
   davis: images({ convert: davis, files: [DAVIS_CLIPS] }),
   supervisely: images(each(({ image }) => `supervisely/ann/${image}.json`, (all) => formats.encodeSupervisely(...all))),
   'web-annotation': images(

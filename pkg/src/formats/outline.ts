@@ -8,6 +8,7 @@
 import { VeroneseError } from '../common/errors.js';
 import { Borders, type Masks, thinned } from './arcs.js';
 import type { Mask } from './input.js';
+import { joined } from './joining.js';
 
 /** x, y of one vertex after another, multiples of ½; the last is joined to the first. */
 export type Ring = number[];
@@ -76,17 +77,11 @@ export class Outlines {
     });
   }
 
-  /** Of each mask all parts in a single ring: bridges between the parts, too, all from the first part's first vertex. */
+  /** Of each mask all parts in a single ring: with bridges between the parts, too, from where they are nearest to each other. */
   singles(image: Masks): Ring[] {
-    return this.bridged(image).map(([ring = [], ...others]) => {
-      const [x, y] = ring as [number, number];
-      this.#take(2 * others.length);
-      for (const other of others) {
-        ring.push(x, y);
-        for (const value of other) ring.push(value);
-        ring.push(other[0] as number, other[1] as number);
-      }
-      return ring;
+    return this.bridged(image).map((parts) => {
+      this.#take(3 * (parts.length - 1));
+      return joined(parts);
     });
   }
 

@@ -1,0 +1,104 @@
+// The one ring of a YOLO label, filled as Ultralytics fills it (vertices as whole pixels, the outline drawn too) and by pixel centres.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { encodeYolo } from 'veronese/formats';
+import { random } from '../../scripts/lib/random.mjs';
+
+/** Labels of rectangles [left, top, right, bottom, label], the later on top. */
+function image(width, height, ...rectangles) {
+  const labels = new Uint8Array(width * height);
+  for (const [left, top, right, bottom, label] of rectangles) {
+    for (let y = top; y < bottom; y++) labels.fill(label, y * width + left, y * width + right);
+  }
+  return { labels, width, height };
+}
+
+/** By label the vertices of its ring, pixels. */
+function ringsOf({ labels, width, height }, options) {
+  const { text, names } = encodeYolo(labels, width, height, { labels: [1, 2] }, options);
+  return text.trimEnd().split('\n').map((line) => {
+    const [number, ...shares] = line.split(' ').map(Number);
+    assert.ok(shares.every((share) => share >= 0 && share <= 1));
+    const points = Array.from({ length: shares.length / 2 }, (_, k) => [shares[2 * k] * width, shares[2 * k + 1] * height]);
+    return { label: Number(names[number].slice(7)), points };
+  });
+}
+
+/** Pixels whose middle is in a ring, by the even-odd rule, with the lines of its outline if these are drawn. */
+function filled(points, { width, height }, { whole }) {
+  const inside = new Uint8Array(width * height);
+  const own = whole ? points.map((point) => point.map((value) => Math.trunc(Math.fround(value)))) : points;
+  const offset = whole ? 0 : 0.5;
+  own.forEach(([x, y], k) => {
+    const [nextX, nextY] = own[(k + 1) % own.length];
+    for (let row = 0; row < height; row++) {
+      const at = row + offset;
+      if (Math.min(y, nextY) > at || Math.max(y, nextY) <= at) continue;
+      const crossing = x + ((at - y) * (nextX - x)) / (nextY - y);
+      for (let column = 0; column < width; column++) if (column + offset > crossing) inside[row * width + column] ^= 1;
+    }
+  });
+  if (!whole) return inside;
+  own.forEach(([x, y], k) => {
+    const [nextX, nextY] = own[(k + 1) % own.length];
+    const steps = Math.max(Math.abs(nextX - x), Math.abs(nextY - y), 1);
+    for (let step = 0; step <= steps; step++) inside[Math.round(y + ((nextY - y) * step) / steps) * width + Math.round(x + ((nextX - x) * step) / steps)] = 1;
+  });
+  return inside;
+}
+
+function iou(inside, labels, label) {
+  const both = labels.filter((one, p) => one === label && inside[p]).length;
+  return both / labels.filter((one, p) => one === label || inside[p]).length;
+}
+
+/** A ring with an island, a touch at a corner and a lone pixel far away; bars, lines and borders. */
+const PARTS = image(120, 80, [10, 10, 50, 50, 1], [20, 20, 40, 40, 0], [28, 28, 32, 32, 1], [90, 5, 91, 6, 1], [51, 50, 53, 52, 1], [50, 50, 51, 51, 1],
+  [70, 60, 110, 70, 2], [70, 72, 110, 75, 2], [60, 10, 61, 40, 2], [0, 79, 120, 80, 2], [119, 0, 120, 80, 2]);
+
+describe('rings of YOLO', () => {
+  for (const tolerance of [0, 0.5]) {
+    test(`parts far apart, with tolerance ${tolerance}: IoU as Ultralytics draws them`, () => {
+      for (const { label, points } of ringsOf(PARTS, { tolerance })) {
+        const drawn = iou(filled(points, PARTS, { whole: true }), PARTS.labels, label);
+        assert.ok(drawn >= 0.95, `label ${label}: ${drawn}`);
+        const exact = iou(filled(points, PARTS, { whole: false }), PARTS.labels, label);
+        assert.ok(tolerance > 0 ? exact > 0.99 : exact === 1, `label ${label}: ${exact}`);
+      }
+    });
+  }
+
+  test('one part is drawn as it is, whatever its corners are', () => {
+    const next = random(3);
+    for (let round = 0; round < 20; round++) {
+      const some = Array.from({ length: 6 }, () => [Math.floor(next() * 12), Math.floor(next() * 12)]);
+      // All have the middle.
+      const one = image(40, 30, ...some.map(([left, top]) => [left, top, left + 16 + (top % 5), top + 13 + (left % 4), 1]));
+      const [{ points }] = ringsOf(one);
+      assert.equal(iou(filled(points, one, { whole: true }), one.labels, 1), 1);
+      assert.equal(iou(filled(points, one, { whole: false }), one.labels, 1), 1);
+    }
+  });
+
+  test('the ring begins on the largest part, and bridges are short', () => {
+    const three = image(100, 20, [2, 1, 3, 2, 1], [10, 2, 40, 18, 1], [44, 2, 60, 18, 1]);
+    const [{ points: [first, ...points] }] = ringsOf(three);
+    assert.deepEqual(first.map(Math.round), [10, 2]);
+    const longest = Math.max(...points.map(([x, y], k) => Math.hypot(x - (points[k - 1] ?? first)[0], y - (points[k - 1] ?? first)[1])));
+    assert.ok(longest < 31, `${longest}`);
+  });
+
+  test('a mask of noise does not take long', () => {
+    const next = random(5);
+    const labels = Uint8Array.from({ length: 500 * 500 }, () => Number(next() < 0.3));
+    const started = process.cpuUsage();
+    const [{ points }] = ringsOf({ labels, width: 500, height: 500 });
+    const { user, system } = process.cpuUsage(started);
+    assert.ok(points.length > 100_000);
+    assert.ok((user + system) / 1e6 < 10, `${(user + system) / 1e6} s`);
+    const few = { labels: labels.map((label, p) => Number(label > 0 && p % 500 < 60 && p < 120 * 500)), width: 500, height: 500 };
+    const [own] = ringsOf(few);
+    assert.equal(iou(filled(own.points, few, { whole: false }), few.labels, 1), 1);
+  });
+});
