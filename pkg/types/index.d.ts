@@ -112,6 +112,14 @@ export interface Junction {
   border: number;
 }
 
+/** What was assumed of what was given, or why nothing was found. */
+export interface Note {
+  /** In kebab-case; of a pair with one motion `no-contrast`, `cut`, `no-motion`, `small-steps` or `one-motion`. */
+  code: string;
+  /** A sentence. */
+  message: string;
+}
+
 /** The result of {@link segmentPair}: plain data, nothing to free. */
 export interface Segmentation {
   version: 1;
@@ -139,6 +147,8 @@ export interface Segmentation {
     markUnknown: boolean;
     software: string;
   };
+  /** Where there is one motion and more were possible: why. */
+  notes?: Note[];
   /** One label per pixel, row by row; 255 is unlabelled. */
   labels: Uint8Array;
   /**

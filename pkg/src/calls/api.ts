@@ -9,6 +9,7 @@ import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
 import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
+import { whyNothing } from './nothing.js';
 import { taken } from './taking.js';
 import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
 
@@ -45,7 +46,10 @@ export class Api {
     if (task.call === 'segmentPair') {
       return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
         glue.segmentPair(first, second, task.settings, onStage),
-      );
+      ).then((found) => {
+        const asked = found.count > 1 || found.settings.motions === 1;
+        return asked ? found : { ...found, notes: [whyNothing(first, second, found.motions[0] ?? {})] };
+      });
     }
     const { matrices, groups, labels, sets, settings } = task.correction;
     return run<Corrected, FramesGlue>(this.#frames, call, (glue, onStage) =>

@@ -50,7 +50,8 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
       const line = { index: pair.index, name: pair.name, first, second };
       if ('result' in outcome) {
         const { done, report } = outcome.result;
-        for (const { message } of (report as Report).notes ?? []) note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
+        // Why a pair has one motion is in its line: of many pairs that is nothing out of the ordinary.
+        for (const { message } of ((report as Report).notes ?? []).filter(({ code }) => OF_FILES.includes(code))) note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
         tally[done ? 'done' : 'skipped'] += 1;
         await print(io, jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
       } else {
@@ -125,6 +126,8 @@ function count(pairs: number, { index, of }: SequenceCommand['shard']): number {
   return Math.max(0, Math.ceil((pairs - index) / of));
 }
 
+/** Codes of notes on what was assumed of files. */
+const OF_FILES = ['damaged-image', 'range-stretched'];
 /** Characters of a frame's name in that of its pair: with what is added while a folder is written, file systems take it. */
 const LONGEST_STEM = 200;
 

@@ -2,6 +2,7 @@
 
 import { basename, extname } from 'node:path';
 import type { Picture } from '../../types/codecs.js';
+import type { Note } from '../../types/index.js';
 import { keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipCommand } from './arguments.js';
@@ -10,7 +11,7 @@ import { readInput, sha256 } from './files.js';
 import { findFrames, isVideo, readList } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
-import { decoded, type Note, narrowRange, type Range, rangeNote } from './pair.js';
+import { decoded, narrowRange, type Range, rangeNote } from './pair.js';
 import { timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */

@@ -13,6 +13,7 @@ import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
+import { notesOnTracks } from './clip-notes.js';
 import { ClipStore, type Record } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
@@ -32,12 +33,14 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const progress = new Passes(frames.length, io);
   try {
     const said = await readCorrections(command, frames);
-    const notes = () => [...(said?.notes ?? []), ...frames.notes];
     for (const each of said?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
     const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, software });
     const record = store.finished(frames.files);
-    if (record) return await report(record, io);
+    if (record) {
+      for (const each of (record.notes ?? []).slice(said?.notes.length ?? 0)) note(io, each);
+      return await report(record, io);
+    }
 
     const kept = new KeptClip(output, { ...options, markUnknown: undefined, software, range: frames.range }, frames.files);
     await kept.check();
@@ -60,8 +63,9 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const tracks = segmented.tracks();
     if (streams) await kept.clear();
     const changes = await segmented.changes();
-    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, notes());
-    for (const each of frames.notes) note(io, each);
+    const found = [...frames.notes, ...(said ? [] : await notesOnTracks(tracks, frames))];
+    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(said?.notes ?? []), ...found]);
+    for (const each of found) note(io, each);
     if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
     await print(io, lastLine(tracks.objects, changes));
   } catch (thrown) {

@@ -1,7 +1,7 @@
 // One pair of frames as the command line treats it: files in, a report and files out. Runs in a thread.
 
 import type { Picture } from '../../types/codecs.js';
-import type { Segmentation } from '../../types/index.js';
+import type { Note, Segmentation } from '../../types/index.js';
 import { groupLabels, maskOf, overlay } from '../calls/labels.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
@@ -22,15 +22,7 @@ export interface InputFile {
   bytes: Uint8Array;
 }
 
-/** What was assumed of a file, or why nothing was found. */
-export interface Note {
-  /** In kebab-case. */
-  code: string;
-  /** A sentence. */
-  message: string;
-}
-
-export type Report = Omit<Segmentation, 'labels' | 'confidence'> & { notes?: Note[] };
+export type Report = Omit<Segmentation, 'labels' | 'confidence'>;
 
 /** Segments first and second; `withImages` also makes the image files. */
 export async function segmentFiles(
@@ -42,7 +34,8 @@ export async function segmentFiles(
   const [first, second] = pictures as [Picture, Picture];
   const segmentation = await api.segmentPair(first, second, settings.options);
   const { labels: _, confidence: __, ...rest } = segmentation;
-  const report = { ...rest, ...(notes.length > 0 && { notes }) };
+  const all = [...notes, ...(rest.notes ?? [])];
+  const report = { ...rest, ...(all.length > 0 && { notes: all }) };
   return { report, images: withImages ? await images(settings, segmentation, first) : [] };
 }
 

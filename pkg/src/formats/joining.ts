@@ -1,7 +1,8 @@
 // The parts of a mask in one ring: from the largest part, each of the others hangs on a bridge without width, which is taken there and back,
 // where it is nearest to those that are joined already.
 
-import type { Ring } from './outline.js';
+/** x, y of one vertex after another, multiples of ½; the last is joined to the first. */
+export type Ring = number[];
 
 /** With more corners in all, some of each part are compared: every pair of corners of two parts is, else. */
 const MOST_CORNERS = 8_000;

@@ -8,10 +8,9 @@
 import { VeroneseError } from '../common/errors.js';
 import { Borders, type Masks, thinned } from './arcs.js';
 import type { Mask } from './input.js';
-import { joined } from './joining.js';
+import { joined, type Ring } from './joining.js';
 
-/** x, y of one vertex after another, multiples of ½; the last is joined to the first. */
-export type Ring = number[];
+export type { Ring };
 
 /** Rings of unit steps in one list: the vertices of ring r are `from[r]` to `from[r + 1]`, exclusive. */
 interface Cracks {
