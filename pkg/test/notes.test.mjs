@@ -5,7 +5,7 @@ import { describe, test } from 'node:test';
 import { Segmenter, segmentPair } from 'veronese';
 import { random } from '../../scripts/lib/random.mjs';
 import { clip as framesOf, lines, tracksOf } from './support/folders.mjs';
-import { frame } from './support/frames.mjs';
+import { frame, pair } from './support/frames.mjs';
 import { veronese } from './support/program.mjs';
 
 const SIZE = { width: 96, height: 72 };
@@ -66,7 +66,7 @@ test('a pair with one motion says why, in a worker too; what was asked for says 
   }
   segmenter.close();
   assert.equal((await segmentPair(...pairs['no-motion'], { motions: 1 })).notes, undefined);
-  assert.equal((await segmentPair(frame(0, SIZE), frame(4, SIZE))).notes, undefined);
+  assert.equal((await segmentPair(...pair())).notes, undefined);
 });
 
 test('an object that is likely to be the ground is named', async (t) => {

@@ -1,8 +1,7 @@
 //! JPEG files, which phones append videos to and networks take pieces out of. A file is read to its own end, and no further. Decoders fill
 //! what is missing of a scan with grey, which would be segmented as if it were image content: here it is an error, unless it is allowed.
 
-use super::unreadable;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 mod scan;
 
@@ -19,6 +18,10 @@ pub(super) fn image(bytes: &[u8], allow_damaged: bool) -> Result<&[u8]> {
         return Ok(file);
     }
     Err(unreadable("it is a JPEG file of which a part is missing or damaged"))
+}
+
+fn unreadable(reason: &str) -> Error {
+    Error::UnreadableImage { reason: reason.into() }
 }
 
 /// Where the image ends: behind its own marker "end of image". Previews lie in segments, which are passed over; what comes behind the end
@@ -74,8 +77,7 @@ mod tests {
     #[test]
     fn a_scan_with_a_part_missing_is_unreadable_unless_that_is_allowed() {
         let file = file();
-        let mut allowed = Decoding::default();
-        allowed.allow_damaged = true;
+        let allowed = Decoding { allow_damaged: true, ..Decoding::default() };
         for (from, until) in [(0.5, 0.6), (0.4, 0.95), (0.3, 0.9)] {
             let error = decode_image(&without(&file, from, until)).map(|_| ()).unwrap_err();
             assert_eq!(error.code(), "unreadable-image");
