@@ -38,7 +38,8 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, software });
     const record = store.finished(frames.files);
     if (record) {
-      for (const each of (record.notes ?? []).slice(said?.notes.length ?? 0)) note(io, each);
+      // Masks may be the same ones in other files by now: of those the note above is right.
+      for (const each of record.notes ?? []) if (!each.code.startsWith('mask-')) note(io, each);
       return await report(record, io);
     }
 

@@ -46,6 +46,7 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
   // Images beside a document are the frames that it is about.
   const documents = all.flatMap((source) => (isPng(source.bytes) ? [] : naming(source.name, () => recognised(source))));
   const [first, ...others] = documents;
+  if (!first && !all.some(({ bytes }) => isPng(bytes))) throw invalidInput(nothingIn(sources));
   if (!first) return ofPictures(all, names);
   const other = others.find(({ format }) => format !== first.format);
   if (other) {
@@ -66,8 +67,6 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
 /** Annotations that are pictures themselves. */
 function ofPictures(all: readonly Source[], names: readonly string[] | undefined): Annotations {
   const pictures = all.filter(({ bytes }) => isPng(bytes));
-  const [first] = pictures;
-  if (!first) throw invalidInput(nothingIn(all));
   if (areMots(pictures)) {
     const context = contextOf(all, names, new LeftOut());
     return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))), notes: [] };
@@ -242,8 +241,8 @@ function isArchive(bytes: Uint8Array): boolean {
   return bytes[0] === 0x50 && bytes[1] === 0x4b;
 }
 
-/** The files in an archive that may be annotations, called by their paths in it. */
-function unpacked({ bytes }: Source): Source[] {
+/** The files in an archive that may be annotations, called by its name and their paths in it. */
+function unpacked({ name: archive, bytes }: Source): Source[] {
   let size = 0;
   const filter = ({ name, originalSize }: { name: string; originalSize: number }) => {
     if (!/\.(json|xml|png|txt)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
@@ -252,7 +251,7 @@ function unpacked({ bytes }: Source): Source[] {
     return true;
   };
   try {
-    return Object.entries(unzipSync(bytes, { filter })).map(([name, content]) => ({ name, bytes: content }));
+    return Object.entries(unzipSync(bytes, { filter })).map(([name, content]) => ({ name: `${archive}/${name}`, bytes: content }));
   } catch (thrown) {
     if (size > LARGEST) throw thrown;
     throw invalidInput('the archive is damaged');

@@ -1,0 +1,140 @@
+// Every reader of annotations on files that are cut, whose values are exchanged, or that are long: the masks, or an error with a code that
+// names the file; nothing else, and soon.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import * as formats from 'veronese/formats';
+import { random } from '../../scripts/lib/random.mjs';
+import { drawn } from './support/masks.mjs';
+import { cases, soaking } from './support/soak.mjs';
+
+const { labels, width, height } = drawn('00000', '01120', '01020', '01120', '30000');
+const META = { image: 'f0.png', names: { 1: 'car', 2: 'car', 3: 'dog' }, labels: [1, 2, 3] };
+const all = [labels, width, height, META];
+const frames = [0, 1, 2].map((k) => ({ labels: labels.map((label) => (label === k ? 0 : label)), width, height, image: `f${k}.png` }));
+const clip = { ...META, image: undefined, tracked: true };
+const datumaro = {
+  info: {},
+  categories: { label: { labels: [{ name: 'car' }] } },
+  items: [{ id: 'f0', image: { path: 'f0.png', size: [height, width] }, annotations: formats.encodeCoco(...all).annotations.map(({ segmentation, bbox }, id) => ({ id, type: id === 0 ? 'bbox' : 'mask', label_id: 0, group: 0, bbox, rle: segmentation })) }],
+};
+
+const DOCUMENTS = {
+  coco: formats.encodeCoco(...all),
+  'coco-polygon': formats.encodeCoco(...all, { shape: 'polygon' }),
+  'youtube-vis': formats.encodeCocoVideo(frames, clip),
+  labelme: formats.encodeLabelMe(...all),
+  'labelme-polygon': formats.encodeLabelMe(...all, { shape: 'polygon' }),
+  supervisely: formats.encodeSupervisely(...all),
+  'label-studio': [formats.encodeLabelStudio(...all)],
+  'label-studio-polygon': [formats.encodeLabelStudio(...all, { shape: 'polygon' })],
+  datumaro,
+  veronese: formats.encodeVeronese(...all),
+};
+const FILES = {
+  cvat: formats.encodeCvatXml(...all),
+  'cvat-polygon': formats.encodeCvatXml(...all, { shape: 'polygon' }),
+  'cvat-video': formats.encodeCvatVideo(frames, clip),
+  'cvat-boxes': formats.encodeCvatVideo(frames, clip, { shape: 'box' }),
+  mots: formats.encodeMots(frames, clip).gt,
+  'cvat-mots': formats.encodeCvatMots(frames, clip),
+  davis: formats.encodeDavis(labels, width, height),
+  ...Object.fromEntries(Object.entries(DOCUMENTS).map(([name, document]) => [name, JSON.stringify(document)])),
+};
+const CODES = ['invalid-input', 'unreadable-image', 'frame-size-mismatch'];
+const JUNK = [null, -1, 0, 0.5, 1e9, 2 ** 53, 'x', '', '..', [], {}, [null], true, [[1, 2, 3]], { size: [4, 4] }];
+/** Seconds: far more than any of these files takes on a machine that does other things too. */
+const LONG = 10;
+
+const bytesOf = (content) => (typeof content === 'string' ? new TextEncoder().encode(content) : Uint8Array.from(content));
+
+/** Reads a file to its last mask; whatever goes wrong is an error of ours that names the file. */
+function outcome(content, what) {
+  const started = process.cpuUsage();
+  try {
+    const { frames, boxes, notes } = formats.readAnnotations([{ name: 'folder/the.file', bytes: bytesOf(content) }]);
+    for (const frame of frames.values()) assert.equal(frame.read().length, frame.width * frame.height, what);
+    for (const { message } of notes) assert.match(message, /the\.file/);
+    assert.ok(frames.size + boxes.length > 0 || notes.length > 0, `${what}: nothing, and no word`);
+  } catch (error) {
+    assert.equal(error.name, 'VeroneseError', `${what}: ${error.stack}`);
+    assert.ok(CODES.includes(error.code), `${what}: ${error.code}`);
+    assert.match(error.message, /the\.file/, what);
+    assert.ok(error.message.length < 500, what);
+  }
+  const { user, system } = process.cpuUsage(started);
+  assert.ok((user + system) / 1e6 < LONG, what);
+}
+
+/** A copy of a document in which one value is another. */
+function exchanged(document, next) {
+  const copy = structuredClone(document);
+  const places = [];
+  const visit = (value) => {
+    if (typeof value !== 'object' || value === null) return;
+    for (const key of Object.keys(value)) {
+      places.push([value, key]);
+      visit(value[key]);
+    }
+  };
+  visit(copy);
+  const [parent, key] = places[Math.floor(next() * places.length)];
+  const other = places[Math.floor(next() * places.length)];
+  parent[key] = next() < 0.3 ? structuredClone(other[0][other[1]]) : JUNK[Math.floor(next() * JUNK.length)];
+  return copy;
+}
+
+const times = soaking ? 2000 : 120;
+
+describe('files that are cut', () => {
+  for (const [name, content] of Object.entries(FILES)) {
+    test(name, () => {
+      const bytes = bytesOf(content);
+      const step = soaking ? 1 : Math.max(1, Math.floor(bytes.length / times));
+      for (let length = 0; length < bytes.length; length += step) outcome(bytes.subarray(0, length), `${name}, ${length} bytes`);
+      outcome(bytes, name);
+    });
+  }
+});
+
+describe('files with other values', () => {
+  for (const [name, document] of Object.entries(DOCUMENTS)) {
+    test(name, () => {
+      const next = random(11);
+      for (let round = 0; round < times; round++) {
+        const changed = JSON.stringify(exchanged(document, next));
+        outcome(changed, changed.slice(0, 2000));
+      }
+    });
+  }
+  for (const [name, content] of Object.entries(FILES).filter(([name]) => !(name in DOCUMENTS))) {
+    test(name, () => {
+      const next = random(12);
+      for (let round = 0; round < times; round++) {
+        const bytes = bytesOf(content);
+        for (let change = 0; change < 3; change++) bytes[Math.floor(next() * bytes.length)] = typeof content === 'string' ? 32 + Math.floor(next() * 90) : Math.floor(next() * 256);
+        outcome(bytes, `${name}, round ${round}`);
+      }
+    });
+  }
+});
+
+describe('files with ten thousand entries', () => {
+  const many = 10_000;
+  const [annotation] = DOCUMENTS['coco-polygon'].annotations;
+  const coco = (change) => ({ ...DOCUMENTS.coco, annotations: Array.from({ length: many }, (_, id) => ({ ...annotation, id, ...change(id) })) });
+  const LONG_FILES = {
+    'of one object': coco(() => ({ track_id: 1 })),
+    'of objects without numbers': coco(() => ({})),
+    'of boxes': coco((id) => ({ segmentation: [], track_id: id % 200, bbox: [1, 1, 2, 2] })),
+    'of images': { ...coco((id) => ({ image_id: id, track_id: 1 })), images: Array.from({ length: many }, (_, id) => ({ id, file_name: `f${id}.png`, width, height })) },
+    'of which the last is wrong': coco((id) => ({ track_id: 1, segmentation: id === many - 1 ? [[0, 0]] : annotation.segmentation })),
+  };
+  for (const [name, document] of cases(Object.entries(LONG_FILES).slice(0, 4), Object.entries(LONG_FILES).slice(4))) {
+    test(name, () => outcome(JSON.stringify(document), name));
+  }
+  test('of which one is wrong: it is named', () => {
+    const [frame] = formats.readAnnotations([{ name: 'a.json', bytes: bytesOf(JSON.stringify(LONG_FILES['of which the last is wrong'])) }]).frames.values();
+    assert.throws(() => frame.read(), { code: 'invalid-input', message: /^'a\.json': image "f0\.png", annotation 9999: a polygon must have three vertices/ });
+  });
+});
