@@ -2,7 +2,7 @@
 // nothing else around them, and what hangs together with these.
 
 /** Passes in which sides grow into what lies between them: as many pixels as half of a soft edge has. */
-const PASSES = 64;
+const PASSES = 256;
 /** Sides that a pixel is compared with. */
 const MOST = 3;
 /** How far from the line between two sides a value may be, in levels of all channels. */
@@ -24,22 +24,24 @@ export interface Edges {
 
 /** `values`: grey levels, or colours as 24 bits. */
 export function edgesOf(values: Int32Array, width: number, height: number, ground: number): Edges {
-  const isSide = sidesOf(values, width, height);
+  const grid = new Grid(width, height);
+  const isSide = sidesOf(values, grid);
   const sides = new Set<number>();
   let count = 0;
   for (let at = 0; at < values.length; at++) {
-    if (isSide[at]) sides.add(values[at] as number);
-    else count++;
+    if (!isSide[at]) count++;
+    else if (at === 0 || !isSide[at - 1] || values[at] !== values[at - 1]) sides.add(values[at] as number);
   }
   const undecided = new Int32Array(count);
   for (let at = 0, k = 0; at < values.length; at++) if (!isSide[at]) undecided[k++] = at;
-  const near = nearSides(values, isSide, undecided, width, height);
+  const near = nearSides(values, isSide, undecided, grid);
   const candidates = (k: number) => near.subarray(MOST * k, MOST * k + MOST).filter((value) => value !== NONE);
   let [between, crowded] = [0, 0];
   for (let k = 0; k < count; k++) {
     const at = undecided[k] as number;
     if (isBetween(values[at] as number, candidates(k))) between++;
-    if (!around(at, width, height, (other) => values[other] === values[at] || values[other] === ground)) crowded++;
+    const around = grid.around(at);
+    if (around.some((other) => values[other] !== values[at] && values[other] !== ground)) crowded++;
   }
   const resolved = () => {
     const all = values.slice();
@@ -54,66 +56,98 @@ export function edgesOf(values: Int32Array, width: number, height: number, groun
   return { sides, undecided, between: between / Math.max(count, 1), crowded: crowded / Math.max(count, 1), resolved };
 }
 
-function sidesOf(values: Int32Array, width: number, height: number): Uint8Array {
-  const isSide = new Uint8Array(values.length);
-  const stack: number[] = [];
-  for (let at = 0; at < values.length; at++) {
-    if (!around(at, width, height, (other) => values[other] === values[at])) continue;
-    isSide[at] = 1;
-    stack.push(at);
+/** The pixels around others. */
+class Grid {
+  readonly #width: number;
+  readonly #height: number;
+  readonly #found = new Int32Array(8);
+
+  constructor(width: number, height: number) {
+    this.#width = width;
+    this.#height = height;
   }
-  for (let at = stack.pop(); at !== undefined; at = stack.pop()) {
-    const [from, value] = [at, values[at]];
-    around(from, width, height, (other) => {
-      if (!isSide[other] && values[other] === value) {
+
+  /** Those inside the picture; valid until the next call. */
+  around(at: number): Int32Array {
+    const [x, y] = [at % this.#width, Math.floor(at / this.#width)];
+    let count = 0;
+    for (let row = Math.max(0, y - 1); row <= Math.min(this.#height - 1, y + 1); row++) {
+      for (let column = Math.max(0, x - 1); column <= Math.min(this.#width - 1, x + 1); column++) {
+        const other = row * this.#width + column;
+        if (other !== at) this.#found[count++] = other;
+      }
+    }
+    return this.#found.subarray(0, count);
+  }
+
+  /** Whether a pixel and all around it have one value. Most do, in most masks. */
+  isEven(values: Int32Array, at: number): boolean {
+    const width = this.#width;
+    const x = at % width;
+    if (x === 0 || x === width - 1 || at < width || at >= values.length - width) return this.around(at).every((other) => values[other] === values[at]);
+    for (let row = at - width; row <= at + width; row += width) {
+      if (values[row - 1] !== values[at] || values[row] !== values[at] || values[row + 1] !== values[at]) return false;
+    }
+    return true;
+  }
+}
+
+/** Pixels with nothing else around them, and what hangs together with these. */
+function sidesOf(values: Int32Array, grid: Grid): Uint8Array {
+  const isSide = new Uint8Array(values.length);
+  const others: number[] = [];
+  for (let at = 0; at < values.length; at++) {
+    if (grid.isEven(values, at)) isSide[at] = 1;
+    else others.push(at);
+  }
+  const hangs = (at: number) => grid.around(at).some((other) => isSide[other] === 1 && values[other] === values[at]);
+  const stack: number[] = [];
+  for (const start of others) {
+    if (isSide[start] || !hangs(start)) continue;
+    isSide[start] = 1;
+    stack.push(start);
+    for (let at = stack.pop(); at !== undefined; at = stack.pop()) {
+      for (const other of grid.around(at)) {
+        if (isSide[other] || values[other] !== values[at]) continue;
         isSide[other] = 1;
         stack.push(other);
       }
-      return true;
-    });
+    }
   }
   return isSide;
 }
 
-/** Whether all pixels around one, inside the picture, are as wanted. */
-function around(at: number, width: number, height: number, isWanted: (other: number) => boolean): boolean {
-  const [x, y] = [at % width, Math.floor(at / width)];
-  for (let row = Math.max(0, y - 1); row <= Math.min(height - 1, y + 1); row++) {
-    for (let column = Math.max(0, x - 1); column <= Math.min(width - 1, x + 1); column++) {
-      const other = row * width + column;
-      if (other !== at && !isWanted(other)) return false;
-    }
-  }
-  return true;
-}
-
 /** Of each undecided pixel the values of the sides that reach it first. */
-function nearSides(values: Int32Array, isSide: Uint8Array, undecided: Int32Array, width: number, height: number): Int32Array {
+function nearSides(values: Int32Array, isSide: Uint8Array, undecided: Int32Array, grid: Grid): Int32Array {
   const near = new Int32Array(MOST * undecided.length).fill(NONE);
   const place = new Int32Array(values.length).fill(NONE);
-  undecided.forEach((at, k) => (place[at] = k));
-  for (let pass = 0; pass < PASSES; pass++) {
-    const before = near.slice();
+  for (let k = 0; k < undecided.length; k++) place[undecided[k] as number] = k;
+  const add = (k: number, value: number): boolean => {
+    for (let slot = MOST * k; slot < MOST * k + MOST; slot++) {
+      if (near[slot] === value) return false;
+      if (near[slot] !== NONE) continue;
+      near[slot] = value;
+      return true;
+    }
+    return false;
+  };
+  let changed: number[] = [];
+  for (let k = 0; k < undecided.length; k++) {
     let grew = false;
-    const add = (k: number, value: number) => {
-      for (let slot = MOST * k; slot < MOST * k + MOST; slot++) {
-        if (near[slot] === value) return;
-        if (near[slot] !== NONE) continue;
-        near[slot] = value;
-        grew = true;
-        return;
+    for (const other of grid.around(undecided[k] as number)) if (isSide[other]) grew = add(k, values[other] as number) || grew;
+    if (grew) changed.push(k);
+  }
+  for (let pass = 1; pass < PASSES && changed.length > 0; pass++) {
+    const values = changed.map((k) => near.slice(MOST * k, MOST * k + MOST));
+    const next = new Set<number>();
+    for (const [at, k] of changed.entries()) {
+      for (const other of grid.around(undecided[k] as number)) {
+        if (isSide[other]) continue;
+        const theirs = place[other] as number;
+        for (const value of values[at] as Int32Array) if (value !== NONE && add(theirs, value)) next.add(theirs);
       }
-    };
-    undecided.forEach((at, k) => {
-      if (near[MOST * k + MOST - 1] !== NONE) return;
-      around(at, width, height, (other) => {
-        const theirs = MOST * (place[other] as number);
-        if (isSide[other]) add(k, values[other] as number);
-        else for (let slot = theirs; slot < theirs + MOST && before[slot] !== NONE; slot++) add(k, before[slot] as number);
-        return true;
-      });
-    });
-    if (!grew) break;
+    }
+    changed = [...next];
   }
   return near;
 }

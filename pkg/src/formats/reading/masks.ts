@@ -84,7 +84,12 @@ function frameOf({ source, width, height, meaning, smooth }: MaskFile): ReadFram
       const numbers = new Map([...meaning].map(([value, one]) => [value, typeof one === 'object' ? labelOf(one.key) : one]));
       const { values } = clamped(valuesOf(source));
       const all = smooth ? edgesOf(values, width, height, BLACK).resolved() : values;
-      for (let at = 0; at < labels.length; at++) labels[at] = numbers.get(all[at] as number) as number;
+      let [value, number] = [NaN, 0];
+      for (let at = 0; at < labels.length; at++) {
+        // Most pixels have the value of the one before.
+        if (all[at] !== value) [value, number] = [all[at] as number, numbers.get(all[at] as number) as number];
+        labels[at] = number;
+      }
     },
   };
 }
@@ -140,10 +145,10 @@ function valuesOf({ bytes }: Source): Values {
   const sample = (at: number) => Math.round((samples[at] as number) / level);
   const opacity = channels % 2 === 0 ? Uint8Array.from({ length: width * height }, (_, p) => Number(sample(channels * p + channels - 1) >= OPAQUE)) : undefined;
   const isGrey = channels < 3;
-  const colours = Int32Array.from({ length: width * height }, (_, p) => {
-    const at = channels * p;
-    return isGrey ? sample(at) : (sample(at) << 16) | (sample(at + 1) << 8) | sample(at + 2);
-  });
+  const colours = channels === 1 ? new Int32Array(samples) : new Int32Array(width * height);
+  for (let p = 0, at = 0; channels > 1 && p < colours.length; p++, at += channels) {
+    colours[p] = isGrey ? sample(at) : (sample(at) << 16) | (sample(at + 1) << 8) | sample(at + 2);
+  }
   if (opacity?.includes(0) && opacity.includes(1)) return transparent(colours, opacity, size, isGrey);
   if (isGrey) return { kind: 'levels', values: colours, ...size, counts: counted(colours) };
   const counts = counted(colours);
@@ -167,7 +172,7 @@ function transparent(colours: Int32Array, opacity: Uint8Array, size: { width: nu
 /** Indices are numbers of objects, 0 the background, unless black has another index, or the picture has shades of grey. */
 function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array): Values {
   const size = { width, height };
-  const indices = Int32Array.from(samples);
+  const indices = new Int32Array(samples);
   const counts = counted(indices);
   const colourOf = (index: number) => [0, 1, 2].reduce((colour, channel) => (colour << 8) | (palette[3 * index + channel] ?? 0), 0);
   const used = [...counts.keys()].filter((index) => alpha?.[index] !== 0);
