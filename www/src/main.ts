@@ -58,7 +58,6 @@ mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, new Lat
 mountLook(find(document, '#look', HTMLFormElement), store, session);
 mountBlink(document, store);
 mountTools(find(document, '#tools', HTMLFormElement), store, session);
-mountPicker(document, store, session);
 mountSamples(find(document, '#samples', HTMLElement), store, session);
 mountTimeline(find(document, '#timeline', HTMLElement), store, session);
 mountRange(find(document, '#timeline', HTMLElement), store, session);
@@ -108,3 +107,5 @@ window.addEventListener('hashchange', () => {
 const opened = linked.sample ?? SAMPLES[0];
 if (location.hash === '' && 'frames' in opened) mountShowing(window, store, session, opened);
 void session.open.sample(opened, linked.swapped);
+// Later than the sample: what a person has chosen already is newer.
+mountPicker(document, store, session);

@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, clipPhase, done, enter, expect, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
+import { axe, clipDone, clipFrames, clipPhase, done, enter, expect, held, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -72,19 +72,6 @@ test('the page opens with a clip, shows what is found, and keeps nothing of it; 
 test('the same clip at its own size', { tag: '@soak' }, async ({ page }) => {
   await firstVisit(page, 512, 288);
 });
-
-/** Decoding files with this name waits until `release` is called. Called before the page is opened. */
-async function held(page: Page, file: string): Promise<() => Promise<void>> {
-  await page.addInitScript((file) => {
-    const decode = window.createImageBitmap;
-    const released = new Promise<void>((release) => Object.assign(window, { release }));
-    window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
-      if (source instanceof File && source.name === file) await released;
-      return decode(source, ...rest);
-    };
-  }, file);
-  return () => page.evaluate(() => (window as unknown as { release(): void }).release());
-}
 
 test('whoever touches the page or opens something first is not shown the clip; nothing of projects is loaded', async ({ page }) => {
   const asked: string[] = [];

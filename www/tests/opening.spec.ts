@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, PAIR, clipFrames, done, expect, openEmpty, shown, square, test, upload, withSamples } from './support.js';
+import { type Upload, PAIR, clipFrames, done, expect, held, openEmpty, shown, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -146,5 +146,63 @@ test('a step can be cancelled; a sample that cannot be read leaves the clip open
     await expect(page.locator('#clip-second-at')).toHaveText('#1');
     await expect(page.locator('[name=clip-second]')).toHaveValue('1');
     await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  });
+});
+
+test('frames that are chosen before the page is ready are opened, not the sample', async ({ page, context }) => {
+  let release = (): void => undefined;
+  const waiting = new Promise<void>((resolve) => (release = resolve));
+  await context.route('**/assets/index-*.js', async (route) => {
+    await waiting;
+    await route.continue();
+  });
+  await page.goto('./', { waitUntil: 'commit' });
+  await upload(page, await clipFrames(4, 96, 64));
+  release();
+  await expect(page.locator('#clip-name')).toHaveText('f00-f03.png, 4 frames, 96 × 64');
+  await done(page);
+  await expect(page.locator('#samples [aria-current=true]')).toHaveCount(0);
+});
+
+test('what is opened last wins: steps and what was chosen before it do not give it up', async ({ page, context }) => {
+  await openEmpty(page);
+  const release = await held(page, 'slow.png');
+  await page.reload();
+  await upload(page, await clipFrames(4, 96, 64));
+  await expect(page.locator('#clip-name')).toContainText('4 frames');
+  await done(page);
+
+  await test.step('files about which the page was still in doubt', async () => {
+    let go = (): void => undefined;
+    const waiting = new Promise<void>((resolve) => (go = resolve));
+    await context.route('**/assets/importing-*.js', async (route) => {
+      await waiting;
+      await route.continue();
+    });
+    const asked = page.waitForRequest('**/assets/importing-*.js');
+    await upload(page, [await square('early-a.png', 96, 64, 0, 0), await square('early-b.png', 96, 64, 2, 0)]);
+    await asked;
+    await upload(page, [await video(page, 6, 'webm', 'vp8')]);
+    await expect(page.locator('#clip-name')).toContainText('clip.webm, 6 frames');
+    await done(page);
+    const came = page.waitForResponse('**/assets/importing-*.js');
+    go();
+    await came;
+    await expectToStep(page, 1);
+    await expect(page.locator('#clip-name')).toContainText('clip.webm, 6 frames');
+  });
+
+  await test.step('a step through the clip, and one that leads nowhere', async () => {
+    await upload(page, [await square('fast.png', 96, 64, 0, 0), await square('slow.png', 96, 64, 2, 0)]);
+    await expect(page.locator('#status')).toHaveText('Opening…');
+    await page.keyboard.press('.');
+    await expect(page.locator('#clip-first-at')).toContainText('#2');
+    await page.getByRole('slider', { name: 'Current frame' }).press('Home');
+    await expect(page.locator('#clip-first-at')).toContainText('#0');
+    await page.keyboard.press(',');
+    await expect(page.locator('#status')).toHaveText('Opening…');
+    await release();
+    await expect(page.locator('.slot-name')).toHaveText(['fast.png, 96 × 64', 'slow.png, 96 × 64']);
+    await done(page);
   });
 });

@@ -390,6 +390,19 @@ export async function openAdvanced(page: Page): Promise<void> {
   await page.locator('#settings details').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
 }
 
+/** Decoding files with this name waits until `release` is called. Called before the page is opened. */
+export async function held(page: Page, file: string): Promise<() => Promise<void>> {
+  await page.addInitScript((file) => {
+    const decode = window.createImageBitmap;
+    const released = new Promise<void>((release) => Object.assign(window, { release }));
+    window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
+      if (source instanceof File && source.name === file) await released;
+      return decode(source, ...rest);
+    };
+  }, file);
+  return () => page.evaluate(() => (window as unknown as { release(): void }).release());
+}
+
 /** Opens files through the picker. */
 export async function upload(page: Page, files: Upload[]): Promise<void> {
   await page.locator('#open-pair').setInputFiles(files);

@@ -102,11 +102,12 @@ export class Frames {
     this.#setPair({ first: second, second: first });
   }
 
-  /** Loads frames and puts them into the pair, with the work on them that is kept. `then`: after that. */
+  /** Loads frames and puts them into the pair, with the work on them that is kept. `then`: after that. `as`: as `Opening.open` takes it. */
   open(
     load: (signal: AbortSignal) => Promise<readonly LoadedFrame[]>,
     place: (frames: readonly LoadedFrame[], pair: FramePair) => FramePair,
     then: (found: Project | null) => void = () => undefined,
+    as?: number | 'step',
   ): Promise<void> {
     const { opening, worker, camera, masks, projects } = this.#parts;
     worker.prepare();
@@ -132,6 +133,7 @@ export class Frames {
           if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
         }
       },
+      as,
     );
   }
 
@@ -142,7 +144,7 @@ export class Frames {
 
   /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
   #goTo(places: Partial<Pick<Timeline, Slot>>): Promise<void> {
-    const { timeline, pair, opening } = this.#store.get();
+    const { timeline, pair } = this.#store.get();
     if (timeline === null) return Promise.resolve();
     const { clip } = timeline;
     const wanted: Timeline = { ...timeline, ...places };
@@ -152,7 +154,7 @@ export class Frames {
       return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
     });
     if (missing.length === 0) {
-      if (opening) this.#parts.opening.stop();
+      this.#parts.opening.stay();
       return Promise.resolve();
     }
     this.#store.set({ timeline: wanted });
@@ -167,6 +169,8 @@ export class Frames {
         return frames;
       },
       (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
+      undefined,
+      'step',
     );
   }
 
@@ -193,7 +197,7 @@ export class Frames {
     const same = kind === 'objects' && sameClip;
     const carried: Look = same ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
     if (!same && timeline !== null && timeline.first !== null && timeline.second !== null) this.#apart = timeline.second - timeline.first;
-    shown.pair(pair, { ...carried, view }, { timeline, tracked, opening: false, viewport: sameSize ? viewport : WHOLE });
+    shown.pair(pair, { ...carried, view }, { timeline, tracked, viewport: sameSize ? viewport : WHOLE });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && !sameClip) left.clip.close();

@@ -63,6 +63,8 @@ export class Open {
    * and lists of classes.
    */
   async files(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    // What is opened while these are still being looked at is newer.
+    const ticket = this.#parts.opening.ticket();
     try {
       const given = [...(await files)];
       const maybeList = slot === null && given.every(({ name }) => /\.(json|txt)$/i.test(name));
@@ -71,7 +73,7 @@ export class Open {
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
       const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));
-      await (areMasks ? this.masks(given) : this.#frames(given, slot));
+      await (areMasks ? this.masks(given) : this.#frames(given, slot, ticket));
     } catch (error) {
       report(this.#store, error);
     }
@@ -87,7 +89,7 @@ export class Open {
     }
   }
 
-  #frames(files: readonly File[], slot: Slot | null): Promise<void> {
+  #frames(files: readonly File[], slot: Slot | null, ticket: number): Promise<void> {
     let opened: Project | null = null;
     let leftOut = '';
     let folder: Clip | null = null;
@@ -128,6 +130,7 @@ export class Open {
         if (source.length > 0) this.#parts.projects.comeFrom(source);
         if (folder !== null) void this.#checkSizes(folder);
       },
+      ticket,
     );
   }
 

@@ -41,8 +41,8 @@ export class Playing {
       if (speed > 1) for (; next < clip.count - 1 && end + duration() < performance.now(); next++) end += duration();
       else end = Math.max(end, performance.now());
       await new Promise((resolve) => setTimeout(resolve, end - performance.now()));
-      // Something else is being opened: the next frame would be opened in its stead.
-      if (this.#store.get().opening) break;
+      // What was opened meanwhile stays where it is.
+      if (this.#store.get().timeline?.clip !== clip) break;
     }
     this.#store.set({ playing: false });
     this.#segmenting.rest();

@@ -8,11 +8,13 @@ import { contextOf, find } from './markup.js';
 
 export function mountPicker(root: ParentNode, store: Store, session: Session): void {
   const listen = (input: HTMLInputElement, slot: Slot | null): void => {
-    input.addEventListener('change', () => {
+    const open = (): void => {
       const files = [...(input.files ?? [])];
       input.value = ''; // so that choosing the same file again is a change
       if (files.length > 0) void session.open.files(files, slot);
-    });
+    };
+    input.addEventListener('change', open);
+    open(); // what was chosen before this code was there
   };
   listen(find(root, '#open-pair', HTMLInputElement), null);
   listen(find(root, '#open-folder', HTMLInputElement), null);

@@ -22,8 +22,7 @@ export function mountShowing(root: Window, store: Store, session: Session, sampl
   };
   for (const kind of TOUCHES) root.addEventListener(kind, touch, { capture: true, passive: true });
 
-  /** Something else that is being opened would be given up for the next frame. */
-  const mayGoOn = (): boolean => !touched && !store.get().opening && store.get().timeline?.clip.sample === sample;
+  const mayGoOn = (): boolean => !touched && store.get().timeline?.clip.sample === sample;
   const play = async (): Promise<void> => {
     for (let time = 0; time < TIMES && mayGoOn(); time++) {
       await session.frames.goTo(0);
