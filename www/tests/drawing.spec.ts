@@ -3,7 +3,7 @@
 import { type Locator, type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, masksOf, openEmpty, openExport, openSegmented, savedClip, savedProject, shown, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, masksOf, openEmpty, openExport, openSegmented, reachPicture, savedClip, savedProject, shown, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -222,7 +222,7 @@ test('the onion skin shows the frames beside; polygons are filled pixel for pixe
 
     // By keyboard alone: from where the pointer was, in steps of the brush's radius. Backspace is about the corners, not about the selected object.
     await page.mouse.move(0, 0);
-    await page.locator('.layers').focus();
+    await reachPicture(page);
     const at = (await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Number(circle.getAttribute(name))))) as [number, number];
     const walked: Place[] = [at];
     const step = async (key: string, times: number): Promise<void> => {

@@ -144,8 +144,7 @@ test('strokes that are still being applied are undone, cancelled, exported and s
     // A name that is being typed survives a new result.
     await drag(page, [0.7, 0.3], [0.8, 0.3]);
     const name = page.locator('#motions > li').nth(1).locator('.motion-name');
-    await name.focus();
-    await page.keyboard.press('Control+a');
+    await name.dblclick({ position: { x: 12, y: 10 } });
     await page.keyboard.type('Van', { delay: 5 });
     await done(page);
     await page.keyboard.type(' 2');

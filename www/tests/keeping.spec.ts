@@ -2,7 +2,7 @@
 
 import { type Locator, type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reopen, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reachPicture, reopen, test } from './support.js';
 
 const [WIDTH, HEIGHT, COUNT] = [120, 84, 6];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
@@ -213,7 +213,7 @@ test('a prompt is refined by presses that add and remove, with mouse and keyboar
     await page.keyboard.press('x'); // a new one again
     await page.keyboard.press('x');
     await expect(add).toBeChecked();
-    await page.locator('.layers').focus();
+    await reachPicture(page);
     const brush = await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Math.round(Number(circle.getAttribute(name)))));
     for (let k = brush[1]!; k < DISC_Y; k++) await page.keyboard.press('Shift+ArrowDown');
     await page.keyboard.press('Space');

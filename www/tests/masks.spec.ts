@@ -64,9 +64,9 @@ test('frames, masks and files of two uploaded files are those of Node, and are s
   const frame10 = await decodeImage(second.buffer);
   const shows = async (frame: typeof frame9): Promise<number> => differences((await pixelsOf(page, '#frame')).data, frame.data);
 
-  await page.keyboard.down('b');
+  await page.keyboard.down('f');
   expect(await shows(frame10)).toBe(0);
-  await page.keyboard.up('b');
+  await page.keyboard.up('f');
   expect(await shows(frame9)).toBe(0);
   await page.locator('#look [value=second]').check();
   expect(await shows(frame10)).toBe(0);

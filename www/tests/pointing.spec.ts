@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reachPicture, test } from './support.js';
 
 const [WIDTH, HEIGHT, RADIUS] = [120, 84, 0.16 * 84];
 
@@ -36,7 +36,7 @@ test('a box, a press and the keyboard make a new object in all frames, and undo 
   const objects = page.locator('#objects > li');
   const count = await objects.count();
   const status = page.locator('#clip-status');
-  await page.locator('.layers').focus();
+  await reachPicture(page);
   await page.keyboard.press('x');
   await expect(tool(page)).toBeChecked();
   await expect(page.locator('#tool-help')).toContainText('it becomes a new object');
@@ -71,7 +71,7 @@ test('a box, a press and the keyboard make a new object in all frames, and undo 
   });
 
   await test.step('so does the keyboard: to a corner of the box, then to the other', async () => {
-    await page.locator('.layers').focus();
+    await reachPicture(page);
     // By 8 pixels, and with Shift by one.
     const step = async (key: string, by: number): Promise<void> => {
       for (let k = 0; k < Math.floor(by / 8); k++) await page.keyboard.press(key);

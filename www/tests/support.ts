@@ -342,8 +342,16 @@ export async function motionsChosen(page: Page, motions: number | 'Automatic'): 
   await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
 }
 
-/** Types a value into a field, and Enter. */
+/** Moves the focus to the picture by keys: after a press on it, they are about the clip. */
+export async function reachPicture(page: Page): Promise<void> {
+  await page.locator('.layers').focus();
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Shift+Tab');
+}
+
+/** Types a value into a field, and Enter. A double click makes a name one. */
 export async function enter(field: Locator, value: string): Promise<void> {
+  if (await field.evaluate((input: HTMLInputElement) => input.readOnly)) await field.dblclick({ position: { x: 12, y: 10 } });
   await field.fill(value);
   await field.press('Enter');
 }

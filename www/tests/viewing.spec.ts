@@ -90,7 +90,7 @@ test('the picture is zoomed and panned, split, drawn over and blinked', async ({
   // With reduced motion each press shows the other frame, and none begins to blink.
   await page.emulateMedia({ reducedMotion: 'reduce' });
   for (const frame of ['Second', 'First', 'Second']) {
-    await page.keyboard.press('n');
+    await page.keyboard.press('Shift+F');
     await expect(caption).toHaveText(`${frame} frame`);
     await expect(page.getByRole('button', { name: 'Blink' })).toHaveAttribute('aria-pressed', 'false');
   }

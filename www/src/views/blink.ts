@@ -1,4 +1,4 @@
-//! Alternating between the frames: by itself, or while the B key is held.
+//! Alternating between the frames: by itself, or while the F key is held.
 
 import type { Store } from '../state/state.js';
 import { find, prefersStillness } from './markup.js';

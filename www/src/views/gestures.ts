@@ -9,7 +9,8 @@ import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import type { LateBrush } from './late-brush.js';
-import { isDialogueOpen, takesText } from './markup.js';
+import { isReached, takesText } from './focused.js';
+import { isDialogueOpen } from './markup.js';
 import { changeRadius } from './tools.js';
 import type { Zoom } from './zoom.js';
 
@@ -117,7 +118,9 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     // Wherever the focus is, these are first about what is being drawn.
     const takesBack = brush.now?.painting && !isDialogueOpen() && (key === 'Escape' || key === 'Backspace') && !takesText(target);
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
-    if (plain && (target === layers || takesBack) && brush.now?.key(event)) event.preventDefault();
+    // After a press on the picture these are about the clip, unless they go on with what was begun by them.
+    const ofClip = (key === ' ' || key.startsWith('Arrow')) && !brush.now?.painting && !isReached(target, '.layers');
+    if (plain && ((target === layers && !ofClip) || takesBack) && brush.now?.key(event)) event.preventDefault();
   });
   // A long press on a touch screen opens a menu otherwise, and so does the right button.
   layers.addEventListener('contextmenu', (event) => {

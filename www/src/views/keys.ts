@@ -3,14 +3,16 @@
 
 import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
-import { element, find, isDialogueOpen, takesArrows, takesText } from './markup.js';
-import type { Key } from './shortcuts.js';
+import { takesText } from './focused.js';
+import { element, find, isDialogueOpen } from './markup.js';
+import type { Group } from './shortcuts.js';
 
-export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, keys: readonly Key[]): void {
+export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, groups: readonly Group[]): void {
+  const keys = groups.flatMap((group) => group.keys);
   const single = find(dialog, '#single-keys', HTMLInputElement);
-  const list = find(dialog, 'dl', HTMLDListElement);
+  const list = find(dialog, '.shortcuts', HTMLElement);
   const peek = new Peek(store);
-  listKeys(list, keys);
+  list.append(...groups.map(sectionOf));
   const show = (): void => {
     if (!dialog.open) dialog.showModal();
     // From the top, which the first control may be far from.
@@ -29,20 +31,23 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     const command = event.ctrlKey || event.metaKey;
     if (!command && !single.checked && name !== 'escape') return;
     if (!command && name === '?') return show();
-    if (!command && name === 'b') return peek.press();
-    const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
-    if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;
+    if (!command && name === 'f' && !event.shiftKey) return peek.press();
+    const isMeant = (key: Group['keys'][number]): boolean => (key.command ?? false) === command && (key.shift ?? event.shiftKey) === event.shiftKey && (key.when?.(event.target) ?? true);
+    const key = keys.find((one) => one.keys.includes(name) && isMeant(one));
+    if (key === undefined) return;
     if (name !== 'escape') event.preventDefault();
     key.run(name);
   });
   document.addEventListener('keyup', (event) => {
-    if (event.key.toLowerCase() === 'b') peek.release();
+    if (event.key.toLowerCase() === 'f') peek.release();
   });
   window.addEventListener('blur', () => peek.release());
 }
 
-/** Fills the list. Keys without words are other ones for what the key before them does. */
-function listKeys(list: HTMLDListElement, keys: readonly Key[]): void {
+/** A part of the list. Keys without words are other ones for what the key before them does. */
+function sectionOf({ title, keys }: Group): HTMLElement {
+  const section = element('section');
+  const list = element('dl');
   for (const { shown, does } of keys) {
     if (does === '') {
       list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown));
@@ -54,4 +59,6 @@ function listKeys(list: HTMLDListElement, keys: readonly Key[]): void {
     row.append(term, element('dd', does));
     list.append(row);
   }
+  section.append(element('h3', title), list);
+  return section;
 }

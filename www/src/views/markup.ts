@@ -33,16 +33,6 @@ export function contextOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   return context;
 }
 
-/** Whether the element takes typed text, so that single keys are not shortcuts. */
-export function takesText(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches('input:not([type=radio], [type=checkbox], [type=range], [type=file], [type=color]), select, textarea');
-}
-
-/** Whether the element uses arrow keys itself. */
-export function takesArrows(target: EventTarget | null): boolean {
-  return takesText(target) || (target instanceof HTMLElement && target.matches('input[type=radio], input[type=range], summary, [role=slider]'));
-}
-
 /** Whether a dialogue is open: what lies behind it stays as it is. */
 export function isDialogueOpen(): boolean {
   return document.querySelector('dialog[open]') !== null;

@@ -41,8 +41,13 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   });
   colour.addEventListener('change', () => (picking = false));
   name.addEventListener('change', () => masks.setAppearance(id, { name: name.value.trim() }));
+  name.addEventListener('dblclick', () => rename(name));
+  name.addEventListener('blur', () => (name.readOnly = true));
   name.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter') name.blur();
+    if (event.key === 'Enter' && name.readOnly) return rename(name);
+    if (event.key === 'Escape' && !name.readOnly) name.value = nameOf(store.get().look, id);
+    else if (event.key !== 'Enter') return;
+    name.blur();
   });
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
   // A select changes with every arrow key, so it only chooses.
@@ -68,7 +73,7 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     const own = colourOfMask(id, look);
     row.style.setProperty('--colour', cssColour(own));
     colour.value = hexColour(own);
-    if (document.activeElement !== name) name.value = called;
+    if (name.readOnly) name.value = called;
     shown.checked = isShown(id, look);
     row.classList.toggle('away', !shown.checked);
     row.classList.toggle('selected', look.selected === id);
@@ -81,6 +86,19 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     merge.setAttribute('aria-label', strings.mergeOf(called));
   };
   return { element: row, refresh };
+}
+
+/** Lets a person change a name, which a click only selects. */
+function rename(name: HTMLInputElement): void {
+  name.readOnly = false;
+  name.focus();
+  name.select();
+}
+
+/** Lets a person change the name of the mask that is selected. */
+export function renameSelected(): void {
+  const name = document.querySelector<HTMLInputElement>('.motions:not([hidden], [inert]) .selected .motion-name');
+  if (name !== null) rename(name);
 }
 
 /** Lists the masks that this one can be merged with. Options that stay are left alone: their list may be open, or one chosen. */

@@ -55,11 +55,13 @@ function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, 
   const field = document.activeElement;
   if (!(field instanceof HTMLInputElement) || !field.matches('.motion-name') || !list.contains(field)) return null;
   const mask = field.closest<HTMLElement>('[data-mask]')?.dataset.mask;
-  const { value, selectionStart, selectionEnd } = field;
+  const { value, readOnly, selectionStart, selectionEnd } = field;
   return (filled, { look }) => {
     const same = filled.querySelector<HTMLInputElement>(`[data-mask="${mask}"] .motion-name`);
     if (same === null || look.kind !== kind) return;
+    same.readOnly = readOnly;
     same.focus({ preventScroll: true });
+    if (readOnly) return;
     same.value = value;
     same.setSelectionRange(selectionStart, selectionEnd);
   };

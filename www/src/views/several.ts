@@ -7,7 +7,8 @@ import type { Session } from '../session/session.js';
 import { type State, type Store, selectedIn } from '../state/state.js';
 import { livesOf } from '../state/tracked.js';
 import { onClass } from './classes.js';
-import { find, takesText } from './markup.js';
+import { takesText } from './focused.js';
+import { find } from './markup.js';
 
 export function mountSeveral(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#objects', HTMLOListElement);

@@ -12,6 +12,8 @@ const THUMB = 72;
 const OUTSIDE = '-1';
 /** Page keys move by this share of the clip. */
 const PAGE = 0.1;
+/** How many frames arrow keys step with Shift. */
+export const FAR = 10;
 
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
   const strip = find(root, '#strip', HTMLCanvasElement);
@@ -91,11 +93,12 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
     if (timeline === null || event.ctrlKey || event.metaKey || event.altKey) return;
     const [at, last] = [currentFrame(timeline), timeline.clip.count - 1];
     const page = Math.max(1, Math.round(last * PAGE));
+    const step = event.shiftKey ? FAR : 1;
     const places: Readonly<Record<string, number>> = {
-      ArrowLeft: at - 1,
-      ArrowDown: at - 1,
-      ArrowRight: at + 1,
-      ArrowUp: at + 1,
+      ArrowLeft: at - step,
+      ArrowDown: at - step,
+      ArrowRight: at + step,
+      ArrowUp: at + step,
       PageDown: at - page,
       PageUp: at + page,
       Home: 0,
