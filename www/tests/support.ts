@@ -69,13 +69,14 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
-/** Opens the page without frames, for tests that bring their own: those of samples never arrive. */
+/** Opens the page without frames, for tests that bring their own: those of samples never arrive. Clips wait until a test asks for their masks. */
 export async function openEmpty(page: Page, kind: 'motions' | 'groups' = 'motions', quality: 'fast' | 'best' = 'fast'): Promise<void> {
   await holdSamples(page);
-  await page.goto(`${PAIR}&quality=${quality}&masks=${kind}`);
+  await page.goto(`${PAIR}&quality=${quality}&masks=${kind}&segment=asked`);
 }
 
-async function holdSamples(page: Page): Promise<void> {
+/** Samples never arrive until {@link withSamples}. */
+export async function holdSamples(page: Page): Promise<void> {
   if (withoutSamples.has(page)) return;
   // Not by a route: with routes the browser caches nothing, and compiles all code anew in every page.
   const devtools = await page.context().newCDPSession(page);

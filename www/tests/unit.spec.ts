@@ -115,9 +115,12 @@ test('a link holds the settings, and invalid values are ignored', () => {
   const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true };
   const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
   expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&masks=motions');
-  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, swapped: false });
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, swapped: false, automatic: null });
+  const asked = linkFor({ ...INITIAL, automatic: false }, 'https://example.org/');
+  expect(asked).toBe('https://example.org/#segment=asked');
+  expect(settingsFromHash(new URL(asked).hash).automatic).toBe(false);
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
-  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
+  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false, automatic: null });
 });
 
 test('command and script contain the settings that are not defaults', () => {

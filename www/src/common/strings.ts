@@ -242,8 +242,11 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean): string => {
+  newObject: 'New object',
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, isBackground: boolean): string => {
     const thing = isClip ? 'object' : 'mask';
+    if (isBackground && tool === 'eraser') return 'Background is selected, and cannot be erased: select an object first.';
+    if (isBackground && (tool === 'brush' || tool === 'polygon')) return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
     if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
     return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
   },

@@ -11,6 +11,8 @@ export interface Linked {
   readonly kind: Kind | null;
   readonly sample: Sample | null;
   readonly swapped: boolean;
+  /** Whether clips are segmented as soon as they are opened; `null` if the link does not say so. */
+  readonly automatic: boolean | null;
 }
 
 export function settingsFromHash(hash: string): Linked {
@@ -22,11 +24,12 @@ export function settingsFromHash(hash: string): Linked {
     kind: kind === 'motions' || kind === 'groups' ? kind : null,
     sample: sampleCalled(values.get('sample')),
     swapped: values.get('swapped') === 'true',
+    automatic: values.get('segment') === 'asked' ? false : null,
   };
 }
 
 /** The page's address with the sample and the settings after the `#`, which is never sent to a server. */
-export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'settings' | 'look' | 'pair'>, address: string): string {
+export function linkFor({ settings, look: { kind }, pair, automatic }: Pick<State, 'settings' | 'look' | 'pair' | 'automatic'>, address: string): string {
   const values = new URLSearchParams();
   const shown = sampleOf(pair);
   // The sample clip needs none: the page opens with it.
@@ -35,6 +38,7 @@ export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'setting
   for (const [name, value] of Object.entries(settings)) {
     if (value !== DEFAULT_SETTINGS[name as keyof Settings]) values.set(name, String(value));
   }
+  if (!automatic) values.set('segment', 'asked');
   if (kind !== 'groups') values.set('masks', kind);
   const url = new URL(address);
   url.hash = values.toString();

@@ -14,7 +14,7 @@ import type { Project } from '../projects/project.js';
 import type { Projects } from '../projects/projects.js';
 import type { FramePair, LoadedFrame, Slot } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { isTracked } from '../state/tracked.js';
+import { isTracked, lengthOf, masksIn } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import { importClasses } from './class-list.js';
@@ -92,7 +92,7 @@ export class Open {
   #frames(files: readonly File[], slot: Slot | null, ticket: number): Promise<void> {
     let opened: Project | null = null;
     let leftOut = '';
-    let folder: Clip | null = null;
+    let clip: Clip | null = null;
     let source: readonly File[] = [];
     return this.#parts.frames.open(
       async (signal) => {
@@ -100,7 +100,7 @@ export class Open {
         if (project !== null) opened = await this.#parts.projects.open(project);
         if (video !== null) {
           source = [video];
-          return this.#startOf(await openClip(video));
+          return this.#startOf((clip = await openClip(video)));
         }
         const folders = foldersOf(all);
         const [likely, ...others] = likelyFrames(folders);
@@ -108,7 +108,7 @@ export class Open {
         if (images === null) return [];
         if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
         if (images.length > 1) source = images;
-        if (images.length > 2) return this.#startOf((folder = await openFolder(images)));
+        if (images.length > 2) return this.#startOf((clip = await openFolder(images)));
         if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
@@ -128,10 +128,18 @@ export class Open {
         if (opened !== null && found !== opened) this.#store.say(strings.projects.waiting(opened.name));
         else if (leftOut !== '') this.#store.say(leftOut);
         if (source.length > 0) this.#parts.projects.comeFrom(source);
-        if (folder !== null) void this.#checkSizes(folder);
+        if (clip === null) return;
+        void this.#checkSizes(clip);
+        this.#begin();
       },
       ticket,
     );
+  }
+
+  /** Segments the clip that was opened, or goes on with it. */
+  #begin(): void {
+    const { automatic, tracked } = this.#store.get();
+    if (automatic && tracked !== null && lengthOf(tracked.range) > 1 && masksIn(tracked.frames, tracked.range) < lengthOf(tracked.range)) void this.#parts.clip.segment();
   }
 
   /** The images of the folder that the person chooses, or all; `null` if none. */

@@ -115,6 +115,8 @@ interface FramesState {
   readonly timeline: Timeline | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
+  /** Whether a clip is segmented as soon as it is opened. */
+  readonly automatic: boolean;
   readonly question: Question | null;
 }
 
@@ -210,6 +212,7 @@ export const INITIAL: State = {
   scrubbing: false,
   live: null,
   opening: false,
+  automatic: true,
   settings: DEFAULT_SETTINGS,
   motionsElsewhere: null,
   run: { phase: 'idle' },

@@ -42,7 +42,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     spread.parentElement!.hidden = clip === null;
     spread.disabled = exact.checked = tool.exact;
     for (const { name, help } of helps) {
-      help.textContent = strings.toolHelp(name, clip !== null, tool.exact);
+      help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0);
       help.classList.toggle('away', tool.name !== name);
     }
     undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');
@@ -50,7 +50,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   };
   store.subscribe((now, before) => {
     const same = (['tool', 'result', 'edits', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
-    if (!same || now.look.kind !== before.look.kind) render();
+    if (!same || now.look.kind !== before.look.kind || now.look.selected !== before.look.selected) render();
   });
   render();
 }

@@ -1,0 +1,40 @@
+//! The name and the colour of what a tool draws with, beside the pointer.
+
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { colourOfMask } from '../drawing/paint.js';
+import { cssColour } from '../drawing/palette.js';
+import type { State, Store } from '../state/state.js';
+import { find } from './markup.js';
+import { pointingIn } from './pointing.js';
+
+/** From this share of the picture on, the name is on the other side of the pointer. */
+const RIGHT = 0.75;
+
+export function mountCursor(layers: HTMLElement, store: Store): void {
+  const tag = find(layers, '#cursor', HTMLElement);
+  layers.addEventListener('pointermove', ({ clientX, clientY, pointerType }) => {
+    const { left, top, width } = layers.getBoundingClientRect();
+    // A finger would hide it.
+    tag.hidden = pointerType === 'touch' || tag.textContent === '';
+    tag.style.left = `${clientX - left}px`;
+    tag.style.top = `${clientY - top}px`;
+    tag.classList.toggle('before', clientX - left > RIGHT * width);
+  });
+  layers.addEventListener('pointerleave', () => (tag.hidden = true));
+  store.subscribe((now, before) => {
+    if (now.look === before.look && now.tool === before.tool && now.result === before.result && now.tracked === before.tracked) return;
+    const { look, tool, result } = now;
+    const isNew = tool.name === 'box' && pointingIn(now) === 'new';
+    tag.textContent = tool.name === 'look' || result === null ? '' : isNew ? strings.newObject : look.selected === null ? '' : nameOf(look, look.selected);
+    if (tag.textContent === '') tag.hidden = true;
+    tag.classList.toggle('removes', removes(now));
+    tag.style.setProperty('--colour', isNew || look.selected === null ? 'transparent' : cssColour(colourOfMask(look.selected, look)));
+  });
+}
+
+/** Whether what is drawn is taken away from what is selected. */
+function removes(state: State): boolean {
+  const { tool } = state;
+  return tool.name === 'eraser' || (tool.name === 'box' && pointingIn(state) === 'remove');
+}
