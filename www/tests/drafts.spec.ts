@@ -81,3 +81,17 @@ test('whoever cancels has the masks that were found, and no drafts', async ({ pa
     expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
   }
 });
+
+test('a run that is stopped while masks come leaves no object of a draft selected', async ({ page }) => {
+  await withProcessors(page, 2);
+  await openClip(page, await clipFrames(8), { quality: 'best' });
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-status')).toHaveText('Segmenting… Drafts for now.');
+  await cancelWhen(page, /^Masks of/);
+  await page.locator('#lane-names button').first().click();
+  await expect(page.locator('#objects > .selected')).toHaveCount(1);
+  await page.locator('#clip-cancel').click(); // what is found gets its masks
+  await clipPhase(page, 'cancelled');
+  await expect(page.locator('#draft')).toBeHidden();
+  await expect(page.locator('#objects > .selected')).toHaveCount(0);
+});

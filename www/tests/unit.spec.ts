@@ -18,6 +18,7 @@ import { suggestionsOf } from '../src/result/junctions.js';
 import { merged, separated } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
+import { TimeLeft } from '../src/session/clip/time-left.js';
 import { painted, promptOf, refined } from '../src/session/clip/drawing.js';
 import { exactly } from '../src/state/exact.js';
 import { withCorrection } from '../src/state/correction.js';
@@ -363,4 +364,15 @@ test('a motion in words: x is right, y is down, x towards y is clockwise, and a 
     expect(annotations(strings.displacement, about(shift, u, v))).toBe(length);
   }
   expect(annotations(strings.displacement, about([0.97, 0, 0, 0.97], 0, 0))).toBe('shrinks 3 %');
+});
+
+test('the time left is that of the frames done last: drafts beside the first ones slowed them down', () => {
+  const time = new TimeLeft(2, 22);
+  expect(time.at(2, 0)).toBeNull();
+  expect(time.at(3, 9000)).toBeNull(); // it waited for the module
+  let left: number | null = null;
+  for (let done = 4; done <= 8; done++) left = time.at(done, 9000 + 4000 * (done - 3));
+  expect(left).toBe(4 * 14);
+  for (let done = 9; done <= 20; done++) left = time.at(done, 29_000 + 1000 * (done - 8));
+  expect(left).toBe(2);
 });

@@ -251,6 +251,11 @@ export const strings = {
     return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
   },
 
+  tab: {
+    working: (share: number | null, name: string): string => `${share === null ? '…' : `${whole.format(100 * share)}${NBSP}%`} ${name}`,
+    done: (name: string): string => `✓ ${name}`,
+    stopped: (name: string): string => `✗ ${name}`,
+  },
   accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,
 
   status: {

@@ -22,6 +22,11 @@ export class Shown {
     this.#segmenting = segmenting;
     this.#solving = solving;
     this.#masks = masks;
+    // Objects of drafts have other numbers, however the run on them ends.
+    store.subscribe((now, before) => {
+      const sameClip = now.tracked?.clip === before.tracked?.clip;
+      if (sameClip && now.look.kind === 'objects' && isDrafting(now.tracked) !== isDrafting(before.tracked)) this.select(null);
+    });
   }
 
   /** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
@@ -81,8 +86,6 @@ export class Shown {
     const frames = [pair.first, pair.second].filter((frame) => frame !== null);
     const came = frames.some((frame) => frameOf(before, frame) === null && frameOf(tracked, frame) !== null);
     if (came) this.kind('objects');
-    // Objects of drafts have other numbers.
-    if (look.kind === 'objects' && isDrafting(tracked) !== isDrafting(before)) this.select(null);
     const changed = frames.some((frame) => frameOf(tracked, frame) !== frameOf(before, frame));
     if (look.kind === 'objects' && changed) this.#store.set({ result: resultOf(tracked, pair) });
   }

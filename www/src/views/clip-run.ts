@@ -74,7 +74,7 @@ function detailOf({ run, solved, range }: Tracked): string {
 }
 
 /** The share that is done, 0 to 1; `null` if it is not known. */
-function shareOf({ run, solved, range }: Tracked): number | null {
+export function shareOf({ run, solved, range }: Tracked): number | null {
   if (run.phase !== 'working' || run.stage === 'corrections') return null;
   if (run.stage === 'labels') return run.labelled / Math.max(1, solved);
   const of = lengthOf(range);

@@ -1,7 +1,11 @@
-//! The time left, from the time that frames have taken so far.
+//! The time left, from the time that the last frames have taken: the first ones shared the processors with drafts.
+
+/** The share of the frames done so far that tells how long the others take. */
+const RECENT = 0.5;
 
 export class TimeLeft {
-  #began: { readonly at: number; readonly done: number } | null = null;
+  /** When so many frames were done, milliseconds. */
+  readonly #reached: { readonly at: number; readonly done: number }[] = [];
 
   /** `done`: frames that take no time, because they were done before. `of`: all frames. */
   constructor(
@@ -9,15 +13,12 @@ export class TimeLeft {
     readonly of: number,
   ) {}
 
-  /** Seconds left when so many frames are done; `null` if it is not known yet. */
-  at(done: number): number | null {
-    if (done === this.done) return null;
+  /** Seconds left when so many frames are done; `null` if it is not known yet. `now`: milliseconds. */
+  at(done: number, now = performance.now()): number | null {
     // The first frame may have waited for the module.
-    if (this.#began === null) {
-      this.#began = { at: performance.now(), done };
-      return null;
-    }
-    const each = (performance.now() - this.#began.at) / (done - this.#began.done);
-    return (each * (this.of - done)) / 1000;
+    if (done === this.done) return null;
+    if (this.#reached.at(-1)?.done !== done) this.#reached.push({ at: now, done });
+    const from = this.#reached[Math.floor((this.#reached.length - 1) * (1 - RECENT))]!;
+    return from.done === done ? null : ((now - from.at) / (done - from.done)) * (this.of - done) / 1000;
   }
 }
