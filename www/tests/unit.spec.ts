@@ -6,7 +6,7 @@ import type { Segmentation } from 'veronese';
 import type { Clip } from '../src/clips/clip.js';
 import { strings } from '../src/common/strings.js';
 import { labelsIn } from '../src/correction/parts.js';
-import { type Runs, packed, unpacked } from '../src/correction/runs.js';
+import { type Runs, differingPixels, packed, unpacked } from '../src/correction/runs.js';
 import { eachPixel, evidenceOf } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
@@ -375,4 +375,11 @@ test('the time left is that of the frames done last: drafts beside the first one
   expect(left).toBe(4 * 14);
   for (let done = 9; done <= 20; done++) left = time.at(done, 29_000 + 1000 * (done - 8));
   expect(left).toBe(2);
+});
+
+test('pixels whose labels differ are counted run by run', () => {
+  const [one, other] = [Uint8Array.from([0, 0, 1, 1, 1, 2, 0, 0]), Uint8Array.from([0, 1, 1, 1, 2, 2, 2, 0])];
+  expect(differingPixels(packed(one, 4, 2), packed(other, 4, 2))).toBe(3);
+  expect(differingPixels(packed(one, 4, 2), packed(one, 4, 2))).toBe(0);
+  expect(differingPixels(packed(one, 4, 2), packed(one, 8, 1))).toBe(8);
 });

@@ -256,6 +256,7 @@ export const strings = {
     done: (name: string): string => `✓ ${name}`,
     stopped: (name: string): string => `✗ ${name}`,
   },
+  changedFrames: (count: number): string => `${whole.format(count)} changed`,
   accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,
 
   status: {

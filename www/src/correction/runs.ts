@@ -37,6 +37,21 @@ export function over(under: Runs, above: Runs): Runs {
   return packed(unpacked(above).map((label, p) => (label === UNLABELLED ? below[p]! : label)), under.width, under.height);
 }
 
+/** The number of pixels whose labels differ; all of the first if the sizes do. */
+export function differingPixels(one: Runs, other: Runs): number {
+  if (one.width !== other.width || one.height !== other.height) return one.width * one.height;
+  let [count, from, k, l] = [0, 0, 0, 0];
+  while (k < one.ends.length && l < other.ends.length) {
+    const [end, last] = [one.ends[k]!, other.ends[l]!];
+    const to = Math.min(end, last);
+    if (one.labels[k] !== other.labels[l]) count += to - from;
+    from = to;
+    if (end === to) k += 1;
+    if (last === to) l += 1;
+  }
+  return count;
+}
+
 /** How many pixels a label has, and the box around them: x, y, width, height. */
 export interface Extent {
   readonly pixels: number;

@@ -7,7 +7,7 @@ import type { Project, ProjectClip } from '../projects/project.js';
 import type { Projects } from '../projects/projects.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import { FRESH, type Look, type Store } from '../state/state.js';
-import { correctedIn, isSeen, livesOf } from '../state/tracked.js';
+import { correctedIn, isSeen, largestChanges, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
@@ -91,6 +91,15 @@ export class Frames {
     const at = timeline?.first ?? 0;
     const corrected = (tracked === null ? [] : correctedIn(tracked)).map(([index]) => index).sort((one, other) => by * (one - other));
     const next = corrected.find((index) => by * (index - at) > 0);
+    if (next !== undefined) void this.goTo(next);
+  }
+
+  /** Goes to the frame that the last correction changed most; from there to the next one. */
+  goToChanged(): void {
+    const { tracked, timeline, look } = this.#store.get();
+    if (tracked === null || look.kind !== 'objects') return;
+    const changed = largestChanges(tracked);
+    const next = changed[(changed.indexOf(timeline?.first ?? -1) + 1) % changed.length];
     if (next !== undefined) void this.goTo(next);
   }
 

@@ -2,7 +2,7 @@
 
 import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
-import type { Runs } from '../correction/runs.js';
+import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
 import type { Annotation } from './annotation.js';
 
@@ -208,6 +208,18 @@ export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepte
   const certainty = (index: number): number => Math.min(1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
   const [first] = left.toSorted((one, other) => certainty(one) - certainty(other));
   return first ?? null;
+}
+
+/** The frames whose masks are others than before the last change of masks, by index, with how they were. Those that are accepted are done with. */
+export function changedIn({ frames, past, accepted }: Pick<Tracked, 'frames' | 'past' | 'accepted'>): Map<number, TrackedFrame> {
+  const before = past.findLast((version) => version.frames !== frames)?.frames ?? frames;
+  return new Map(frames.flatMap((frame, index) => (frame === null || before[index] == null || frame === before[index] || accepted.has(frame) ? [] : [[index, before[index]] as const])));
+}
+
+/** These frames, those first of which most pixels have changed. */
+export function largestChanges(tracked: Tracked): number[] {
+  const sizes = new Map([...changedIn(tracked)].map(([index, before]) => [index, differingPixels(before.runs, tracked.frames[index]!.runs)] as const));
+  return [...sizes.keys()].sort((one, other) => sizes.get(other)! - sizes.get(one)! || one - other);
 }
 
 /** From the first frame that has masks to the last; `null` if there are none. */

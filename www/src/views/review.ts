@@ -1,19 +1,24 @@
-//! The review of a clip: accepting the masks of a frame or of all frames, and how far that is.
+//! The review of a clip: accepting the masks of a frame or of all frames, how far that is, and what the last correction changed.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { acceptedIn, isTracked, masksIn, toReview } from '../state/tracked.js';
+import { acceptedIn, changedIn, isTracked, masksIn, toReview } from '../state/tracked.js';
 import { contextOf, find } from './markup.js';
+
+/** The colours of frames in the bar. */
+const [ACCEPTED, CHANGED] = ['#3fbf6f', '#f06cd8'];
 
 export function mountReview(root: HTMLElement, store: Store, session: Session): void {
   const box = find(root, '#review', HTMLElement);
   const status = find(root, '#reviewed', HTMLElement);
   const one = find(root, '#accept', HTMLButtonElement);
   const all = find(root, '#accept-all', HTMLButtonElement);
+  const next = find(root, '#next-change', HTMLButtonElement);
   const bar = find(root, '#review-bar', HTMLCanvasElement);
   one.addEventListener('click', () => accept(session, 'shown'));
   all.addEventListener('click', () => accept(session, 'all'));
+  next.addEventListener('click', () => session.frames.goToChanged());
 
   store.subscribe(({ tracked, look, timeline }, before) => {
     if (tracked === before.tracked && look === before.look && timeline === before.timeline) return;
@@ -26,8 +31,13 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
     all.disabled = toReview(tracked) === null;
     bar.width = clip.count;
     const context = contextOf(bar);
-    context.fillStyle = '#3fbf6f';
-    for (const index of accepted) context.fillRect(index, 0, 1, 1);
+    const changed = [...changedIn(tracked).keys()];
+    next.hidden = changed.length === 0;
+    next.textContent = strings.changedFrames(changed.length);
+    for (const [indices, colour] of [[accepted, ACCEPTED], [changed, CHANGED]] as const) {
+      context.fillStyle = colour;
+      for (const index of indices) context.fillRect(index, 0, 1, 1);
+    }
   });
 }
 

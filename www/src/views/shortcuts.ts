@@ -73,6 +73,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Gr
       keys: [
         { keys: ['d'], shown: 'D', does: 'Next frame where an object is least certain', run: () => session.frames.goToDoubtful(), shift: false },
         { keys: ['d'], shown: 'Shift D', does: 'Previous frame where an object is least certain', run: () => session.frames.goToDoubtful(null, -1), shift: true },
+        { keys: ['n'], shown: 'N', does: 'Frame that the last correction changed most; again, the next one', run: () => session.frames.goToChanged() },
         { keys: ['c'], shown: 'C', does: 'Next corrected frame', run: () => session.frames.goToCorrected(1), shift: false },
         { keys: ['c'], shown: 'Shift C', does: 'Previous corrected frame', run: () => session.frames.goToCorrected(-1), shift: true },
         { keys: ['y'], shown: 'Y', does: 'Accept the masks of this frame, and go to the frame that most needs a look', run: () => accept(session, 'shown'), shift: false },
