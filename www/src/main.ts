@@ -10,7 +10,6 @@ import { mountBlink } from './views/blink.js';
 import { mountClasses } from './views/classes.js';
 import { mountClipRun } from './views/clip-run.js';
 import { mountCompare } from './views/compare.js';
-import { mountCursor } from './views/cursor.js';
 import { mountDrop } from './views/drop.js';
 import { mountEvidence } from './views/evidence.js';
 import { mountFolders } from './views/folders.js';
@@ -57,7 +56,6 @@ mountOnion(find(stage, '#onion', SVGSVGElement), store);
 mountCompare(stage, store);
 const zoom = mountZoom(stage, store);
 mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, new LateBrush(stage, store, session));
-mountCursor(find(stage, '.layers', HTMLElement), store);
 mountLook(find(document, '#look', HTMLFormElement), store, session);
 mountBlink(document, store);
 mountTools(find(document, '#tools', HTMLFormElement), store, session);
@@ -82,7 +80,7 @@ mountTitle(document, store);
 mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
 mountEvidence(find(document, '#evidence', HTMLElement), store, session);
 mountTimings(find(document, '#timings', HTMLElement), store);
-mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
+mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
 
 // Once there is work, of a pair or of a clip.
 let waiting = true;

@@ -8,6 +8,7 @@ import { type Colour, cssColour } from '../drawing/palette.js';
 import { Drawing } from '../session/clip/drawing.js';
 import type { Session } from '../session/session.js';
 import type { Pointing, State, Store, ToolName } from '../state/state.js';
+import { mountCursor } from './cursor.js';
 import { drawn, find } from './markup.js';
 import { mountPointing, pointingIn } from './pointing.js';
 import { cornersOf, dotsOf, isPolygon, setCorner, takeBack } from './polygon.js';
@@ -54,6 +55,7 @@ export class Brush {
     this.#dress(store.get());
     this.#draw(store.get());
     mountPointing(document, this.#prompt, store);
+    mountCursor(find(stage, '.layers', HTMLElement), store);
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();

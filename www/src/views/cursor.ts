@@ -22,15 +22,18 @@ export function mountCursor(layers: HTMLElement, store: Store): void {
     tag.classList.toggle('before', clientX - left > RIGHT * width);
   });
   layers.addEventListener('pointerleave', () => (tag.hidden = true));
-  store.subscribe((now, before) => {
-    if (now.look === before.look && now.tool === before.tool && now.result === before.result && now.tracked === before.tracked) return;
+  const render = (now: State): void => {
     const { look, tool, result } = now;
     const isNew = tool.name === 'box' && pointingIn(now) === 'new';
     tag.textContent = tool.name === 'look' || result === null ? '' : isNew ? strings.newObject : look.selected === null ? '' : nameOf(look, look.selected);
     if (tag.textContent === '') tag.hidden = true;
     tag.classList.toggle('removes', removes(now));
     tag.style.setProperty('--colour', isNew || look.selected === null ? 'transparent' : cssColour(colourOfMask(look.selected, look)));
+  };
+  store.subscribe((now, before) => {
+    if ((['look', 'tool', 'result', 'tracked'] as const).some((part) => now[part] !== before[part])) render(now);
   });
+  render(store.get());
 }
 
 /** Whether what is drawn is taken away from what is selected. */

@@ -1,20 +1,21 @@
-//! Handles keyboard shortcuts and lists them in a dialogue that `?` opens. Single-key shortcuts can be disabled there, because speech
+//! Handles keyboard shortcuts, and opens the list of them with `?`. Single-key shortcuts can be disabled there, because speech
 //! input triggers them.
 
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import { takesText } from './focused.js';
-import { element, find, isDialogueOpen } from './markup.js';
-import type { Group } from './shortcuts.js';
+import { find, isDialogueOpen } from './markup.js';
+import type { Key } from './shortcuts.js';
 
-export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, groups: readonly Group[]): void {
-  const keys = groups.flatMap((group) => group.keys);
+export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, session: Session, keys: readonly Key[]): void {
   const single = find(dialog, '#single-keys', HTMLInputElement);
   const list = find(dialog, '.shortcuts', HTMLElement);
   const peek = new Peek(store);
-  list.append(...groups.map(sectionOf));
   const show = (): void => {
     if (!dialog.open) dialog.showModal();
+    if (list.childElementCount === 0) import('./key-list.js').then(({ listKeys }) => listKeys(list), () => session.say(strings.errors.notLoaded, 'not-loaded'));
     // From the top, which the first control may be far from.
     dialog.focus();
     dialog.scrollTop = 0;
@@ -32,7 +33,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     if (!command && !single.checked && name !== 'escape') return;
     if (!command && name === '?') return show();
     if (!command && name === 'f' && !event.shiftKey) return peek.press();
-    const isMeant = (key: Group['keys'][number]): boolean => (key.command ?? false) === command && (key.shift ?? event.shiftKey) === event.shiftKey && (key.when?.(event.target) ?? true);
+    const isMeant = (key: Key): boolean => (key.command ?? false) === command && (key.shift ?? event.shiftKey) === event.shiftKey && (key.when?.(event.target) ?? true);
     const key = keys.find((one) => one.keys.includes(name) && isMeant(one));
     if (key === undefined) return;
     if (name !== 'escape') event.preventDefault();
@@ -42,23 +43,4 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     if (event.key.toLowerCase() === 'f') peek.release();
   });
   window.addEventListener('blur', () => peek.release());
-}
-
-/** A part of the list. Keys without words are other ones for what the key before them does. */
-function sectionOf({ title, keys }: Group): HTMLElement {
-  const section = element('section');
-  const list = element('dl');
-  for (const { shown, does } of keys) {
-    if (does === '') {
-      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown));
-      continue;
-    }
-    const row = element('div');
-    const term = element('dt');
-    term.append(element('kbd', shown));
-    row.append(term, element('dd', does));
-    list.append(row);
-  }
-  section.append(element('h3', title), list);
-  return section;
 }
