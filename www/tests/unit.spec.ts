@@ -10,6 +10,7 @@ import { type Runs, differingPixels, packed, unpacked } from '../src/correction/
 import { eachPixel, evidenceOf } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
+import { type Colour, PALETTE } from '../src/drawing/palette.js';
 import { WHOLE, inPicture, panned, within, zoomedAt } from '../src/drawing/viewport.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
 import { commandFor, scriptFor } from '../src/export/reproduce.js';
@@ -382,4 +383,32 @@ test('pixels whose labels differ are counted run by run', () => {
   expect(differingPixels(packed(one, 4, 2), packed(other, 4, 2))).toBe(3);
   expect(differingPixels(packed(one, 4, 2), packed(one, 4, 2))).toBe(0);
   expect(differingPixels(packed(one, 4, 2), packed(one, 8, 1))).toBe(8);
+});
+
+/** For all eyes, and for those without the cones of long and of medium waves, in linear light (Machado and others, 2009). */
+const EYES = [
+  [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+  [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+] as const;
+
+/** A colour in Oklab as these eyes see it. */
+function oklab(colour: Colour, eyes: (typeof EYES)[number]): [number, number, number] {
+  const linear = colour.map((value) => (value <= 10 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  const [r, g, b] = eyes.map((row) => Math.max(0, row.reduce<number>((sum, entry, k) => sum + entry * linear[k]!, 0))) as [number, number, number];
+  const l = Math.cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+  const m = Math.cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+  const s = Math.cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+  return [0.2104542553 * l + 0.793617785 * m - 0.0040720468 * s, 1.9779984951 * l - 2.428592205 * m + 0.4505937099 * s, 0.0259040371 * l + 0.7827717662 * m - 0.808675766 * s];
+}
+
+test('twenty objects have colours that are apart, also to the colour-blind; those after the eighth are bright', () => {
+  const colours = PALETTE.slice(1);
+  expect(colours).toHaveLength(20);
+  for (const colour of colours.slice(8)) expect(oklab(colour, EYES[0])[0]).toBeGreaterThan(0.6);
+  for (const [k, eyes] of EYES.entries()) {
+    const seen = colours.map((colour) => oklab(colour, eyes));
+    const distances = seen.flatMap((one, i) => seen.slice(0, i).map((other) => Math.hypot(...one.map((value, axis) => value - other[axis]!))));
+    expect(Math.min(...distances)).toBeGreaterThan(k === 0 ? 0.09 : 0.058);
+  }
 });

@@ -1,5 +1,5 @@
-//! The colours of the masks, after Okabe and Ito: distinguishable with any common kind of colour blindness. Grey is for the background,
-//! which is not painted: it is the colour of its arrows and strokes.
+//! The colours of the masks: first those of Okabe and Ito, then bright ones, each as far as it can be from all before it, also to eyes that lack
+//! one kind of cone. Grey is for the background, which is not painted: it is the colour of its arrows and strokes.
 
 /** Red, green, blue, 0…255. */
 export type Colour = readonly [number, number, number];
@@ -15,7 +15,18 @@ export const PALETTE: readonly Colour[] = [
   [213, 84, 0], // vermilion
   [0, 104, 190], // blue
   [236, 236, 236], // white
-  [128, 82, 40], // brown
+  [150, 105, 255], // violet
+  [75, 225, 165], // mint
+  [210, 195, 255], // lilac
+  [255, 90, 105], // coral
+  [165, 255, 165], // pale green
+  [225, 0, 150], // magenta
+  [105, 120, 210], // indigo
+  [165, 195, 105], // sage
+  [210, 150, 165], // rose
+  [135, 150, 255], // cornflower
+  [180, 150, 0], // gold
+  [120, 210, 210], // aqua
 ];
 
 /** The colour of pixels without a label. */
