@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
 import { BIT, BITS, WIDTH, video } from './video.js';
-import { type Upload, done, enter, expect, open, openEmpty, pixelsOf, shown, square, test, upload, withSamples } from './support.js';
+import { type Upload, done, enter, expect, open, openEmpty, openSample, pixelsOf, shown, square, test, upload, withSamples } from './support.js';
 
 /** The number in the frame on screen. */
 async function numberShown(page: Page): Promise<number> {
@@ -75,7 +75,7 @@ test('videos give exactly the requested frames and keep their corrections', asyn
 
   // Another pair closes the clip.
   await withSamples(page);
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('#timeline')).toBeHidden();
   await done(page);
 
@@ -94,7 +94,7 @@ test('videos give exactly the requested frames and keep their corrections', asyn
     await forward();
     const name = page.locator('#motions > li').first().locator('.motion-name');
     await enter(name, 'Wall');
-    await page.getByRole('button', { name: 'Parallax' }).click();
+    await openSample(page, 'Parallax');
     await expect(page.locator('#timeline')).toBeHidden();
     await done(page);
     await opened('again.webm');

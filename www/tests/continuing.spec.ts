@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
+import { type Upload, axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSample, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -102,7 +102,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
 
   // The clip's message is not shown for a pair.
   await expect(page.locator('#saving button')).toBeVisible();
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('#saving button')).toBeHidden();
   await work.click();
   await expect(page.locator('#saving button')).toBeVisible();

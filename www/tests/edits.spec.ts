@@ -5,7 +5,7 @@ import { readFile } from 'node:fs/promises';
 import type { Dialog, Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Place, type Upload, PAIR, chooseMotions, differences, done, drag, drawAtOnce, enter, expect, labelsOfDavis, labelsOnCanvas, motionsChosen, openAdvanced, openClip, openEmpty, openExport, shown, square, test, undoAll, upload, withoutStorage } from './support.js';
+import { type Place, type Upload, PAIR, chooseMotions, differences, done, drag, drawAtOnce, enter, expect, labelsOfDavis, labelsOnCanvas, motionsChosen, openAdvanced, openClip, openEmpty, openExport, openSample, shown, square, test, undoAll, upload, withoutStorage } from './support.js';
 
 /** Selects the brush, and a mask by its position in the list. */
 async function brush(page: Page, row: number): Promise<void> {
@@ -246,7 +246,7 @@ test('corrections of a pair are there when its frames are shown again', async ({
     }
 
     // Replaced by a sample and opened again.
-    await page.getByRole('button', { name: 'Parallax' }).click();
+    await openSample(page, 'Parallax');
     await shown(page, 'first', '400 × 300');
     await pair();
     await expect(strokes(page)).toHaveCount(1);
@@ -338,7 +338,7 @@ test('where nothing is kept, leaving the page asks first only with unsaved corre
   expect(await warns(page)).toBe(true);
   await page.getByRole('button', { name: 'Stop camera' }).click();
   await done(page);
-  await page.getByRole('button', { name: 'Two cars' }).click();
+  await openSample(page, 'Two cars');
   await shown(page, 'first', 'first.png');
   await expect(strokes(page)).toHaveCount(1);
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);

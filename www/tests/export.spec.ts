@@ -12,7 +12,7 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { readAnnotations } from 'veronese/formats';
 
-import { chooseMotions, differences, done, enter, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, pixelsOf, sample, saved, segmentedInNode, square, test, upload } from './support.js';
+import { chooseMotions, differences, done, enter, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, openSample, pixelsOf, sample, saved, segmentedInNode, square, test, upload } from './support.js';
 
 /** Clicks a button of the panel that saves a file. */
 async function savedBy(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
@@ -142,7 +142,7 @@ test('a copied link opens with the same settings and the current sample', async 
     await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).not.toBe('');
     return page.evaluate(() => navigator.clipboard.readText());
   };
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
   await done(page);
   await page.getByRole('button', { name: 'Swap the two frames' }).click();

@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, clipPhase, done, enter, expect, held, labelsOnCanvas, leaves, openExport, square, test, upload, withSmallSampleClip } from './support.js';
+import { axe, clipDone, clipFrames, clipPhase, done, enter, expect, held, labelsOnCanvas, leaves, openExport, openSample, square, test, upload, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -123,11 +123,11 @@ test('a link to a pair opens no clip, one to the clip is the page itself; anothe
   await page.evaluate(() => (location.hash = '#sample=passing-cars&quality=fast'));
   await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 64 × 36');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
   await done(page);
   await expect(page.locator('#timeline')).toBeHidden();
-  await page.getByRole('button', { name: 'Passing cars' }).click();
+  await openSample(page, 'Passing cars');
   await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
   await page.locator('#clip-cancel').click();
   await clipPhase(page, 'cancelled');

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { PAIR, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, shown, square, test, unwatched, upload, withSamples } from './support.js';
+import { PAIR, axe, done, expect, labelsOnCanvas, open, openEmpty, openExport, openSample, shown, square, test, unwatched, upload, withSamples } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
@@ -173,7 +173,7 @@ test.describe('with a service worker', () => {
     await done(page);
     await page.locator('#look [name=colouring][value=motions]').check();
     expect(await labelsOnCanvas(page)).toEqual(labels);
-    await page.getByRole('button', { name: 'Passing cars' }).click();
+    await openSample(page, 'Passing cars');
     await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
     await done(page);
     await context.setOffline(false);

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, PAIR, clipFrames, done, expect, held, openEmpty, shown, square, test, upload, withSamples } from './support.js';
+import { type Upload, PAIR, clipFrames, done, expect, held, openEmpty, openSample, shown, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -96,7 +96,7 @@ test('a step can be cancelled; a sample that cannot be read leaves the clip open
   // An unreadable sample leaves the clip open.
   await withSamples(page);
   await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
   await expect(page.locator('#timeline')).toBeVisible();
   await expectToStep(page, 1);

@@ -477,6 +477,12 @@ export async function give(page: Page, how: 'drop' | 'paste', files: readonly Up
   );
 }
 
+/** Opens a sample by its name, also where they are folded away. */
+export async function openSample(page: Page, name: string): Promise<void> {
+  await page.locator('#welcome').evaluate((details: HTMLDetailsElement) => (details.open = true));
+  await page.getByRole('button', { name, exact: true }).click();
+}
+
 /** Opens the panel of exports, if it is closed. */
 export async function openExport(page: Page): Promise<void> {
   if (!(await page.locator('#export').isVisible())) await page.locator('#open-export').click();

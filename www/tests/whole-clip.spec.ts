@@ -4,7 +4,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -324,7 +324,7 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
 
   // Another pair, and the clip again.
   await withSamples(page);
-  await page.getByRole('button', { name: 'Parallax' }).click();
+  await openSample(page, 'Parallax');
   await expect(page.locator('#timeline')).toBeHidden();
   await done(page);
   await expect(page.locator('#objects')).toBeHidden();

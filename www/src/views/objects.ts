@@ -53,7 +53,16 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
       row.refresh(now, lives.find((life) => life.id === id) ?? null, ids);
     }
     if (held !== null && !rows.has(held)) focusRow(list, held, look);
+    if (look.selected !== before.look.selected) scrollTo(list, rows.get(look.selected ?? -1)?.element);
   });
+}
+
+/** Scrolls a list that scrolls by itself, and nothing around it, until a row is in sight. */
+function scrollTo(list: HTMLElement, row: HTMLElement | undefined): void {
+  if (row === undefined) return;
+  const [inner, outer] = [row.getBoundingClientRect(), list.getBoundingClientRect()];
+  if (inner.top < outer.top || inner.height > outer.height) list.scrollTop += inner.top - outer.top;
+  else if (inner.bottom > outer.bottom) list.scrollTop += inner.bottom - outer.bottom;
 }
 
 /** Connects what only objects of a clip have: their life, and what becomes of them in all frames. */
@@ -74,6 +83,15 @@ function rowOf(id: number, store: Store, session: Session): Row {
   lock.addEventListener('click', () => session.objects.toggleLock(id));
   split.addEventListener('click', () => void session.objects.split(id));
   remove.addEventListener('click', () => session.objects.remove(id));
+  const others = (): number[] => livesOf(store.get().tracked ?? { frames: [] }).map((life) => life.id).filter((other) => other !== id);
+  const aboutOthers = (['lock', 'hide', 'remove'] as const).map((what) => ({ what, button: find(row, `[data-action=${what}-others]`, HTMLButtonElement) }));
+  for (const { what, button } of aboutOthers) {
+    button.addEventListener('click', () => {
+      if (what === 'lock') session.objects.toggleLock(...others());
+      else if (what === 'remove') session.objects.remove(...others());
+      else store.look({ hidden: new Set(others()), solo: null });
+    });
+  }
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
 
   const refreshAll: Row['refresh'] = ({ look, result, tracked }, life, ids) => {
@@ -87,6 +105,11 @@ function rowOf(id: number, store: Store, session: Session): Row {
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.spans.length > 0;
     for (const control of [lock, split, remove]) control.disabled = !ready;
+    const alone = !ids.some((other) => other !== 0 && other !== id);
+    for (const { what, button } of aboutOthers) {
+      button.disabled = alone || (!ready && what !== 'hide');
+      button.setAttribute('aria-label', strings.othersOf[what](called));
+    }
     lock.setAttribute('aria-pressed', String(tracked !== null && tracked.locked.has(id)));
     lock.setAttribute('aria-label', strings.lockOf(called));
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);

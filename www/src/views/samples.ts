@@ -1,19 +1,30 @@
-//! The samples: small moving pictures over their names. They move while they can be seen, and rest beside other frames.
+//! The samples: small moving pictures over their names. They move while they can be seen, rest beside other frames, and fold away once a person
+//! has frames of their own.
 
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
 import { sampleOf, timelineOf } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { element } from './markup.js';
+import { element, find } from './markup.js';
+
+/** Where the list of masks is beside the picture, not below it: there it needs the room. */
+const BESIDE = matchMedia('(min-width: 900px)');
 
 export function mountSamples(root: HTMLElement, store: Store, session: Session): void {
   const buttons = SAMPLES.map((sample) => ({ sample, button: buttonOf(sample, () => void session.open.sample(sample)) }));
   root.append(...buttons.map(({ button }) => button));
   new IntersectionObserver((changes) => root.classList.toggle('seen', changes.at(-1)!.isIntersecting)).observe(root);
 
-  store.subscribe(({ pair }, before) => {
+  const fold = find(document, '#welcome', HTMLDetailsElement);
+  /** Once: whoever opens it again keeps it. */
+  let folds = true;
+  BESIDE.addEventListener('change', () => {
+    if (!folds && !BESIDE.matches) fold.open = folds = true;
+  });
+  store.subscribe(({ pair, live }, before) => {
     if (pair === before.pair) return;
     const open = timelineOf(pair)?.clip.sample ?? sampleOf(pair)?.sample;
+    if (folds && BESIDE.matches && open === undefined && live === null && pair.first !== null) folds = fold.open = false;
     for (const { sample, button } of buttons) button.setAttribute('aria-current', String(sample === open));
   });
 }
