@@ -87,6 +87,12 @@ test('a click selects a name, a double click or F2 renames, Escape leaves it', a
   await page.keyboard.type('Disc');
   await page.keyboard.press('Enter');
   await expect(name).toHaveValue('Disc');
+  // The row moves up when it is pressed, because that of the other object shows no actions any more.
+  await rows.nth(2).locator('.motion-name').dblclick({ position: { x: 12, y: 10 } });
+  await page.keyboard.type('Cube');
+  await page.keyboard.press('Enter');
+  await expect(rows.nth(2).locator('.motion-name')).toHaveValue('Cube');
+  await expect(rows.nth(2)).toHaveClass(/selected/);
   await page.keyboard.press('2');
   await page.keyboard.press('F2');
   await page.keyboard.type('Box');

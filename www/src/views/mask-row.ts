@@ -41,7 +41,6 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   });
   colour.addEventListener('change', () => (picking = false));
   name.addEventListener('change', () => masks.setAppearance(id, { name: name.value.trim() }));
-  name.addEventListener('dblclick', () => rename(name));
   name.addEventListener('blur', () => (name.readOnly = true));
   name.addEventListener('keydown', (event) => {
     if (event.key === 'Enter' && name.readOnly) return rename(name);
@@ -87,6 +86,24 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   };
   return { element: row, refresh };
 }
+
+/** The name that was pressed last. A second press is about it, though its row may have moved since it is selected. */
+let pressedName: HTMLInputElement | null = null;
+const isSecond = (event: MouseEvent): boolean => {
+  const again = event.detail === 2 && pressedName !== null && pressedName.isConnected && pressedName.readOnly;
+  if (again) {
+    event.preventDefault();
+    event.stopPropagation();
+  }
+  return again;
+};
+document.addEventListener('mousedown', (event) => {
+  if (isSecond(event)) return;
+  pressedName = event.target instanceof HTMLInputElement && event.target.matches('.motion-name') ? event.target : null;
+}, true);
+document.addEventListener('click', (event) => {
+  if (isSecond(event)) rename(pressedName!);
+}, true);
 
 /** Lets a person change a name, which a click only selects. */
 function rename(name: HTMLInputElement): void {
