@@ -17,7 +17,7 @@ async function openMany(page: Page): Promise<void> {
     const cell = 5 * Math.floor(y / 35) + Math.floor(x / 40);
     return x % 40 > 6 && y % 35 > 6 ? cell + 1 : 0;
   });
-  await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodeDavis(labels, width, height)) }]);
+  await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(labels, width, height)) }]);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
   await expect(page.locator('#objects > li')).toHaveCount(1 + COUNT);
 }

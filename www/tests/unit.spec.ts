@@ -392,8 +392,8 @@ const EYES = [
   [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
 ] as const;
 
-/** A colour in Oklab as these eyes see it. */
-function oklab(colour: Colour, eyes: (typeof EYES)[number]): [number, number, number] {
+/** A colour as these eyes see it, in coordinates in which equal distances look equal. */
+function seenBy(colour: Colour, eyes: (typeof EYES)[number]): [number, number, number] {
   const linear = colour.map((value) => (value <= 10 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
   const [r, g, b] = eyes.map((row) => Math.max(0, row.reduce<number>((sum, entry, k) => sum + entry * linear[k]!, 0))) as [number, number, number];
   const l = Math.cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
@@ -405,9 +405,9 @@ function oklab(colour: Colour, eyes: (typeof EYES)[number]): [number, number, nu
 test('twenty objects have colours that are apart, also to the colour-blind; those after the eighth are bright', () => {
   const colours = PALETTE.slice(1);
   expect(colours).toHaveLength(20);
-  for (const colour of colours.slice(8)) expect(oklab(colour, EYES[0])[0]).toBeGreaterThan(0.6);
+  for (const colour of colours.slice(8)) expect(seenBy(colour, EYES[0])[0]).toBeGreaterThan(0.6);
   for (const [k, eyes] of EYES.entries()) {
-    const seen = colours.map((colour) => oklab(colour, eyes));
+    const seen = colours.map((colour) => seenBy(colour, eyes));
     const distances = seen.flatMap((one, i) => seen.slice(0, i).map((other) => Math.hypot(...one.map((value, axis) => value - other[axis]!))));
     expect(Math.min(...distances)).toBeGreaterThan(k === 0 ? 0.09 : 0.058);
   }
