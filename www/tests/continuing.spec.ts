@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, axe, clipFrames, done, expect, goTo, leaves, open, openExport, openSample, openSegmented, projectsInBrowser, rename, saved, test, upload, withoutStorage } from './support.js';
+import { type Upload, axe, clipDone, clipFrames, done, expect, goTo, hide, leaves, open, openClip, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -233,4 +233,30 @@ test('work that the browser refuses to keep is shown as not saved', async ({ pag
   await expect(page.locator('#saving [role=status]')).toHaveText('');
   expect((await saved(page, saving)).name).toBe('f00-f03.veronese');
   expect(await leaves(page)).toBe(true);
+});
+
+test('a clip is kept when it is opened, and one whose run a reload ended goes on where it was', async ({ page }) => {
+  await openClip(page, await clipFrames(4, 120, 84));
+  await expect(page.locator('#saving')).toContainText('Saved in this browser');
+  await expect.poll(() => copies(page)).toBe(1);
+  expect(await leaves(page)).toBe(true);
+  await reloadEmpty(page);
+  const work = page.getByRole('region', { name: 'Continue your work' }).getByRole('button');
+  await work.click();
+  await expect(page.locator('#clip-name')).toContainText('f00-f03.png');
+  await done(page);
+  await expect(page.locator('#clip-status')).toHaveText('');
+  await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
+
+  await page.getByLabel('Segment a clip when it is opened').check();
+  await upload(page, await clipFrames(16, 160, 112));
+  await expect(page.locator('#clip-detail')).toHaveText(/^[2-9] of 16/);
+  await hide(page); // as before a reload
+  await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f15') && /"pairs":\[\[0/.test(project))).toBe(true);
+  await page.goto('./#sample=parallax&quality=fast');
+  await page.reload();
+  await work.filter({ hasText: 'f00-f15' }).click();
+  await expect(page.locator('#clip-detail')).toHaveText(/^([2-9]|1\d) of 16/); // not from the first one on
+  await clipDone(page);
+  await expect(page.locator('#clip-status')).toHaveText(/^2 objects in 16 frames/);
 });

@@ -32,7 +32,7 @@ export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<s
   const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
   if (open !== null) pairs.set(...open);
   const tracked = trackedOf(state, of);
-  const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
+  const clip = tracked !== null && (!tracked.clip.sample || tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
   const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
   if (subject === undefined) return null;
   return { ...subject, classList, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs.get(of) ?? null), pairs };
@@ -103,10 +103,11 @@ export function withProject(state: State, { of, settings, classList: saved, clip
 /** Masks of a project that replace others are one more step. */
 function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip }: ProjectClip): Tracked {
   const complete = isComplete(clip);
+  const begun = (solved?.pairs.size ?? 0) > 0 || clip.frames.some((frame) => frame !== null);
   return {
     ...before,
     ...clip,
-    run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'cancelled' },
+    run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: begun ? 'cancelled' : 'idle' },
     solved: complete ? lengthOf(clip.range) : (solved?.pairs.size ?? 0),
     past: isTracked(before) ? [...before.past, versionOf(before)] : [],
     future: [],

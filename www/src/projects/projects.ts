@@ -71,7 +71,10 @@ export class Projects {
   /** Both frames of the pair, or its clip, were opened from these files. */
   comeFrom(files: readonly File[]): void {
     const subject = subjectOf(this.#store.get().pair);
-    if (subject !== null) this.#files.set(subject.of, files);
+    if (subject === null) return;
+    this.#files.set(subject.of, files);
+    // A clip is kept from the first moment, so that a reload finds it.
+    if (this.#store.get().tracked !== null) this.#touch(subject.of, SOON);
   }
 
   /** The project of these frames, if it is not in the state already. */
