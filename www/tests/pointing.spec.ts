@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reachPicture, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reachPicture, screen, test } from './support.js';
 
 const [WIDTH, HEIGHT, RADIUS] = [120, 84, 0.16 * 84];
 
@@ -158,4 +158,44 @@ test.describe('on a phone', () => {
     await clipDone(page);
     expect((await labelsOnCanvas(page))[y * WIDTH + x]).not.toBe(own);
   });
+});
+
+test('a press on something that was not found offers a new object there, which further presses refine', async ({ page }) => {
+  await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
+  await goTo(page, 3);
+  const offer = page.getByRole('button', { name: 'New object here' });
+  const status = page.locator('#clip-status');
+  await expect(offer).toBeHidden();
+  await drag(page, MIDDLE, MIDDLE);
+  await expect(page.locator('#objects > .selected')).toHaveCount(1);
+  await expect(offer).toBeHidden(); // it was found
+  await page.keyboard.press('Delete');
+  await expect(page.locator('#objects > li')).toHaveCount(2);
+  await clipDone(page);
+  await drag(page, MIDDLE, MIDDLE);
+  await expect(offer).toBeVisible();
+  expect(await axe(page)).toEqual([]);
+  await page.screenshot({ path: screen('offer') });
+  // Another tool or another frame takes it back.
+  await page.keyboard.press('b');
+  await expect(offer).toBeHidden();
+  await page.keyboard.press('v');
+  await drag(page, at(2, 80), at(2, 80)); // the background is selected no more
+  await drag(page, MIDDLE, MIDDLE);
+  await offer.click();
+  await expect(status).toHaveText(/^Corrected/);
+  await expect(page.locator('#objects > li')).toHaveCount(3);
+  const own = Math.max(...(await labelsOnCanvas(page)));
+  expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+  await expect(page.locator('[name=pointing][value=add]')).toBeChecked();
+  const marks = page.locator('#strokes .prompt');
+  await expect(marks).toHaveCount(1);
+  await drag(page, at(32, 30), at(32, 30));
+  await expect(marks).toHaveCount(2);
+  await page.keyboard.down('Alt');
+  await drag(page, at(80, 70), at(80, 70));
+  await page.keyboard.up('Alt');
+  await expect(page.locator('#strokes .prompt.minus')).toHaveCount(1);
+  await clipDone(page);
+  await expect(page.locator('#objects > li')).toHaveCount(3);
 });

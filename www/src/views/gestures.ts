@@ -1,4 +1,4 @@
-//! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
+//! Pointers on the picture. View tool: a tap selects a mask, or offers a new object where none was found, holding shows the other frame, dragging pans the enlarged picture. Brush and
 //! eraser: dragging paints. Polygon: each press sets a corner where it ends. Box: dragging draws one, a tap points; with Shift to more of the
 //! selected object, with Alt or the right button to what does not belong to it. With Shift the wheel changes the size of the brush. All tools:
 //! the wheel and two fingers zoom.
@@ -11,6 +11,7 @@ import { Peek } from './blink.js';
 import type { LateBrush } from './late-brush.js';
 import { isReached, takesText } from './focused.js';
 import { isDialogueOpen } from './markup.js';
+import type { Offer } from './offer.js';
 import { changeRadius } from './tools.js';
 import type { Zoom } from './zoom.js';
 
@@ -37,6 +38,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   const peek = new Peek(store);
   let holding = 0;
   let dragged = false;
+  /** Loaded when something is first pressed that was not found. */
+  let offering: Promise<Offer> | null = null;
 
   const inView = ({ clientX, clientY }: { clientX: number; clientY: number }): [number, number] => {
     const box = layers.getBoundingClientRect();
@@ -47,7 +50,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   layers.addEventListener('pointerdown', (event) => {
     const points = store.get().tool.name === 'box';
     const removes = points && (event.button === 2 || event.altKey);
-    if ((event.button !== 0 && !removes) || event.target instanceof HTMLInputElement) return;
+    if ((event.button !== 0 && !removes) || event.target instanceof HTMLInputElement || event.target instanceof HTMLButtonElement) return;
     presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY], moved: false });
     layers.setPointerCapture(event.pointerId);
     clearTimeout(holding);
@@ -107,7 +110,15 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     }
     const tapped = !dragged && event.type === 'pointerup' && !peek.held;
     peek.release();
-    if (tapped) choose(store, session, pixelAt(store.get(), inView(event)));
+    if (!tapped) return;
+    const at = pixelAt(store.get(), inView(event));
+    choose(store, session, at);
+    const { look } = store.get();
+    if (look.kind !== 'objects' || look.selected !== 0) return;
+    const view = inView(event);
+    offering ??= import('./offer.js').then(({ Offer }) => new Offer(layers, store, session));
+    // Without it there is the box, which does the same.
+    offering.then((offer) => offer.at(at, view), () => (offering = null));
   };
   layers.addEventListener('pointerup', end);
   layers.addEventListener('pointercancel', end);

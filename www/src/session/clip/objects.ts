@@ -12,10 +12,11 @@ import type { Store } from '../../state/state.js';
 import { type Notes, isDrafting, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
-/** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}. */
+/** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}, {@link Objects.point}. */
 interface Drawing {
   copyMask(by: 1 | -1): number | null;
   split(id: number): void;
+  beginPrompt(pointing: 'new'): ((path: { readonly points: readonly number[] }) => void) | null;
 }
 
 export class Objects {
@@ -47,6 +48,13 @@ export class Objects {
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
   async copyMask(by: 1 | -1): Promise<number | null> {
     return (await this.drawing())?.copyMask(by) ?? null;
+  }
+
+  /** Makes a new object of what is at a pixel of the frame on screen, unless that has changed meanwhile. */
+  async point(pixel: readonly [number, number]): Promise<void> {
+    const { pair } = this.#store.get();
+    const drawing = await this.drawing();
+    if (this.#store.get().pair === pair) drawing?.beginPrompt('new')?.({ points: pixel });
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
