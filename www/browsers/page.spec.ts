@@ -68,7 +68,6 @@ for (const found of BROWSERS) {
       await upload(browser, folder, files);
       await browser.untilText('#clip-name', '6 frames');
       await done();
-      await find('#clip-segment').click();
       await browser.untilAttribute('#clip-run', 'data-phase', 'done');
       await browser.untilText('#caption', 'Frame 0');
       await find('#track').sendKeys(Key.HOME);
