@@ -205,11 +205,7 @@ export const strings = {
   newObjectHelp: 'Paint it in any frame.',
   splitOf: (name: string): string => `Split ${name}: its smaller pieces in this frame become another object`,
   lockOf: (name: string): string => `Lock ${name}`,
-  othersOf: {
-    lock: (name: string): string => `Lock all objects but ${name}, or unlock them`,
-    hide: (name: string): string => `Hide all objects but ${name}`,
-    remove: (name: string): string => `Delete all objects but ${name}`,
-  },
+  othersOf: (verb: string, name: string): string => `${verb} all objects but ${name}`,
   removeOf: (name: string): string => `Delete ${name}: it becomes background in the whole clip`,
   selectObject: (name: string): string => `Select ${name}`,
   doubtful: (index: number): string => `Check #${index}`,

@@ -108,7 +108,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     const alone = !ids.some((other) => other !== 0 && other !== id);
     for (const { what, button } of aboutOthers) {
       button.disabled = alone || (!ready && what !== 'hide');
-      button.setAttribute('aria-label', strings.othersOf[what](called));
+      button.setAttribute('aria-label', strings.othersOf(button.textContent, called));
     }
     lock.setAttribute('aria-pressed', String(tracked !== null && tracked.locked.has(id)));
     lock.setAttribute('aria-label', strings.lockOf(called));

@@ -15,17 +15,20 @@ export function mountSamples(root: HTMLElement, store: Store, session: Session):
   root.append(...buttons.map(({ button }) => button));
   new IntersectionObserver((changes) => root.classList.toggle('seen', changes.at(-1)!.isIntersecting)).observe(root);
 
-  const fold = find(document, '#welcome', HTMLDetailsElement);
-  /** Once: whoever opens it again keeps it. */
-  let folds = true;
-  BESIDE.addEventListener('change', () => {
-    if (!folds && !BESIDE.matches) fold.open = folds = true;
-  });
-  store.subscribe(({ pair, live }, before) => {
+  const open = (): Sample | undefined => timelineOf(store.get().pair)?.clip.sample ?? sampleOf(store.get().pair)?.sample;
+  const details = find(document, '#welcome', HTMLDetailsElement);
+  // Whoever folds or unfolds them has the last word.
+  let touched = false;
+  find(details, 'summary', HTMLElement).addEventListener('click', () => (touched = true));
+  const fold = (): void => {
+    const { pair, live } = store.get();
+    if (!touched) details.open = !BESIDE.matches || pair.first === null || live !== null || open() !== undefined;
+  };
+  BESIDE.addEventListener('change', fold);
+  store.subscribe(({ pair }, before) => {
     if (pair === before.pair) return;
-    const open = timelineOf(pair)?.clip.sample ?? sampleOf(pair)?.sample;
-    if (folds && BESIDE.matches && open === undefined && live === null && pair.first !== null) folds = fold.open = false;
-    for (const { sample, button } of buttons) button.setAttribute('aria-current', String(sample === open));
+    fold();
+    for (const { sample, button } of buttons) button.setAttribute('aria-current', String(sample === open()));
   });
 }
 
