@@ -21,14 +21,14 @@ export class Offer {
     this.#button = find(layers, '#offer', HTMLButtonElement);
     this.#button.addEventListener('click', () => void this.#take(session));
     store.subscribe((now, before) => {
-      if (now.pair !== before.pair || now.tool !== before.tool || now.viewport !== before.viewport || !isUnfound(now)) this.#button.hidden = true;
+      if (now.pair !== before.pair || now.tool !== before.tool || now.viewport !== before.viewport || !isNotFound(now)) this.#button.hidden = true;
     });
   }
 
   /** The pixel of the frame that was pressed, and its place in the view, 0 to 1. What was pressed is selected. */
   at(pixel: Point, [x, y]: Point): void {
     this.#pixel = pixel;
-    this.#button.hidden = !isUnfound(this.#store.get());
+    this.#button.hidden = !isNotFound(this.#store.get());
     this.#button.style.left = `${100 * x}%`;
     this.#button.style.top = `${100 * y}%`;
     this.#button.classList.toggle('above', y > LOW);
@@ -42,6 +42,6 @@ export class Offer {
 }
 
 /** Whether the background of a clip is selected, which takes corrections. */
-function isUnfound({ look, tracked }: State): boolean {
+function isNotFound({ look, tracked }: State): boolean {
   return look.kind === 'objects' && look.selected === 0 && tracked !== null && tracked.spans.length > 0 && tracked.run.phase !== 'working';
 }
