@@ -79,7 +79,7 @@ async function segmented(browser, address, { quality, workers }) {
   const page = await browser.newPage();
   await page.addInitScript((processors) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => processors }), workers + 1);
   page.setDefaultTimeout(0);
-  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups`);
+  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups&segment=asked`);
   await reached(page, '#run', 'done');
   const session = await browser.newBrowserCDPSession();
   await page.locator('#open-pair').setInputFiles(VIDEO);
@@ -126,7 +126,7 @@ async function segmented(browser, address, { quality, workers }) {
 /** Times from the end of strokes until the stroke is drawn, the corrected frame is, and the correction has spread, milliseconds. */
 async function correctedFrames(browser, address, quality) {
   const page = await browser.newPage();
-  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups`);
+  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups&segment=asked`);
   await reached(page, '#run', 'done');
   await page.locator('#open-pair').setInputFiles(VIDEO);
   await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');

@@ -14,7 +14,7 @@ const THUMB = 16;
  */
 export async function annotatedPage(page, address, settings) {
   page.setDefaultTimeout(PATIENCE);
-  await page.goto(`${address}#sample=intel-two-cars&${settings}`);
+  await page.goto(`${address}#sample=intel-two-cars&segment=asked&${settings}`);
   await reached(page, '#run', 'done');
   const log = [];
   let milliseconds = 0;
