@@ -133,7 +133,16 @@ test('a video and a folder are played more slowly, and faster', async ({ page })
     };
     const usual = kind === 'a video' ? 1000 / 30 : 40;
     await expect(speed).toHaveText('1×');
+    const said = await page.evaluateHandle(() => {
+      const texts: string[] = [];
+      const status = document.querySelector('#status')!;
+      new MutationObserver(() => {
+        if (document.querySelector('#play')?.getAttribute('aria-label') === 'Pause') texts.push(status.textContent);
+      }).observe(status, { childList: true });
+      return texts;
+    });
     expect(await longest()).toBeLessThanOrEqual(usual + 1);
+    expect(await said.jsonValue()).not.toContain('Opening…');
     await page.keyboard.press('j');
     await page.keyboard.press('j');
     await page.keyboard.press('j'); // there is none below

@@ -4,7 +4,7 @@ import { strings } from '../common/strings.js';
 import { strokesOf } from '../correction/edits.js';
 import { constraintsFrom } from '../correction/strokes.js';
 import type { Session } from '../session/session.js';
-import { type Cause, type Result, type State, type Store, isPending } from '../state/state.js';
+import { type Cause, type Result, type State, type Store, isPassing, isPending } from '../state/state.js';
 import { find } from './markup.js';
 
 /** The progress bar appears after this time, so that it does not flash up, milliseconds. */
@@ -21,13 +21,14 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   again.addEventListener('click', () => session.pair.again());
 
   store.subscribe((now, before) => {
-    const same = (['run', 'pair', 'result', 'edits', 'live', 'opening'] as const).every((part) => now[part] === before[part]);
+    const same = (['run', 'pair', 'result', 'edits', 'live', 'opening', 'playing', 'scrubbing'] as const).every((part) => now[part] === before[part]);
     if (same && now.look.kind === before.look.kind) return;
-    const { run, opening } = now;
+    const { run } = now;
+    const opening = isOpening(now);
     const busy = run.phase === 'working' || opening;
     root.dataset.phase = opening ? 'opening' : run.phase;
-    // Screen readers should not announce the rate, which changes many times a second.
-    status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
+    // Screen readers should not announce what changes many times a second.
+    status.setAttribute('aria-live', run.phase === 'live' || isPassing(now) ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
     const stopped = run.phase === 'cancelled' || (run.phase === 'failed' && isPending(now));
     again.hidden = opening || !(stopped && now.pair.first !== null && now.pair.second !== null);
@@ -44,10 +45,15 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   });
 }
 
+/** Whether something is being opened: not the next frame of a clip that is played. */
+function isOpening(state: State): boolean {
+  return state.opening && !isPassing(state);
+}
+
 function sentenceFor(state: State): string {
-  const { run, pair, result, live, opening } = state;
+  const { run, pair, result, live } = state;
   const { status } = strings;
-  if (opening) return status.opening;
+  if (isOpening(state)) return status.opening;
   switch (run.phase) {
     case 'working':
       return status.working(run.stage, run.index, run.of);
