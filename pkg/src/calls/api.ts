@@ -1,7 +1,7 @@
 // The calls themselves, on the module that has them: stages reported, the signal heard, time measured.
 
 import type * as calls from '../../types/index.js';
-import type { CallOptions, Milliseconds, MotionFit, PaintContext, Segmentation } from '../../types/index.js';
+import type { CallOptions, Milliseconds, MotionFit, PaintContext, Pixels, Segmentation } from '../../types/index.js';
 import { checkedBytes, entriesOf, invalidInput, invalidOption, isNumber, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
 import { cancelled } from '../common/errors.js';
 import { colourBytes, davisPalette } from '../common/palette.js';
@@ -9,7 +9,6 @@ import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
 import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
-import { whyNothing } from './nothing.js';
 import { taken } from './taking.js';
 import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
 
@@ -33,8 +32,21 @@ export class Api {
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
+  /** Segments a pair for the compiler's sake: nobody asks why nothing was found. */
+  readonly warm = (first: Pixels, second: Pixels): Promise<unknown> => start(() => segmentCall(first, second, { quality: 'fast' }), this.#perform);
+
   /** Performs a task that was checked and taken, here or on the other side of a worker. */
-  readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
+  readonly perform = async (task: CallTask, call: CallOptions): Promise<Result> => {
+    const result = await this.#perform(task, call);
+    if (task.call !== 'segmentPair') return result;
+    const found = result as Segmentation;
+    if (found.count > 1 || found.settings.motions === 1) return found;
+    const [first, second] = task.frames;
+    const { whyNothing } = await import('./nothing.js');
+    return { ...found, notes: [whyNothing(first, second, found.motions[0] ?? {})] };
+  };
+
+  readonly #perform = (task: CallTask, call: CallOptions): Promise<Result> => {
     if (task.call === 'fitMotions') {
       const { positions, derivatives } = task.measurements;
       return run<MotionFit, PointsGlue>(this.#points, call, (glue, onStage) =>
@@ -46,10 +58,7 @@ export class Api {
     if (task.call === 'segmentPair') {
       return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
         glue.segmentPair(first, second, task.settings, onStage),
-      ).then((found) => {
-        const asked = found.count > 1 || found.settings.motions === 1;
-        return asked ? found : { ...found, notes: [whyNothing(first, second, found.motions[0] ?? {})] };
-      });
+      );
     }
     const { matrices, groups, labels, sets, settings } = task.correction;
     return run<Corrected, FramesGlue>(this.#frames, call, (glue, onStage) =>

@@ -19,10 +19,10 @@ const MOTIONS = [[0.3, 0.2], [2, 1], [-1, 2], [1, -2]] as const;
 const MILLISECONDS = 500;
 
 export class Warming {
-  readonly #api: Pick<Api, 'segmentPair'>;
+  readonly #api: Pick<Api, 'warm'>;
   #ended = false;
 
-  constructor(api: Pick<Api, 'segmentPair'>) {
+  constructor(api: Pick<Api, 'warm'>) {
     this.#api = api;
   }
 
@@ -41,7 +41,7 @@ export class Warming {
     const until = performance.now() + MILLISECONDS;
     for (let slice = 0; !this.#ended && performance.now() < until; slice++) {
       const [width, height] = sizeOf(slice);
-      await this.#api.segmentPair(frame(0, width, height), frame(1, width, height), { quality: 'fast' });
+      await this.#api.warm(frame(0, width, height), frame(1, width, height));
       await new Promise((resolve) => setTimeout(resolve));
     }
   }
