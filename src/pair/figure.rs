@@ -33,8 +33,7 @@ const NEAR: f64 = 0.1;
 const CENTRAL: f64 = 8.0;
 
 /// The groups of the regions of a pair: [`GROUND`], and those of the figure in order of their first region.
-pub(super) fn groups(motions: &[AffineMotion], labels: &[u8], level: &Level) -> Vec<usize> {
-    let mut regions = Regions::new(motions, labels, level.width(), level.model);
+pub(super) fn groups(mut regions: Regions<'_>, motions: &[AffineMotion], labels: &[u8], level: &Level) -> Vec<usize> {
     let joined = regions.clone().groups();
     let figure = Known::new(&mut regions, &joined, motions, labels, level).figure(level.model);
     let mut found: Vec<usize> = Vec::new();
@@ -240,12 +239,11 @@ mod tests {
             texture(x as f64 - u, y as f64 - v) as f32
         });
         let level = &build(first, second, 24)[0];
-        assert_eq!(groups(&motions, &labels, level), [GROUND, 1]);
+        let of = |motions: &[AffineMotion], labels: &[u8]| {
+            groups(Regions::new(motions, labels, width, &Model::DEFAULT), motions, labels, level)
+        };
+        assert_eq!(of(&motions, &labels), [GROUND, 1]);
         let swapped: Vec<u8> = labels.iter().map(|label| 1 - label).collect();
-        assert_eq!(
-            groups(&[motions[1], motions[0]], &swapped, level),
-            [1, GROUND],
-            "also where the object's label is 0"
-        );
+        assert_eq!(of(&[motions[1], motions[0]], &swapped), [1, GROUND], "also where the object's label is 0");
     }
 }

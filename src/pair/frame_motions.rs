@@ -3,6 +3,7 @@
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
+use super::groups::Regions;
 use super::labels::{LabelledPair, label_on, return_shadows};
 use super::settings::Settings;
 use super::{figure, hypotheses, motions};
@@ -116,7 +117,8 @@ pub(crate) fn frame_motions(
         }
     }
     let probabilities = probabilities(&costs, &labels, model);
-    let groups = figure::groups(&motions, &labels, level);
+    let regions = Regions::new(&motions, &labels, level.width(), model);
+    let groups = figure::groups(regions, &motions, &labels, level);
     let [enough, searched] = limits;
     let prior = settings.follows.then(|| Prior { motions: motions.clone(), enough, searched });
     FrameMotions { motions, labels, probabilities, groups, prior, unexplained }

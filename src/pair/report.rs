@@ -112,8 +112,8 @@ pub(super) fn report(
     let unknown = options.mark_unknown.then(|| unknown::unknown(&labelled, &sure));
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
-    let junctions = junctions::junctions(regions, pair.reduction, &order);
-    let group_of = figure::groups(&labelled.motions, &labelled.labels, level);
+    let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);
+    let group_of = figure::groups(regions, &labelled.motions, &labelled.labels, level);
     let groups: Vec<usize> = order.iter().map(|&k| group_of[k]).collect();
     let mut confidence = options.confidence.then(|| {
         doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);
