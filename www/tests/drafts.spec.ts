@@ -12,20 +12,25 @@ function heightOfLanes(page: Page, index: number, count: number): Promise<number
   }, (index + 0.5) / count);
 }
 
+/** Keeps the page from reading a frame until what this gives is called. */
+async function holdBack(page: Page, name: string): Promise<() => Promise<void>> {
+  await page.evaluate((frame) => {
+    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
+    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
+    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
+      if (given[0] instanceof File && given[0].name === frame) await released;
+      return make(...given);
+    };
+    Object.assign(window, { createImageBitmap: held });
+  }, name);
+  return () => page.evaluate(() => (window as unknown as { release: () => void }).release());
+}
+
 test('frames show drafts until the masks are there: they are marked and played, and corrections and exports wait', async ({ page }) => {
   const files = await clipFrames(7);
   const [drafts, found] = [await clipInNode(files, { quality: 'fast', lookAhead: 2 }), await clipInNode(files, { quality: 'best' })];
   await openClip(page, files, { quality: 'best' });
-  // The last frame is held back.
-  await page.evaluate(() => {
-    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
-    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
-    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
-      if (given[0] instanceof File && given[0].name === 'f06.png') await released;
-      return make(...given);
-    };
-    Object.assign(window, { createImageBitmap: held });
-  });
+  const release = await holdBack(page, 'f06.png');
   const [status, draft] = [page.locator('#clip-status'), page.locator('#draft')];
   await expect(draft).toBeHidden();
   await page.getByRole('button', { name: 'Segment the clip' }).click();
@@ -54,7 +59,7 @@ test('frames show drafts until the masks are there: they are marked and played, 
   await page.getByRole('button', { name: 'Play', exact: true }).click();
   await expect(page.locator('#caption')).toHaveText('Frame 4');
 
-  await page.evaluate(() => (window as unknown as { release: () => void }).release());
+  await release();
   await clipDone(page);
   await expect(draft).toBeHidden();
   expect(await heightOfLanes(page, 0, 7)).toBeGreaterThan(2 * thin);
@@ -85,11 +90,13 @@ test('whoever cancels has the masks that were found, and no drafts', async ({ pa
 test('a run that is stopped while masks come leaves no object of a draft selected', async ({ page }) => {
   await withProcessors(page, 2);
   await openClip(page, await clipFrames(8), { quality: 'best' });
+  const release = await holdBack(page, 'f07.png');
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-status')).toHaveText('Segmenting… Drafts for now.');
   await page.locator('#lane-names button').first().click();
   await expect(page.locator('#objects > .selected')).toHaveCount(1);
   await cancelWhen(page, /^Masks of/);
+  await release();
   await clipPhase(page, 'cancelled');
   await expect(page.locator('#draft')).toBeHidden();
   await expect(page.locator('#objects > .selected')).toHaveCount(0);
