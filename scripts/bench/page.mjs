@@ -5,7 +5,7 @@
 //   --frames N     length of the video (240)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
-//   --workers N    workers for the video, as on a machine with one processor more (the page's choice here)
+//   --workers N    workers for the video, as on a machine with enough processors (the page's choice here)
 //   --write-docs   writes the figures to docs/figures, and docs/performance.md from them
 
 import { mkdirSync, rmSync } from 'node:fs';
@@ -66,7 +66,7 @@ function options(args) {
   } catch (error) {
     throw new Stop(error.message);
   }
-  const { frames = '240', size = '1920x1080', quality = 'fast', workers = String(Math.min(Math.max(1, cpus().length - 1), 8)), 'write-docs': writeDocs } = values;
+  const { frames = '240', size = '1920x1080', quality = 'fast', workers = String(Math.min(cpus().length > 2 ? cpus().length - 1 : cpus().length, 8)), 'write-docs': writeDocs } = values;
   if (!/^\d+$/.test(frames) || Number(frames) < 10) throw new Stop('--frames must be a whole number from 10.');
   if (!/^\d+x\d+$/.test(size)) throw new Stop('--size must look like 1920x1080.');
   if (!['fast', 'best'].includes(quality)) throw new Stop('--quality must be fast or best.');
@@ -77,7 +77,8 @@ function options(args) {
 /** Segments the video as a person would and returns `{ seconds, memory, tasks }`; memory in bytes. */
 async function segmented(browser, address, { quality, workers }) {
   const page = await browser.newPage();
-  await page.addInitScript((processors) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => processors }), workers + 1);
+  const processors = workers > 2 ? workers + 1 : workers;
+  await page.addInitScript((count) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => count }), processors);
   page.setDefaultTimeout(0);
   await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups&segment=asked`);
   await reached(page, '#run', 'done');

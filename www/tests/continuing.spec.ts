@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, axe, clipDone, clipFrames, done, expect, goTo, hide, leaves, open, openClip, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, saved, test, upload, withoutStorage } from './support.js';
+import { type Upload, axe, clipDone, clipFrames, done, expect, goTo, hide, kept, leaves, open, openClip, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -18,8 +18,7 @@ async function visit(page: Page): Promise<void> {
 /** Waits until the work is written. The copy of its frames comes after it. */
 async function written(page: Page, name: string): Promise<void> {
   await expect.poll(() => headers(page)).toContainEqual(expect.stringContaining(`"name":"${name}"`));
-  await expect(page.locator('#saving button')).toBeVisible();
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
 }
 
 /** The first lines of all projects in the browser. */
@@ -214,7 +213,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
   const saving = page.locator('#saving').getByRole('button', { name: /^Saved in this browser, \d\d:\d\d Save as a file$/ });
   await expect(saving).toBeVisible();
   await rename(page, '#objects', 1, 'Disc');
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
   await expect(saving).toBeVisible();
   expect(await page.evaluate(() => (window as unknown as { said: string[] }).said)).toEqual(['Your work is saved in this browser.']);
   expect((await places(page)).slice(4)).toEqual(before.slice(4));

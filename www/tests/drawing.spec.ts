@@ -3,7 +3,7 @@
 import { type Locator, type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOfDavis, labelsOnCanvas, leaves, masksOf, openEmpty, openExport, openSegmented, reachPicture, savedClip, savedProject, shown, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOfDavis, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, reachPicture, savedClip, savedProject, shown, square, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -124,7 +124,7 @@ test('what is drawn exactly is kept, exported and left alone by corrections else
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
   await page.keyboard.press('Escape');
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
   await page.reload();
   await done(page);
   await upload(page, files);

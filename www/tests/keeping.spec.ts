@@ -2,7 +2,7 @@
 
 import { type Locator, type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reachPicture, reopen, test } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, kept, labelsOnCanvas, masksOf, openSegmented, reachPicture, reopen, test } from './support.js';
 
 const [WIDTH, HEIGHT, COUNT] = [120, 84, 6];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
@@ -130,7 +130,7 @@ test('accepted frames stay accepted and as they are when something is corrected 
     await expect(reviewed).toHaveText(`2 of ${COUNT} accepted`);
     const again = await allMasks(page);
     expect([1, 4].map((index) => differences(again[index]!, before[index]!))).toEqual([0, 0]);
-    await expect.poll(() => leaves(page)).toBe(true);
+    await kept(page);
     await reopen(page, await clipFrames(COUNT, WIDTH, HEIGHT));
     await expect(reviewed).toHaveText(`2 of ${COUNT} accepted`);
   });
@@ -199,7 +199,7 @@ test('a prompt is refined by presses that add and remove, with mouse and keyboar
   });
 
   await test.step('after a reload it is a prompt still, and the switch and the keyboard refine it', async () => {
-    await expect.poll(() => leaves(page)).toBe(true);
+    await kept(page);
     await reopen(page, files);
     await expect(status(page)).toHaveText(/^Continued/);
     await goTo(page, 4);

@@ -4,15 +4,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipInNode, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, square, test, upload } from './support.js';
-
-/** Waits until the panel says that the work is kept, and nothing is left to write. */
-async function kept(page: Page): Promise<void> {
-  await openExport(page);
-  await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
-  await page.keyboard.press('Escape');
-  await expect.poll(() => leaves(page)).toBe(true);
-}
+import { type Upload, clipInNode, differences, done, drag, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, openAdvanced, openClip, openEmpty, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, square, test, upload } from './support.js';
 
 /** The names of objects in the only project of the browser; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {

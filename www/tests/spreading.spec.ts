@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, enter, expect, goTo, labelsOnCanvas, leaves, masksOf, openSegmented, reopen, test } from './support.js';
+import { type Place, type Upload, axe, clipDone, clipFrames, clipInNode, differences, drag, drawAtOnce, enter, expect, goTo, kept, labelsOnCanvas, masksOf, openSegmented, reopen, test } from './support.js';
 
 async function selectNew(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'New object' }).click();
@@ -225,7 +225,7 @@ test('corrections of others leave objects with a name or a lock as they are; a l
   await page.getByRole('button', { name: 'Redo' }).click();
   await expect(other).toHaveAttribute('aria-pressed', 'true');
   await page.getByRole('button', { name: 'Undo' }).click();
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
   await reopen(page, files);
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 6 frames.');
   await expect(lock).toHaveAttribute('aria-pressed', 'true');

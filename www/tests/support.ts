@@ -93,7 +93,7 @@ export async function withSamples(page: Page): Promise<void> {
   withoutSamples.delete(page);
 }
 
-/** The page is on a machine with so many processors, of which it leaves one alone. Called before it is opened. */
+/** The page is on a machine with so many processors, of which it leaves one alone if there are more than two. Called before it is opened. */
 export async function withProcessors(page: Page, count: number): Promise<void> {
   await page.addInitScript((value) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => value }), count);
 }
@@ -276,6 +276,12 @@ async function phase(page: Page, selector: string, name: string): Promise<void> 
 /** Whether the page can be left without a question: nothing is still to be written. */
 export function leaves(page: Page): Promise<boolean> {
   return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+}
+
+/** Waits until the browser keeps all work on what is open. */
+export async function kept(page: Page): Promise<void> {
+  await expect(page.locator('#saving button[aria-busy=false]')).toHaveText(/^Saved/);
+  await expect.poll(() => leaves(page)).toBe(true);
 }
 
 /** Takes all corrections of a pair back. */

@@ -4,7 +4,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -139,16 +139,16 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await cancelWhen(page, /^[2-7] of 8/);
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await clipPhase(page, 'cancelled');
-  const kept = Number(/^Cancelled\. (\d+) of 8 frames have masks\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
-  expect(kept).toBeGreaterThan(1);
-  expect(kept).toBeLessThan(8);
+  const count = Number(/^Cancelled\. (\d+) of 8 frames have masks\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
+  expect(count).toBeGreaterThan(1);
+  expect(count).toBeLessThan(8);
   await expect(page.getByRole('button', { name: 'Continue' })).toBeFocused();
   // The same masks as of a clip that ends there.
-  const shorter = await clipInNode(files.slice(0, kept));
+  const shorter = await clipInNode(files.slice(0, count));
   await shows(page, 0);
   expect(differences(await labelsOnCanvas(page), shorter[0]!)).toBe(0);
-  await goTo(page, kept - 1);
-  expect(differences(await labelsOnCanvas(page), shorter[kept - 1]!)).toBe(0);
+  await goTo(page, count - 1);
+  expect(differences(await labelsOnCanvas(page), shorter[count - 1]!)).toBe(0);
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
@@ -156,11 +156,10 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
   // Masks that the page has found by itself are kept, too: leaving does not ask for them.
-  await expect(page.locator('#saving button')).toHaveText(/^Saved/);
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
   await reopen(page, files);
   await clipPhase(page, 'cancelled');
-  await expect(page.locator('#clip-status')).toHaveText(`Cancelled. ${kept} of 8 frames have masks.`);
+  await expect(page.locator('#clip-status')).toHaveText(`Cancelled. ${count} of 8 frames have masks.`);
   // It goes on as far as the last frame, which is held back.
   await page.evaluate(() => {
     const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
@@ -172,13 +171,13 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
     Object.assign(window, { createImageBitmap: held });
   });
   await page.getByRole('button', { name: 'Continue' }).click();
-  expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(kept);
+  expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(count);
   // A name given meanwhile is kept at once when the page is hidden.
   const name = page.locator('#objects .motion-name').nth(1);
   await enter(name, 'Early');
   expect(await leaves(page)).toBe(false);
   await hide(page);
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await page.evaluate(() => (window as unknown as { release: () => void }).release());
   await clipPhase(page, 'done');
@@ -311,11 +310,11 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
     expect(differences(await labelsOnCanvas(page), merged[index]!)).toBe(0);
   }
   // It is kept as a project.
-  await expect.poll(() => leaves(page)).toBe(true);
+  await kept(page);
 
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(rows).toHaveCount(3);
-  await expect.poll(() => leaves(page)).toBe(true); // that it is undone is kept as well
+  await kept(page); // that it is undone is kept as well
   await rows.nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await expect(rows).toHaveCount(2);
@@ -439,7 +438,7 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   for (const labels of await masksOf(page, [0, 3, 5])) expect(labels).not.toContain(2);
   // All of it is there after a reload.
   const last = await labelsOnCanvas(page);
-  await expect.poll(() => leaves(page)).toBe(true); // kept
+  await kept(page);
   await reopen(page, files);
   await expect(status).toHaveText(/^Continued/);
   await goTo(page, 5);

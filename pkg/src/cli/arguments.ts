@@ -59,7 +59,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                              and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
                              "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
-      --jobs N               number of frames compared at once (default: one less than the number of processors); the files are the same
+      --jobs N               number of frames compared at once (default: the number of processors); the files are the same
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
       --allow-damaged        as for pair and video
@@ -224,7 +224,7 @@ function clip(values: Values, files: string[]) {
     lookAhead: lookAhead === undefined ? ('all' as const) : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
     markUnknown: values['mark-unknown'],
   };
-  const shared = { every: every(values.every), jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)) };
+  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()) };
   return { name: 'clip' as const, frames: files, list, masks, corrections, ...shared, options, overlay, allowDamaged, out, force };
 }
 

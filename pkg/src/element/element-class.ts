@@ -382,8 +382,9 @@ export class VeroneseSegmenterElement extends Base {
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
   #worker(): InstanceType<typeof SegmenterPool> {
     if (this.#segmenter === undefined) {
-      // One processor is left for the page; more than eight workers are not worth their memory.
-      this.#segmenter = new SegmenterPool({ jobs: Math.min(navigator.hardwareConcurrency - 1 || 1, 8) });
+      // Of more than two processors one is left for the page; more than eight workers are not worth their memory.
+      const processors = navigator.hardwareConcurrency || 1;
+      this.#segmenter = new SegmenterPool({ jobs: Math.min(processors > 2 ? processors - 1 : processors, 8) });
       this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker gives the error
     }
     return this.#segmenter;

@@ -167,6 +167,8 @@ export class Projects {
 
   #touch(of: string, delay: number): void {
     this.#changed.add(of);
+    const keeping = this.#keeping.get(of);
+    if (keeping?.is === 'kept' && !keeping.waits) this.#tell(of, { ...keeping, waits: true });
     const due = performance.now() + delay;
     if (due >= this.#due) return;
     clearTimeout(this.#timer);
@@ -234,7 +236,7 @@ export class Projects {
 
   #keeps(of: string): void {
     const before = this.#keeping.get(of);
-    this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without });
+    this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without, waits: this.#changed.has(of) });
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */

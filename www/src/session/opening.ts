@@ -7,6 +7,9 @@ import { report } from './failures.js';
 
 type Work = 'opening' | 'stepping';
 
+/** A step to another frame is said to be under way when it takes longer, milliseconds. */
+const PATIENCE = 150;
+
 export class Opening {
   readonly #store: Store;
   /** The requests under way. */
@@ -16,6 +19,10 @@ export class Opening {
 
   constructor(store: Store) {
     this.#store = store;
+  }
+
+  get isUnderWay(): boolean {
+    return this.#current.size > 0;
   }
 
   /** The place in the order of requests of one that is made now, but is not known to open something yet. */
@@ -36,7 +43,8 @@ export class Opening {
     this.#giveUp(work);
     const own = new AbortController();
     this.#current.set(work, own);
-    this.#store.set({ opening: true, notice: null });
+    this.#store.set(as === 'step' ? { notice: null } : { opening: true, notice: null });
+    const slow = setTimeout(() => !own.signal.aborted && this.#store.set({ opening: true }), PATIENCE);
     try {
       const opened = await load(own.signal);
       if (own.signal.aborted) return discard(opened);
@@ -49,6 +57,8 @@ export class Opening {
       this.#current.delete(work);
       this.#ended();
       report(this.#store, error);
+    } finally {
+      clearTimeout(slow);
     }
   }
 

@@ -66,8 +66,8 @@ export function sessionOf(store: Store): Session {
     projects,
     edited: () => (store.get().look.kind === 'objects' ? objects : masks),
     cancel: () => {
-      const { run, opening: isOpening } = store.get();
-      if (isOpening) opening.stop();
+      const { run } = store.get();
+      if (opening.isUnderWay) opening.stop();
       else if (run.phase === 'working') pair.cancel();
       else clip.cancel();
     },

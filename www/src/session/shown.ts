@@ -49,6 +49,7 @@ export class Shown {
   pair(pair: FramePair, look: Look, others: Partial<State> = {}): void {
     const { tracked, playing, scrubbing } = { ...this.#store.get(), ...others };
     if (look.kind === 'objects' && tracked !== null) {
+      this.#solving.stop();
       const { names, classes, colours } = tracked;
       const result = resultOf(tracked, pair);
       this.#store.set({ ...others, pair, found: null, edits: NO_EDITS, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, classes, colours } });

@@ -94,8 +94,11 @@ export interface Question {
 export type Keeping =
   /** It has not had to. */
   | { readonly is: 'nothing' }
-  /** `at`: since when, milliseconds since 1970. `without`: a copy of the frames was too large, so a person opens them again. */
-  | { readonly is: 'kept'; readonly at: number; readonly without: boolean }
+  /**
+   * `at`: since when, milliseconds since 1970. `without`: a copy of the frames was too large, so a person opens them again. `waits`: later
+   * changes are about to be kept.
+   */
+  | { readonly is: 'kept'; readonly at: number; readonly without: boolean; readonly waits: boolean }
   /** It did not the last time. `code`: why. */
   | { readonly is: 'refused'; readonly code: Refusal };
 

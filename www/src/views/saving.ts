@@ -17,6 +17,7 @@ export function mountSaving(root: HTMLElement, store: Store, session: Session): 
     button.hidden = keeping.is === 'nothing';
     button.classList.toggle('refused', keeping.is === 'refused');
     if (keeping.is === 'nothing') return;
+    button.ariaBusy = String(keeping.is === 'kept' && keeping.waits);
     const [what, where, more] = keeping.is === 'kept' ? strings.projects.savedHere(keeping.at, keeping.without) : strings.projects.notSaved[keeping.code];
     sentence.replaceChildren(what!, element('span', where, 'in-full'), more!);
     button.title = strings.projects.keeping(keeping);

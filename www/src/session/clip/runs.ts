@@ -9,6 +9,7 @@ import { report } from '../failures.js';
 
 /** More workers than this are not worth their memory. */
 const MOST_WORKERS = 8;
+const PROCESSORS = navigator.hardwareConcurrency || 1;
 
 /** Changes what is known of the clip. */
 export type Change = (change: Partial<Tracked>) => void;
@@ -22,8 +23,8 @@ interface Ends {
 }
 
 export class ClipRuns {
-  /** One processor is left for the page. */
-  readonly segmenter = new SegmenterPool({ jobs: Math.min(navigator.hardwareConcurrency - 1 || 1, MOST_WORKERS) });
+  /** Of more than two processors one is left for the page, which needs a part of one. */
+  readonly segmenter = new SegmenterPool({ jobs: Math.min(PROCESSORS > 2 ? PROCESSORS - 1 : PROCESSORS, MOST_WORKERS) });
   readonly #store: Store;
   #current: { readonly controller: AbortController; readonly ends: Ends } | null = null;
 
