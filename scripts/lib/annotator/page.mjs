@@ -97,11 +97,12 @@ async function reached(page, selector, phase) {
   await page.waitForFunction(([selector, phase]) => document.querySelector(selector).dataset.phase === phase, [selector, phase]);
 }
 
-/** Presses on the timeline. */
+/** Presses on the timeline, whose last frame is under the handle of the out point. */
 async function goTo(page, frame) {
   const track = page.locator('#track');
   const [{ width }, last] = await Promise.all([track.boundingBox(), track.getAttribute('aria-valuemax')]);
-  await track.click({ position: { x: ((frame + 0.5) * width) / (Number(last) + 1), y: 10 } });
+  if (frame === Number(last)) await track.press('End');
+  else await track.click({ position: { x: ((frame + 0.5) * width) / (Number(last) + 1), y: 10 } });
   await page.waitForFunction((frame) => document.querySelector('#caption').textContent === `Frame ${frame}`, frame);
   await reached(page, '#run', 'done');
 }
