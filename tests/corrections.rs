@@ -557,6 +557,51 @@ fn clicks_and_a_box_describe_one_object() {
 }
 
 #[test]
+fn a_click_changes_only_what_it_says() {
+    // One thing before another, and clicks all over the frame after one on the first.
+    let things = [thing(5, [40.0, 40.0], |_| [20.0, 24.0]), thing(6, [36.0, 30.0], |_| [54.0, 40.0])];
+    let start = Shot::new([128, 96], &things, 2);
+    let first = Click { at: [34, 40], inside: true };
+    let masked = |clicks: Vec<Click>| -> Vec<bool> {
+        let mut shot = start.clone();
+        let prompts = vec![Prompt { frame: 0, object: 9, clicks, within: None, spread: Spread::Both }];
+        annotate(&mut shot.clip, &shot.frames, Annotations { prompts, ..Annotations::default() });
+        shot.labels()[0].iter().map(|&label| label == 9).collect()
+    };
+    let before = masked(vec![first.clone()]);
+    let mut changes = [0, 0];
+    for at in [[24, 30], [50, 60], [70, 55], [85, 66], [110, 20], [10, 85]] {
+        let p = at[1] * 128 + at[0];
+        let now = masked(vec![first.clone(), Click { at, inside: !before[p] }]);
+        assert_eq!(now[p], !before[p], "{at:?}");
+        assert!((0..now.len()).all(|k| now[k] == before[k] || now[k] != before[p]), "{at:?}");
+        let parts = components_of(&now, &before);
+        assert_eq!(parts, 1, "{at:?}");
+        changes[usize::from(before[p])] += 1;
+        assert_eq!(masked(vec![first.clone(), Click { at, inside: before[p] }]), before, "{at:?}");
+    }
+    assert!(changes.iter().all(|count| *count > 0), "{changes:?}");
+}
+
+/// Number of connected parts in which two masks that are 128 wide differ.
+fn components_of(one: &[bool], other: &[bool]) -> usize {
+    let mut differs: Vec<bool> = one.iter().zip(other).map(|(a, b)| a != b).collect();
+    let mut count = 0;
+    while let Some(start) = differs.iter().position(|differs| *differs) {
+        count += 1;
+        let mut waiting = vec![start];
+        while let Some(p) = waiting.pop() {
+            if std::mem::take(&mut differs[p]) {
+                let near =
+                    [p.checked_sub(128), Some(p + 128), (p % 128 > 0).then(|| p - 1), (p % 128 < 127).then(|| p + 1)];
+                waiting.extend(near.into_iter().flatten().filter(|q| *q < differs.len()));
+            }
+        }
+    }
+    count
+}
+
+#[test]
 fn an_eraser_through_a_separate_piece_removes_the_piece_and_gives_it_back() {
     let things = [thing(5, [40.0, 30.0], |_| [8.0, 30.0]), thing(9, [26.0, 20.0], |_| [70.0, 32.0])];
     let mut shot = Shot::new([128, 96], &things, 4);

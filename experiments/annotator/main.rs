@@ -12,6 +12,7 @@ mod overlap;
 mod pairs;
 #[path = "../parallel.rs"]
 mod parallel;
+mod points;
 #[path = "../program.rs"]
 mod program;
 mod robot;
@@ -34,6 +35,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
 
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each; writes measure.jsonl
+  points         frames of the real clips with a box or clicks: the same; writes points.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
   pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
@@ -85,7 +87,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "objects" | "pairs" | "fit" => options.step = name,
+            "frames" | "measure" | "points" | "objects" | "pairs" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -103,7 +105,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, objects, pairs or fit.".into()),
+        true => Err("Say which step: frames, measure, points, objects, pairs or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -129,6 +131,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             let cases = options.chosen(objects::cases());
             options.on_all(&cases, |case| objects::measure(case, options)).map(drop)
         }
+        "points" => options.on_all(&options.real()?, |case| points::measure(case, options)).map(drop),
         "pairs" => options.on_all(&options.real()?, |case| pairs::measure(case, options)).map(drop),
         _ => options.on_all(&options.real()?, |case| measure::measure(case, options)).map(drop),
     }

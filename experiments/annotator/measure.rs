@@ -15,7 +15,7 @@ use crate::{Failure, Options};
 const OLD: [&str; 10] =
     ["boat", "bus", "car-turn", "elephant", "flamingo", "hockey", "kite-walk", "scooter-gray", "soccerball", "tennis"];
 /// The number of the object whose mask is given, and that of one that no label found fits.
-const GIVEN: u8 = 200;
+pub(crate) const GIVEN: u8 = 200;
 const NEW: u8 = 250;
 /// Frames further than this from every stroke are far, and this is a loss of J there.
 const FAR: usize = 8;
@@ -130,11 +130,11 @@ pub(crate) fn score(case: &Case, data: &Data, automatic: &Session<'_>, options: 
     Ok(0.5 * (mask + corrected.rounds.last().copied().unwrap_or(corrected.click)))
 }
 
-fn width_of(case: &Case, data: &Data) -> Result<usize, Failure> {
+pub(crate) fn width_of(case: &Case, data: &Data) -> Result<usize, Failure> {
     Ok(data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width())
 }
 
-fn truths_of(data: &Data) -> Vec<Vec<bool>> {
+pub(crate) fn truths_of(data: &Data) -> Vec<Vec<bool>> {
     data.truths.iter().map(|truth| of_label(truth, 1)).collect()
 }
 
@@ -221,15 +221,25 @@ fn accepted_changed(automatic: &Session<'_>, truths: &[Vec<bool>], width: usize)
     Ok(accepted.iter().map(changed).sum())
 }
 
-/// The smallest box around a mask, and a click at its deepest pixel, the first of equals.
-fn prompts(mask: &[bool], width: usize) -> [Prompt; 2] {
+/// The smallest box around a mask.
+pub(crate) fn boxed(mask: &[bool], width: usize) -> [usize; 4] {
     let inside: Vec<usize> = (0..mask.len()).filter(|&p| mask[p]).collect();
     let columns = || inside.iter().map(|p| p % width);
     let (left, right) = (columns().min().unwrap_or(0), columns().max().unwrap_or(0));
     let (top, bottom) = (inside.first().map_or(0, |p| p / width), inside.last().map_or(0, |p| p / width));
+    [left, top, right + 1 - left, bottom + 1 - top]
+}
+
+/// The deepest pixel of a mask, the first of equals.
+pub(crate) fn deepest(mask: &[bool], width: usize) -> usize {
     let depths = depths(mask, width);
-    let deepest = (0..mask.len()).rev().max_by_key(|&p| depths[p]).unwrap_or(0);
-    let within = Some([left, top, right + 1 - left, bottom + 1 - top]);
+    (0..mask.len()).rev().max_by_key(|&p| depths[p]).unwrap_or(0)
+}
+
+/// The smallest box around a mask, and a click at its deepest pixel, the first of equals.
+fn prompts(mask: &[bool], width: usize) -> [Prompt; 2] {
+    let deepest = deepest(mask, width);
+    let within = Some(boxed(mask, width));
     let click = Click { at: [deepest % width, deepest / width], inside: true };
     let nothing = Prompt { frame: 0, object: GIVEN, clicks: Vec::new(), within: None, spread: Spread::Both };
     [Prompt { within, ..nothing.clone() }, Prompt { clicks: vec![click], ..nothing }]

@@ -35,6 +35,12 @@ impl Area {
         Area { columns: grown(&self.columns, width), rows: grown(&self.rows, height) }
     }
 
+    /// The part that lies in another one.
+    pub(crate) fn within(&self, other: &Area) -> Area {
+        let part = |a: &Range<usize>, b: &Range<usize>| a.start.max(b.start).min(b.end)..a.end.min(b.end).max(b.start);
+        Area { columns: part(&self.columns, &other.columns), rows: part(&self.rows, &other.rows) }
+    }
+
     /// Bounding rectangle of both.
     pub(crate) fn with(&self, other: &Area) -> Area {
         let both = |a: &Range<usize>, b: &Range<usize>| a.start.min(b.start)..a.end.max(b.end);

@@ -4,6 +4,7 @@ import { amount, fixed, mean, origin, score, table, whole } from './table.mjs';
 
 export const PARTS = {
   object: ['annotator', (figures) => `${origin(figures)} Quality *${figures.quality}*.\n\n${object(figures)}`],
+  points: ['annotator', points],
   objects: ['annotator', objects],
   strokes: ['annotator', strokes],
   page: ['annotator-page', page],
@@ -50,6 +51,17 @@ function object({ real }) {
   ]);
   const titles = ['clips', 'fall in a round', 'far frames that lose', 'worst third, last round', 'worst third, mask', 'pixels of others', 'pixels of accepted'];
   return `${table(['clips', ...[...scores, ...times].map(([title]) => title)], rows)}\n\n${table(titles, trust)}`;
+}
+
+function points({ points }) {
+  if (points.length === 0) return '';
+  const rows = groups(points).map(([name, own]) => [
+    `${name} (${own.length})`,
+    score(mean(own.map(({ boxed }) => boxed))),
+    ...[0, 1, 2].map((k) => score(mean(own.map(({ clicks }) => clicks[k])))),
+    ...[0, 1].map((k) => amount(mean(own.map(({ milliseconds }) => milliseconds[k])))),
+  ]);
+  return table(['frames', 'box', 'click', '2 clicks', '3 clicks', 'ms a box', 'ms 3 clicks'], rows);
 }
 
 function objects({ objects }) {

@@ -8,9 +8,10 @@
 //! * How far the object of a click reaches is open. Discs of several sizes begin, and the regions with one label or motion that the click
 //!   is in; the masks that come of them vote, each by how well it agrees with the others. What enough votes say begins the last fit.
 //!
-//! Clicks that are the object's are in the mask, and those that are not are outside, with the piece around them if it is a separate one.
-//! Other annotations make no difference to the mask: the same prompt always points to the same object, and takes nothing from what
-//! others have.
+//! Clicks refine a mask in their order: each adds the part around it, or takes it away, as far as looks and labels near it say, and
+//! changes nothing else; a separate piece goes as a whole. How far that reaches is open as well, up to what is as the click says already.
+//! Other annotations make no difference to the mask: the same prompt always points to the same object, and takes nothing from what others
+//! have.
 
 use std::ops::Range;
 
@@ -35,8 +36,10 @@ struct View<'a> {
     features: &'a FrameFeatures,
     /// Labels found automatically, and those of the motions to the next frame and the one before.
     found: Vec<Vec<u8>>,
-    /// Seeds of the clicks: 0 for the object, 1 for ground, 2 for nothing.
+    /// Seeds of the clicks so far: 0 for the object, 1 for ground, 2 for nothing.
     sure: Vec<u8>,
+    /// Where the object may be.
+    limit: Area,
 }
 
 /// The beginning of a fit.
@@ -68,37 +71,35 @@ pub(super) fn outline(
     let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(features.size).labels);
     let own = clip.found_at(index, features.size);
     let found = [Some(own), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
-    let mut view = View { features, found, sure: vec![2; features.pixels()] };
+    let scaled =
+        |side: Range<usize>, size: usize| side.start / features.step..side.end.div_ceil(features.step).min(size);
+    let limit = prompt.within.map_or(features.area(), |[x, y, columns, rows]| Area {
+        columns: scaled(x..x + columns, features.size[0]),
+        rows: scaled(y..y + rows, features.size[1]),
+    });
+    let mut view = View { features, found, sure: vec![2; features.pixels()], limit };
     let clicks: Vec<(usize, bool)> =
         prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
+    let mut refined = if prompt.within.is_some() { view.boxed() } else { vec![0; features.pixels()] };
     for (at, inside) in &clicks {
-        let centre = view.place(features.pixel(*at, width));
+        let click = features.pixel(*at, width);
+        let centre = view.place(click);
         for p in 0..features.pixels() {
             if view.square(p, centre, [model().click; 2]) < 1.0 {
                 view.sure[p] = u8::from(!inside);
             }
         }
+        refined = view.refined(refined, click, *inside);
     }
-    let full = |mask: &[u8]| upsample(mask, features.size, 2, frame.luminance(), &Model::DEFAULT);
-    let mut mask = match prompt.within {
-        None => {
-            let mut mask = vec![0; features.pixels()];
-            for (at, _) in clicks.iter().filter(|(_, inside)| *inside) {
-                let own = view.clicked(features.pixel(*at, width));
-                mask.iter_mut().zip(own).for_each(|(mask, own)| *mask |= own);
-            }
-            full(&mask)
-        }
-        Some([x, y, columns, rows]) => {
-            let area = Area { columns: x..x + columns, rows: y..y + rows };
-            let found = full(&view.boxed(&area));
-            let is_empty = !area.pixels(width).any(|p| found[p] > 0);
-            let mut mask = vec![0; found.len()];
-            // One that is too small to see anything in is all object.
-            area.pixels(width).for_each(|p| mask[p] = if is_empty { 1 } else { found[p] });
-            mask
-        }
-    };
+    let mut mask = upsample(&refined, features.size, 2, frame.luminance(), &Model::DEFAULT);
+    if let Some([x, y, columns, rows]) = prompt.within {
+        let area = Area { columns: x..x + columns, rows: y..y + rows };
+        let is_empty = !area.pixels(width).any(|p| mask[p] > 0);
+        let mut within = vec![0; mask.len()];
+        // One that is too small to see anything in is all object.
+        area.pixels(width).for_each(|p| within[p] = if is_empty { 1 } else { mask[p] });
+        mask = within;
+    }
     clicks.iter().for_each(|&(at, inside)| mask[at] = u8::from(inside));
     let (user_objects, kept) = (clip.user_objects_in(index), clip.protected());
     let is_others = |label: u8| {
@@ -114,70 +115,102 @@ pub(super) fn outline(
 }
 
 impl View<'_> {
-    fn boxed(&self, full: &Area) -> Vec<u8> {
-        let ([width, height], step) = (self.features.size, self.features.step);
-        let part = |side: &Range<usize>, size: usize| side.start / step..side.end.div_ceil(step).min(size);
-        let area = Area { columns: part(&full.columns, width), rows: part(&full.rows, height) };
+    fn boxed(&self) -> Vec<u8> {
+        let area = self.limit.clone();
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
         let centre = [middle(&area.columns), middle(&area.rows)];
         let radii = [area.width(), area.height()].map(|side| 0.5 * side as f32);
-        self.without_pieces(self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY])))
+        let seen = self.around(&area, &self.features.area());
+        self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &seen)
     }
 
-    /// A mask without the pieces around clicks that are not the object's, if there is something else of it.
-    fn without_pieces(&self, mut mask: Vec<u8>) -> Vec<u8> {
-        let touched: Vec<u8> =
-            mask.iter().zip(&self.sure).map(|(&inside, &sure)| u8::from(inside > 0 || sure == 1)).collect();
-        let parts = components(&touched, self.features.size[0], Connectivity::Four);
-        let (mut is_kept, mut is_cut) = (vec![false; parts.list.len()], vec![false; parts.list.len()]);
-        for (p, sure) in self.sure.iter().enumerate() {
-            is_kept[parts.of[p] as usize] |= *sure == 0;
-            is_cut[parts.of[p] as usize] |= *sure == 1;
+    /// A mask with the part around a click that is the object's, or without the part around one that is not.
+    fn refined(&self, mut mask: Vec<u8>, click: usize, inside: bool) -> Vec<u8> {
+        if (mask[click] > 0) == inside {
+            return mask;
         }
-        let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max().unwrap_or(0);
-        for (p, inside) in mask.iter_mut().enumerate() {
-            let part = parts.of[p] as usize;
-            *inside &= u8::from(is_kept[part] || !is_cut[part] || parts.list[part].size == largest);
+        if let Some(piece) = self.piece(&mask, click).filter(|_| !inside) {
+            mask.iter_mut().zip(piece).for_each(|(mask, is_in)| *mask ^= is_in);
+            return mask;
         }
-        mask
-    }
-
-    fn clicked(&self, click: usize) -> Vec<u8> {
         let (pixels, [width, height]) = (self.features.pixels(), self.features.size);
         let centre = self.place(click);
         let whole = 1.0 - model().rim;
         let disc = |radius: f32| {
-            let area = self.around(&Area::of(&[click], width).grown(radius as usize, width, height));
+            let area = Area::of(&[click], width).grown((radius / whole) as usize + 1, width, height);
             self.ellipse(area, centre, [radius; 2], [whole, 1.0 / whole])
         };
-        // From the side of a cell on, each twice as large, to a third of the frame.
+        let same = (0..pixels).filter(|&p| (mask[p] > 0) == inside).map(|p| self.square(p, centre, [1.0; 2]));
+        let reach = same.fold(f32::INFINITY, f32::min).sqrt().max(2.0);
+        // From the side of a cell on, or half the way to what is as the click says, to a third of the longer side.
         let longest = width.max(height) as f32;
-        let radii =
-            std::iter::successors(Some(model().cell * longest), |radius| Some(std::f32::consts::SQRT_2 * radius));
-        // A third of the longer side.
-        let discs = radii.take_while(|radius| 3.0 * *radius < longest).map(disc);
+        let first = (model().cell * longest).min(0.5 * reach);
+        let radii = std::iter::successors(Some(first), |radius| Some(std::f32::consts::SQRT_2 * radius));
+        let discs = radii.take_while(|radius| 3.0 * *radius < longest && *radius <= reach).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
-        let beginnings = discs.chain(regions);
-        let masks: Vec<Vec<u8>> = beginnings.map(|from| self.part_of(click, self.fitted(from))).collect();
+        let parts: Vec<Vec<u8>> = discs.chain(regions).map(|from| self.part(click, &mask, inside, from)).collect();
         let mut votes = vec![0.0f32; pixels];
         let mut total = 0.0;
-        for mask in &masks {
-            let others = masks.iter().map(|other| overlap(mask, other)).sum::<f32>() - 1.0;
-            votes.iter_mut().zip(mask).for_each(|(votes, &inside)| *votes += others * others * f32::from(inside));
+        for part in &parts {
+            let others = parts.iter().map(|other| overlap(part, other)).sum::<f32>() - 1.0;
+            votes.iter_mut().zip(part).for_each(|(votes, &is_in)| *votes += others * others * f32::from(is_in));
             total += others * others;
         }
         votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
+        let side = u8::from(!inside);
         let agreed: Vec<usize> = (0..pixels)
             .filter(|&p| match self.sure[p] {
                 2 => votes[p] > model().votes,
-                sure => sure == 0,
+                sure => sure == side,
             })
             .collect();
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
         let odds = votes.iter().map(|votes| 2.0 * model().beginning * (votes - model().votes)).collect();
-        let area = self.around(&Area::of(&agreed, self.features.size[0]));
-        self.part_of(click, self.fitted(Beginning { area, odds, sides }))
+        let part = self.part(click, &mask, inside, Beginning { area: Area::of(&agreed, width), odds, sides });
+        mask.iter_mut().zip(part).for_each(|(mask, is_in)| *mask ^= is_in);
+        mask
+    }
+
+    /// The connected part of a mask around a click, if it has no click of the object and is not the largest.
+    fn piece(&self, mask: &[u8], click: usize) -> Option<Vec<u8>> {
+        let parts = components(mask, self.features.size[0], Connectivity::Four);
+        let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max()?;
+        let own = parts.of[click];
+        let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == 0);
+        let is_separate = !is_sure && parts.list[own as usize].size < largest;
+        is_separate.then(|| parts.of.iter().map(|&part| u8::from(part == own)).collect())
+    }
+
+    /// The connected part around a click by which a mask changes as the click says, in a fit that begins with `from` being that part.
+    fn part(&self, click: usize, mask: &[u8], inside: bool, from: Beginning) -> Vec<u8> {
+        let (features, width) = (self.features, self.features.size[0]);
+        let own: Vec<usize> = (0..mask.len()).filter(|&p| mask[p] > 0).collect();
+        let fit = if own.is_empty() {
+            let area = self.around(&from.area, &self.limit);
+            let seen = self.around(&area, &features.area());
+            self.fitted(Beginning { area, ..from }, &seen)
+        } else {
+            // Looks near the part tell where it ends: those of the whole object have seen its like elsewhere.
+            let seen = from.area.grown(from.area.width().max(from.area.height()) / 2, width, features.size[1]);
+            let area = self.around(&from.area.with(&Area::of(&own, width)), &self.limit);
+            let soft = gaussian(&features.plane(&|p| mask[p] > 0), model().border);
+            let prior = soft.values().iter().map(|share| model().beginning * (2.0 * share - 1.0));
+            let sign = if inside { 1.0 } else { -1.0 };
+            let odds = prior.zip(&from.odds).map(|(prior, part)| sign * (sign * prior).max(*part)).collect();
+            let side = |(&mask, &part): (&u8, &u8)| match part {
+                0 => u8::from(!inside),
+                2 if (mask > 0) != inside => 2,
+                _ => 1 - mask,
+            };
+            let sides = mask.iter().zip(&from.sides).map(side).collect();
+            self.fitted(Beginning { area, odds, sides }, &seen)
+        };
+        let own = u8::from(inside);
+        let mut part: Vec<u8> = fit.iter().zip(mask).map(|(&fit, &mask)| u8::from(fit == own && mask != own)).collect();
+        let parts = components(&part, width, Connectivity::Four);
+        part.iter_mut().enumerate().for_each(|(p, is_in)| *is_in &= u8::from(parts.of[p] == parts.of[click]));
+        part
     }
 
     /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
@@ -204,7 +237,7 @@ impl View<'_> {
         let inside = |p: usize| parts.of[p] == parts.of[click];
         let [left, top, right, bottom] = part.bounds;
         Some(Beginning {
-            area: self.around(&Area { columns: left..right + 1, rows: top..bottom + 1 }),
+            area: Area { columns: left..right + 1, rows: top..bottom + 1 },
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
             odds: gaussian(&self.features.plane(&inside), model().border)
                 .values()
@@ -214,12 +247,11 @@ impl View<'_> {
         })
     }
 
-    /// Learns from a mask what the object looks like, cuts the next one, and so on.
-    fn fitted(&self, from: Beginning) -> Vec<u8> {
-        let (features, [width, height]) = (self.features, self.features.size);
+    /// Learns from a mask what the object looks like in an area, cuts the next mask, and so on.
+    fn fitted(&self, from: Beginning, seen: &Area) -> Vec<u8> {
+        let (features, width) = (self.features, self.features.size[0]);
         let Beginning { area, odds: prior, mut sides } = from;
         sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
-        let seen = area.grown(model().margin, width, height);
         for _ in 0..model().rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
             // Ground counts less where there is more of it.
@@ -227,11 +259,11 @@ impl View<'_> {
             let mut appearance = AppearanceModel::new(&Area::whole(0, 0), f32::INFINITY);
             for (side, weight) in [(0, 1.0), (1, weight)] {
                 let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
-                appearance.learn_within(features, &seen, [0.0; 2], Source::Recent, weight, &of);
+                appearance.learn_within(features, seen, [0.0; 2], Source::Recent, weight, &of);
             }
             let remembered = appearance.read(features, &area, [0.0; 2]);
             let evidence: Vec<LabelEvidence> =
-                self.found.iter().map(|found| LabelEvidence::of(found, &sides, &seen, width)).collect();
+                self.found.iter().map(|found| LabelEvidence::of(found, &sides, seen, width)).collect();
             let odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
                 match self.sure[p] {
@@ -251,16 +283,9 @@ impl View<'_> {
         sides.iter().map(|&side| u8::from(side == 0)).collect()
     }
 
-    /// The connected part of a mask that the click is in.
-    fn part_of(&self, click: usize, mut mask: Vec<u8>) -> Vec<u8> {
-        let parts = components(&mask, self.features.size[0], Connectivity::Four);
-        mask.iter_mut().enumerate().for_each(|(p, inside)| *inside &= u8::from(parts.of[p] == parts.of[click]));
-        mask
-    }
-
-    /// Where an object may reach that lies in an area.
-    fn around(&self, area: &Area) -> Area {
-        area.grown(model().margin, self.features.size[0], self.features.size[1])
+    /// An area and what is around it, within a limit.
+    fn around(&self, area: &Area, limit: &Area) -> Area {
+        area.grown(model().margin, self.features.size[0], self.features.size[1]).within(limit)
     }
 
     fn place(&self, p: usize) -> [f32; 2] {
