@@ -568,17 +568,17 @@ fn a_click_changes_only_what_it_says() {
         annotate(&mut shot.clip, &shot.frames, Annotations { prompts, ..Annotations::default() });
         shot.labels()[0].iter().map(|&label| label == 9).collect()
     };
-    let before = masked(vec![first.clone()]);
+    let before = masked(vec![first]);
     let mut changes = [0, 0];
     for at in [[24, 30], [50, 60], [70, 55], [85, 66], [110, 20], [10, 85]] {
         let p = at[1] * 128 + at[0];
-        let now = masked(vec![first.clone(), Click { at, inside: !before[p] }]);
+        let now = masked(vec![first, Click { at, inside: !before[p] }]);
         assert_eq!(now[p], !before[p], "{at:?}");
         assert!((0..now.len()).all(|k| now[k] == before[k] || now[k] != before[p]), "{at:?}");
         let parts = components_of(&now, &before);
         assert_eq!(parts, 1, "{at:?}");
         changes[usize::from(before[p])] += 1;
-        assert_eq!(masked(vec![first.clone(), Click { at, inside: before[p] }]), before, "{at:?}");
+        assert_eq!(masked(vec![first, Click { at, inside: before[p] }]), before, "{at:?}");
     }
     assert!(changes.iter().all(|count| *count > 0), "{changes:?}");
 }

@@ -142,10 +142,11 @@ impl View<'_> {
         };
         let same = (0..pixels).filter(|&p| (mask[p] > 0) == inside).map(|p| self.square(p, centre, [1.0; 2]));
         let reach = same.fold(f32::INFINITY, f32::min).sqrt().max(2.0);
-        // From the side of a cell on, or half the way to what is as the click says, to a third of the longer side.
+        // From the side of a cell on, or half the way to what is as the click says.
         let longest = width.max(height) as f32;
         let first = (model().cell * longest).min(0.5 * reach);
         let radii = std::iter::successors(Some(first), |radius| Some(std::f32::consts::SQRT_2 * radius));
+        // A third of the longer side.
         let discs = radii.take_while(|radius| 3.0 * *radius < longest && *radius <= reach).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let parts: Vec<Vec<u8>> = discs.chain(regions).map(|from| self.part(click, &mask, inside, from)).collect();
