@@ -13,20 +13,26 @@ const RIGHT = 0.75;
 
 export function mountCursor(layers: HTMLElement, store: Store): void {
   const tag = find(layers, '#cursor', HTMLElement);
+  let isOver = false;
+  const show = (): void => void (tag.hidden = !isOver || tag.textContent === '');
   layers.addEventListener('pointermove', ({ clientX, clientY, pointerType }) => {
     const { left, top, width } = layers.getBoundingClientRect();
     // A finger would hide it.
-    tag.hidden = pointerType === 'touch' || tag.textContent === '';
+    isOver = pointerType !== 'touch';
+    show();
     tag.style.left = `${clientX - left}px`;
     tag.style.top = `${clientY - top}px`;
     tag.classList.toggle('before', clientX - left > RIGHT * width);
   });
-  layers.addEventListener('pointerleave', () => (tag.hidden = true));
+  layers.addEventListener('pointerleave', () => {
+    isOver = false;
+    show();
+  });
   const render = (now: State): void => {
     const { look, tool, result } = now;
     const isNew = tool.name === 'box' && pointingIn(now) === 'new';
     tag.textContent = tool.name === 'look' || result === null ? '' : isNew ? strings.newObject : look.selected === null ? '' : nameOf(look, look.selected);
-    if (tag.textContent === '') tag.hidden = true;
+    show();
     tag.classList.toggle('removes', removes(now));
     tag.style.setProperty('--colour', isNew || look.selected === null ? 'transparent' : cssColour(colourOfMask(look.selected, look)));
   };
