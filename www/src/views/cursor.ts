@@ -15,7 +15,7 @@ export function mountCursor(layers: HTMLElement, store: Store): void {
   const tag = find(layers, '#cursor', HTMLElement);
   let isOver = false;
   const show = (): void => void (tag.hidden = !isOver || tag.textContent === '');
-  layers.addEventListener('pointermove', ({ clientX, clientY, pointerType }) => {
+  const follow = ({ clientX, clientY, pointerType }: PointerEvent): void => {
     const { left, top, width } = layers.getBoundingClientRect();
     // A finger would hide it.
     isOver = pointerType !== 'touch';
@@ -23,7 +23,10 @@ export function mountCursor(layers: HTMLElement, store: Store): void {
     tag.style.left = `${clientX - left}px`;
     tag.style.top = `${clientY - top}px`;
     tag.classList.toggle('before', clientX - left > RIGHT * width);
-  });
+  };
+  layers.addEventListener('pointermove', follow);
+  // Where the picture comes under a pointer that rests, nothing moves.
+  layers.addEventListener('pointerenter', follow);
   layers.addEventListener('pointerleave', () => {
     isOver = false;
     show();
