@@ -257,7 +257,10 @@ export type ClipPrompt = {
   | {
       /** The number of the object, 1 to 254; one that no object has makes a new object. */
       object: number;
-      /** Pixels that belong to the object or do not; those that do are in the box, if there is one. */
+      /**
+       * Pixels that belong to the object or do not; those that do are in the box, if there is one. In this order each adds the part around
+       * it to the mask, or takes it away, unless the mask is as it says already.
+       */
       clicks?: readonly ClipClick[] | undefined;
       /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
       box?: readonly [x: number, y: number, width: number, height: number] | undefined;

@@ -66,7 +66,7 @@ pub struct Prompt {
     pub frame: usize,
     /// Number of the object, which may have been found or not, 1…254.
     pub object: u8,
-    /// Pixels that are the object's, or are not.
+    /// Pixels that are the object's, or are not. In this order each adds the part around it to the mask, or takes it away.
     pub clicks: Vec<Click>,
     /// A rectangle that has all of it: first column, first row, width and height.
     pub within: Option<[usize; 4]>,

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { axe, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, drag, expect, goTo, labelsOnCanvas, masksOf, openClip, openExport, smallFrames, test, withProcessors } from './support.js';
+import { axe, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, drag, expect, goTo, holdBack, labelsOnCanvas, masksOf, openClip, openExport, smallFrames, test, withProcessors } from './support.js';
 
 /** How many rows of pixels the lanes have at a frame. */
 function heightOfLanes(page: Page, index: number, count: number): Promise<number> {
@@ -10,20 +10,6 @@ function heightOfLanes(page: Page, index: number, count: number): Promise<number
     const { data } = lanes.getContext('2d')!.getImageData(Math.floor(at * lanes.width), 0, 1, lanes.height);
     return data.filter((value, k) => k % 4 === 3 && value > 0).length;
   }, (index + 0.5) / count);
-}
-
-/** Keeps the page from reading a frame until what this gives is called. */
-async function holdBack(page: Page, name: string): Promise<() => Promise<void>> {
-  await page.evaluate((frame) => {
-    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
-    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
-    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
-      if (given[0] instanceof File && given[0].name === frame) await released;
-      return make(...given);
-    };
-    Object.assign(window, { createImageBitmap: held });
-  }, name);
-  return () => page.evaluate(() => (window as unknown as { release: () => void }).release());
 }
 
 test('frames show drafts until the masks are there: they are marked and played, and corrections and exports wait', async ({ page }) => {

@@ -240,6 +240,20 @@ export async function cancelWhen(page: Page, said = /./): Promise<void> {
   }, said.source);
 }
 
+/** Keeps the page from reading a frame until what this gives is called. */
+export async function holdBack(page: Page, name: string): Promise<() => Promise<void>> {
+  await page.evaluate((frame) => {
+    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
+    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
+    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
+      if (given[0] instanceof File && given[0].name === frame) await released;
+      return make(...given);
+    };
+    Object.assign(window, { createImageBitmap: held });
+  }, name);
+  return () => page.evaluate(() => (window as unknown as { release: () => void }).release());
+}
+
 /** Waits until the clip is segmented. */
 export async function clipDone(page: Page): Promise<void> {
   await clipPhase(page, 'done');

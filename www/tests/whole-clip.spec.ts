@@ -4,7 +4,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, cancelWhen, clipDone, clipFrames, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, holdBack, kept, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Larger ones for strokes, with a stroke over the disc in frame 3 and a pixel under it, and a brush for them. */
 const [WIDTH, HEIGHT] = [120, 84];
@@ -161,15 +161,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await clipPhase(page, 'cancelled');
   await expect(page.locator('#clip-status')).toHaveText(`Cancelled. ${count} of 8 frames have masks.`);
   // It goes on as far as the last frame, which is held back.
-  await page.evaluate(() => {
-    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
-    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
-    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
-      if (given[0] instanceof File && given[0].name === 'f07.png') await released;
-      return make(...given);
-    };
-    Object.assign(window, { createImageBitmap: held });
-  });
+  const release = await holdBack(page, 'f07.png');
   await page.getByRole('button', { name: 'Continue' }).click();
   expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(count);
   // A name given meanwhile is kept at once when the page is hidden.
@@ -179,7 +171,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await hide(page);
   await kept(page);
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
-  await page.evaluate(() => (window as unknown as { release: () => void }).release());
+  await release();
   await clipPhase(page, 'done');
   await expect(name).toHaveValue('Early');
   await goTo(page, 0);
