@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { Segmenter, segmentPair } from 'veronese';
+import { Segmenter, segmentClip, segmentPair } from 'veronese';
 import { random } from '../../scripts/lib/random.mjs';
 import { clip as framesOf, lines, tracksOf } from './support/folders.mjs';
 import { frame, pair } from './support/frames.mjs';
@@ -49,6 +49,42 @@ describe('a clip in which nothing is found', () => {
   }
 });
 
+describe('the call for clips gives the same notes', () => {
+  const frames = (at, length = 20) => ({ length, read: (index) => at(index) });
+  const options = { quality: 'fast' };
+  const notesOf = async (clip) => {
+    while (!(await clip.next()).done);
+    return clip.tracks().notes;
+  };
+  for (const [code, [at, sentence]] of Object.entries(CLIPS)) {
+    test(code, async () => {
+      const notes = await notesOf(segmentClip(frames(at), options));
+      assert.deepEqual(notes.map((note) => note.code), [code]);
+      const { message, step } = notes[0];
+      assert.match(step ? `${message}: try '--every ${step}'` : message, sentence);
+      const segmenter = new Segmenter();
+      assert.deepEqual(await notesOf(segmenter.segmentClip(frames(at), options)), notes);
+      assert.deepEqual(await notesOf(segmenter.segmentClip(frames(at), { ...options, lookAhead: 2 })), notes, 'a stream that can be read again');
+      segmenter.close();
+      // Frames that are gone tell it by a pair that was kept, but no step.
+      for (const transfer of [false, true]) {
+        const [kept] = await notesOf(segmentClip(Array.from({ length: 9 }, (_, k) => at(k)), { ...options, transfer }));
+        assert.ok([code, 'no-motion'].includes(kept.code), kept.code);
+        assert.equal(kept.step, undefined);
+      }
+    });
+  }
+
+  test('what was asked for, what a person said, and a single frame have none', async () => {
+    const still = CLIPS['no-motion'][0];
+    assert.equal(await notesOf(segmentClip(frames(still), { ...options, motions: 1 })), undefined);
+    assert.equal(await notesOf(segmentClip(frames(still), { ...options, accepted: [0] })), undefined);
+    assert.equal(await notesOf(segmentClip(frames(still, 1), options)), undefined);
+    assert.equal(await notesOf(segmentClip([still(0)], options)), undefined);
+    assert.equal(await notesOf(segmentClip(frames((k) => frame(2 * k, SIZE)), options)), undefined);
+  });
+});
+
 test('a pair with one motion says why, in a worker too; what was asked for says nothing', async () => {
   const pairs = {
     'no-motion': [picture(wave), picture(wave)],
@@ -78,4 +114,12 @@ test('an object that is likely to be the ground is named', async (t) => {
   const large = objects.filter((object) => object.frames.every(({ pixels }) => pixels > 0.5 * SIZE.width * SIZE.height));
   assert.deepEqual(notes.map(({ code }) => code), large.map(() => 'object-is-ground'));
   assert.equal(stderr.split('\n').length - 1, notes.length);
+});
+
+test('so is one that is smaller and has all of the border', async () => {
+  const still = (x, y) => Math.abs(x - 48) < 40 && Math.abs(y - 36) < 30;
+  const read = (k) => picture((x, y) => (still(x, y) ? wave(3 * x, y) : wave(x + 3 * k, y + 2 * k)));
+  const clip = segmentClip({ length: 6, read }, { quality: 'fast' });
+  for await (const { objects } of clip) assert.ok(objects.every(({ pixels }) => pixels < 0.4 * SIZE.width * SIZE.height));
+  assert.deepEqual(clip.tracks().notes.map(({ code }) => code), ['object-is-ground']);
 });

@@ -114,10 +114,15 @@ export interface Junction {
 
 /** What was assumed of what was given, or why nothing was found. */
 export interface Note {
-  /** In kebab-case; of a pair with one motion `no-contrast`, `cut`, `no-motion`, `small-steps` or `one-motion`. */
+  /**
+   * In kebab-case; where no object or one motion was found `no-contrast`, `cut`, `no-motion`, `small-steps` or `one-motion`; `object-is-ground`
+   * of an object of a clip that is likely to be none.
+   */
   code: string;
   /** A sentence. */
   message: string;
+  /** Of `small-steps`, where it is known: every frame of this number alone would show more. */
+  step?: number;
 }
 
 /** The result of {@link segmentPair}: plain data, nothing to free. */
@@ -454,6 +459,8 @@ export interface ClipTracks {
   background: { frame: number; matrix: Matrix }[];
   /** Number of objects beyond 254, which count as background. Known when the clip is finished. */
   dropped: number;
+  /** Of a finished clip without annotations: why there are no objects, or which of them are likely to be none. */
+  notes?: Note[];
 }
 
 /** Pixels of an object in a frame that annotations have changed. */

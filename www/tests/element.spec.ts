@@ -79,6 +79,29 @@ test('a clip of files: the labels, objects and tracks of the package', async ({ 
   expect(found).toMatchObject({ same: true, count: 5 });
 });
 
+test('where nothing is found, why: to see and in the events, until there is something', async ({ page }) => {
+  await openEmpty(page);
+  const element = page.locator('veronese-segmenter');
+  const told = await page.evaluate(async () => {
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    document.body.append(element);
+    const [first, second] = clip(2) as [ImageData, ImageData];
+    const result = new Promise<Segmentation>((resolve) => element.addEventListener('result', ({ detail }) => resolve(detail)));
+    await element.setFrames(first, first);
+    const tracks = new Promise<ClipTracks>((resolve) => element.addEventListener('tracks', ({ detail }) => resolve(detail)));
+    element.frames = [first, first, first];
+    const all = [(await result).notes, (await tracks).notes, element.tracks()?.notes];
+    Object.assign(window, { other: () => element.setFrames(first, second) });
+    return all;
+  });
+  const note = { code: 'no-motion', message: 'nothing moves between the frames: their grey levels differ by 0.00 on average' };
+  expect(told).toEqual([[note], [note], [note]]);
+  await expect(element.getByRole('status')).toHaveText(note.message);
+  await page.evaluate(() => (window as unknown as { other: () => Promise<void> }).other());
+  await expect(element.getByRole('status', { includeHidden: true })).toHaveText('');
+});
+
 test('frames of every kind; those that cannot be used; abort and removal; a form', async ({ page }) => {
   await openEmpty(page);
 

@@ -84,6 +84,26 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   });
 });
 
+test('boxes without masks point to objects; what is left out is said', async ({ page }) => {
+  await openSix(page);
+  const categories = [{ id: 1, name: 'Disc' }];
+  const images = ['f01', 'f99'].map((name, k) => ({ id: k + 1, file_name: `${name}.png`, ...SIZE }));
+  // The disc of frame 1, a box of a frame that is not there, and an annotation that says nothing.
+  const box = { category_id: 1, iscrowd: 0, segmentation: [] };
+  const annotations = [{ ...box, id: 1, image_id: 1, bbox: [20, 28, 48, 48] }, { ...box, id: 2, image_id: 2, bbox: [1, 1, 9, 9] }, { id: 3, image_id: 1, category_id: 1, iscrowd: 0 }];
+  await give(page, 'drop', [json('boxes.json', { images, annotations, categories })]);
+  await expect(page.locator('#notice-sentence')).toHaveText(
+    "Took the masks of 1 of 2 frames. No frame with masks here is called f99. 'boxes.json': left out annotations without a mask (1). 'boxes.json': boxes without a mask are prompts (2).",
+  );
+  await corrected(page);
+  await goTo(page, 1);
+  await expect(page.locator('#lane-names button')).toContainText([/^Disc/]);
+  const labels = await labelsOnCanvas(page);
+  const inside = labels.filter((_, p) => Math.hypot((p % SIZE.width) - 44, Math.floor(p / SIZE.width) - 51.4) < 18);
+  expect(new Set(inside).size).toBe(1);
+  expect([0, 255]).not.toContain(inside[0]);
+});
+
 test('the frames of a video are known by their numbers', async ({ page }) => {
   await openEmpty(page, 'groups');
   await openSegmented(page, [await video(page, 6, 'webm', 'vp8')], 6);

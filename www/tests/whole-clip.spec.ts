@@ -1,6 +1,7 @@
 //! Whole clips: objects that keep their numbers, segmented in the background; moving through the frames.
 
 import { type Page } from '@playwright/test';
+import { encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
@@ -252,6 +253,14 @@ test('frames of another size and frames that are all the same are reported', asy
   await expect(page.locator('#status')).toHaveText('Both frames are the same, pixel by pixel: nothing moves.');
   await segmentClip(page);
   await expect(page.locator('#clip-status')).toHaveText('No objects: all 3 frames are the same, pixel by pixel.');
+  // All moves as one piece: the pair and the clip say so.
+  const moved = (k: number): Uint8Array => Uint8Array.from({ length: 3 * 100 * 70 }, (_, i) => 128 + 60 * Math.sin(0.31 * ((Math.floor(i / 3) % 100) + 2 * k)) + 50 * Math.cos(0.4 * Math.floor(i / 300)));
+  await upload(page, await Promise.all([0, 1, 2].map(async (k) => ({ name: `h${k}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(100, 70, moved(k))) }))));
+  await expect(page.locator('#clip-name')).toHaveText('h0-h2.png, 3 frames, 100 × 70');
+  const why = 'The whole picture follows one motion, of up to 2\\.\\d pixels: nothing is seen to move by itself\\.';
+  await expect(page.locator('#status')).toHaveText(new RegExp(`^(No objects|One motion) found in [^.]+\\. ${why}$`));
+  await segmentClip(page);
+  await expect(page.locator('#clip-status')).toHaveText(new RegExp(`^No objects in 3 frames\\. ${why}$`));
   await upload(page, files.slice(0, 3));
   await expect(page.locator('#clip-name')).toHaveText('f00-f02.png, 3 frames, 100 × 70');
   await done(page);

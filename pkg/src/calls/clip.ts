@@ -38,11 +38,13 @@ async function* segmented(
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
     const taken = new Frames(signal);
-    for await (const frame of whole ? segmentedTwice(clip, taken, task, results) : streamed(clip, taken, task, results.tracks)) {
+    for await (const frame of whole ? segmentedTwice(clip, taken, task, results) : streamed(clip, taken, task, results)) {
       place.pause?.(true);
       yield frame;
       place.pause?.(false);
     }
+    const { tracks } = results;
+    if (tracks.isEmpty || tracks.grounds().length > 0) tracks.notes = await (await import('./clip/notes.js')).notesOn(clip, taken, task, results);
   } finally {
     delete results.clip;
     // Nobody waits for that.

@@ -9,7 +9,7 @@ import { idsOf, type Output, removeIfEmpty } from './output.js';
 import { jsonLine } from './pair.js';
 
 /** The content of tracks.json. */
-export interface Record extends ClipTracks {
+export interface Record extends Omit<ClipTracks, 'notes'> {
   version: 1;
   width: number;
   height: number;

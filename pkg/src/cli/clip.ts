@@ -13,7 +13,6 @@ import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
-import { notesOnTracks } from './clip-notes.js';
 import { ClipStore, type Record } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
@@ -61,10 +60,10 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
       await print(io, jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
-    const tracks = segmented.tracks();
+    const { notes = [], ...tracks } = segmented.tracks();
     if (streams) await kept.clear();
     const changes = await segmented.changes();
-    const found = [...frames.notes, ...(said ? [] : await notesOnTracks(tracks, frames))];
+    const found = [...frames.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
     await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(said?.notes ?? []), ...found]);
     for (const each of found) note(io, each);
     if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);

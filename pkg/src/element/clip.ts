@@ -46,6 +46,7 @@ export class ElementClip {
   #clip: Clip | undefined;
   /** The state of a clip whose frames are all done and can be read again. */
   #state: Uint8Array | undefined;
+  #isCorrected = false;
   #current = 0;
   /** Until the frame that is wanted is shown. */
   #showing: Promise<void> | undefined;
@@ -110,6 +111,7 @@ export class ElementClip {
     const changed: [FoundFrame, Packed][] = [];
     for await (const { labels, ...found } of clip) changed.push([found, await packed(labels, size.width, size.height)]);
     this.#state = (await clip.state()) as Uint8Array;
+    this.#isCorrected = true;
     for (const [found, done] of changed) [this.#found[found.index], this.#done[found.index]] = [found, done];
     for (const [found, done] of changed) yield { ...found, labels: await unpacked(done) };
   }
@@ -129,7 +131,7 @@ export class ElementClip {
   /** The objects of the frames that are done. */
   tracks(): ClipTracks {
     const found = this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
-    if (!this.takesCorrections) return found;
+    if (!this.#isCorrected) return found;
     const tracks = new Tracks();
     tracks.dropped = found.dropped;
     for (const found of this.#found) tracks.add(found);

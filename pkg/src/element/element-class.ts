@@ -305,7 +305,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#paintPair(result);
     await this.#carry();
     signal.throwIfAborted();
-    this.#end();
+    this.#end(result);
     this.#tell('result', result);
     return result;
   }
@@ -334,8 +334,8 @@ export class VeroneseSegmenterElement extends Base {
       await clip.shown();
       await this.#carry();
       signal.throwIfAborted();
-      this.#end();
       const tracks = clip.tracks();
+      this.#end(tracks);
       this.#tell('tracks', tracks);
       return tracks;
     } finally {
@@ -366,8 +366,9 @@ export class VeroneseSegmenterElement extends Base {
       await clip.shown();
       await this.#carry();
       signal.throwIfAborted();
-      this.#end();
-      this.#tell('tracks', clip.tracks());
+      const tracks = clip.tracks();
+      this.#end(tracks);
+      this.#tell('tracks', tracks);
       return changed;
     } catch (thrown) {
       if (this.#clip === clip) clip.show(clip.current);
@@ -454,9 +455,9 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   /** A request has ended well: the validity changes before the event. */
-  #end(): void {
+  #end({ notes = [] }: Segmentation | ClipTracks): void {
     this.#request = undefined;
-    this.#view.status.textContent = '';
+    this.#view.status.textContent = notes.map(({ message }) => message).join('; ');
     this.#validate();
   }
 

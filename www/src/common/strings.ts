@@ -1,6 +1,7 @@
 //! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them, and those
 //! of keys. Static text is in `index.html`.
 
+import type { Note, Segmentation } from 'veronese';
 import type { MotionParts } from '../result/describe.js';
 import type { Kind } from '../result/masks.js';
 
@@ -97,6 +98,11 @@ function fileSize(bytes: number): string {
 
 const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
 
+/** An answer, and what the package has to say of it. */
+export function withNotes(answer: string, notes: readonly Pick<Note, 'message'>[] = []): string {
+  return [answer, ...notes.map(({ message }) => `${message.charAt(0).toUpperCase()}${message.slice(1)}.`)].join(' ');
+}
+
 const TOOLS = {
   brush: (thing: string) => `Paint what belongs to the selected ${thing}.`,
   eraser: (thing: string) => `Paint what does not belong to the selected ${thing}.`,
@@ -147,7 +153,7 @@ export const strings = {
     unlocked: (): string => 'Unlocked.',
     accepted: (): string => 'Accepted.',
     described: (): string => 'Changed.',
-    found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
+    found: (count: number, of: number, notes: readonly Note[] = []): string => withNotes(`${objects(count)} in ${frames(of)}.`, notes),
     same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
     repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
     continued: (count: number, of: number): string => `Continued: ${objects(count).toLowerCase()} in ${frames(of)}.`,
@@ -266,10 +272,10 @@ export const strings = {
     waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
     /** `moving`: the objects; null if motions are shown. `requested`: the number of motions in the settings; null for automatic. */
-    found: (count: number, moving: number | null, requested: number | null, waited: number, same: boolean): string => {
+    found: ({ count, notes }: Segmentation, moving: number | null, requested: number | null, waited: number, same: boolean): string => {
       if (same) return strings.sameFrames;
       const answer = `${moving === null ? motions(count) : objects(moving)} found in ${duration(waited)}`;
-      if (requested === null) return `${answer}.`;
+      if (requested === null) return withNotes(`${answer}.`, notes);
       if (count < requested) return `${answer}. Of the ${requested} motions requested, only ${count === 1 ? 'one' : count} could be told apart.`;
       return moving === null ? `${answer}, as requested.` : `${answer}, with ${motions(count).toLowerCase()} as requested.`;
     },

@@ -1,6 +1,6 @@
 //! The objects of a whole clip: how far their segmentation is, the masks of each frame, and a person's annotations.
 
-import type { ClipFrame, ClipProgress } from 'veronese';
+import type { ClipFrame, ClipProgress, Note } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
@@ -23,8 +23,8 @@ type ChangeCause = 'corrected' | 'undone' | 'redone';
 /** The run on the clip as a whole. */
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
-  /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number }
+  /** `changed`: number of frames whose masks are others than before. `notes`: why nothing was found, or what is likely to be wrong. */
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number; readonly notes?: readonly Note[] }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];

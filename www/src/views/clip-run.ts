@@ -60,7 +60,7 @@ function sentenceFor(tracked: Tracked): string {
       return run.stage === 'corrections' ? tracking.corrections : isDrafting(tracked) ? tracking.drafting : tracking.started;
     case 'done':
       if (run.cause === 'corrected' || run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
-      return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)));
+      return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)), run.notes);
     case 'cancelled':
     case 'failed':
       return tracking[run.phase](masksIn(frames, range), lengthOf(range));

@@ -84,7 +84,7 @@ function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentati
   if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
   const moving = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size - 1 : null;
-  const answer = status.found(count, moving, settings.motions === 'auto' ? null : settings.motions, waited, count === 1 && isSame(pair));
+  const answer = status.found(segmentation, moving, settings.motions === 'auto' ? null : settings.motions, waited, count === 1 && isSame(pair));
   return found === null || strokes.length === 0 ? answer : `${answer} ${status.applied(constraintsFrom(strokes, found).length, strokes.length)}`;
 }
 

@@ -80,3 +80,8 @@ export class Frames {
 export function* reads(read: (index: number) => unknown, indices: Iterable<number>): Generator<unknown, void, undefined> {
   for (const index of indices) yield read(index);
 }
+
+/** Numbers from 0, one by one: a source may claim any length. */
+export function* upTo(length: number): Generator<number, void, undefined> {
+  for (let index = 0; index < length; index++) yield index;
+}

@@ -6,6 +6,7 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
+import { reads, upTo } from './frames.js';
 import { type Edits, editsOf, isObjectNumber, RANGE, withMerged } from './edits.js';
 import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './annotations.js';
 
@@ -21,6 +22,8 @@ export interface Stream {
   each: Iterable<unknown> | AsyncIterable<unknown>;
   /** Number of frames, if known. */
   length: number | undefined;
+  /** Where frames can be read again all the same. */
+  again?: (index: number) => unknown;
 }
 
 /** Frames that can be read again. */
@@ -84,8 +87,8 @@ function sourceOf(frames: unknown, lookAhead: unknown, option: string | undefine
   if (typeof read === 'function') {
     if (!isWhole(length, 0, Infinity)) throw invalidInput("the frames: 'length' must be a whole number");
     const readable = frames as { read: (index: number) => unknown };
-    if (needed !== undefined || lookAhead === undefined) return { length, read: (index) => readable.read(index) };
-    return { length, each: readEach(readable, length) };
+    const read = (index: number) => readable.read(index);
+    return needed !== undefined || lookAhead === undefined ? { length, read } : { length, each: reads(read, upTo(length)), again: read };
   }
   const source = Object(frames) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
   if (typeof source[Symbol.asyncIterator] !== 'function' && typeof source[Symbol.iterator] !== 'function') {
@@ -95,10 +98,6 @@ function sourceOf(frames: unknown, lookAhead: unknown, option: string | undefine
   if (Array.isArray(frames)) return { length: frames.length, read: (index) => frames[index] };
   const sentence = 'needs frames that can be read again: an array, or { length, read(index) }';
   throw new VeroneseError('invalid-option', `option '${needed}': ${sentence}`);
-}
-
-function* readEach(frames: { read: (index: number) => unknown }, length: number): Generator<unknown, void, undefined> {
-  for (let index = 0; index < length; index++) yield frames.read(index);
 }
 
 /** Those of the option and of the edits. */

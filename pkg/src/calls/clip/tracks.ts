@@ -1,6 +1,6 @@
 // The tracks of a clip's objects, collected frame by frame.
 
-import type { ClipChange, ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
+import type { ClipChange, ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
 import type { PlacedClip } from './place.js';
 
 /** The results of a clip besides its frames, and where they are kept until it ends. */
@@ -9,18 +9,62 @@ export interface ClipResults {
   state?: Uint8Array;
   /** The changes by annotations. */
   changes?: ClipChange[];
+  /** Of a stream in which nothing was found so far: the latest pair whose first frame has 0 or a power of two as its index. */
+  pair?: SeenPair;
   clip?: PlacedClip;
+}
+
+export interface SeenPair {
+  /** Of its first frame. */
+  index: number;
+  frames: readonly [Pixels, Pixels];
+}
+
+/** An object, and in how many of its frames it is as large as the ground. */
+export interface Ground {
+  id: number;
+  large: number;
+  of: number;
 }
 
 /** The objects of a frame. */
 export type FoundFrame = Omit<ClipFrame, 'labels'>;
 
+interface Size {
+  width: number;
+  height: number;
+}
+
+/** An object that covers more of the picture, or of its border, in most of its frames is none. */
+const [MOST, MOST_OF_BORDER] = [0.5, 0.9];
+
 export class Tracks {
   readonly #objects = new Map<number, ClipTrack>();
   readonly #background: ClipTracks['background'] = [];
+  /** In how many frames objects cover most of the picture, or of its border. */
+  readonly #large = new Map<number, number>();
   #last = -1;
   dropped = 0;
+  notes: Note[] = [];
   names: ReadonlyMap<number, string> = new Map();
+
+  get isEmpty(): boolean {
+    return this.#objects.size === 0;
+  }
+
+  /** Adds a frame with its labels and returns it. */
+  see(frame: ClipFrame, size: Size): ClipFrame {
+    for (const { id, pixels } of frame.objects) {
+      if (pixels > MOST * size.width * size.height || shareOfBorder(frame.labels, id, size) > MOST_OF_BORDER) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
+    }
+    return this.add(frame);
+  }
+
+  /** The objects that are likely to be the ground. */
+  grounds(): Ground[] {
+    const counted = [...this.#objects.values()].map(({ id, frames }) => ({ id, large: this.#large.get(id) ?? 0, of: frames.length }));
+    return counted.filter(({ large, of }) => 2 * large > of);
+  }
 
   /** Adds the next frame and returns it. */
   add<Frame extends FoundFrame>(frame: Frame): Frame {
@@ -46,11 +90,19 @@ export class Tracks {
   /** A copy, which the caller may change. */
   value(): ClipTracks {
     const objects = [...this.#objects.values()].sort((one, other) => one.id - other.id).map((track) => this.#named(track));
-    return structuredClone({ objects, background: this.#background, dropped: this.dropped });
+    const { dropped, notes } = this;
+    return structuredClone({ objects, background: this.#background, dropped, ...(notes.length > 0 && { notes }) });
   }
 
   #named({ id, ...rest }: ClipTrack): ClipTrack {
     const name = this.names.get(id);
     return { id, ...(name !== undefined && { name }), ...rest };
   }
+}
+
+function shareOfBorder(labels: Uint8Array, id: number, { width, height }: Size): number {
+  let own = 0;
+  for (let x = 0; x < width; x++) own += Number(labels[x] === id) + Number(labels[labels.length - 1 - x] === id);
+  for (let y = 0; y < height; y++) own += Number(labels[y * width] === id) + Number(labels[(y + 1) * width - 1] === id);
+  return own / (2 * (width + height));
 }

@@ -7,7 +7,7 @@ import type { Annotating, Annotations, ClipSummary } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { CheckedOptions, Whole } from './options.js';
-import { type Frames, reads } from './frames.js';
+import { type Frames, reads, upTo } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
@@ -35,7 +35,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
     onProgress?.({ frame: index, of, stage: 'labels' });
     const step = clip.step<ClipFrame>({ call: 'clipFrame', index, frame });
     frames.ahead();
-    yield results.tracks.add(await step);
+    yield results.tracks.see(await step, frame);
   }
   const failed = frames.failure ?? failure;
   if (failed) throw failed.thrown;
@@ -137,11 +137,6 @@ function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }:
     named: edits.named,
     numbers: Uint8Array.from([...edits.numbers].flat()),
   };
-}
-
-/** Numbers from 0, one by one: a source may claim any length. */
-function* upTo(length: number): Generator<number, void, undefined> {
-  for (let index = 0; index < length; index++) yield index;
 }
 
 function checkSizes({ masks, corrections, prompts, accepted = [] }: Task, size: { width: number; height: number }): void {

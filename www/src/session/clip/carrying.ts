@@ -137,8 +137,11 @@ export class Carrying {
     const after = unchanged(before, await this.#carried(before, next, corrections, signal));
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;
-    const isNothing = 'annotations' in next && next.annotations.some((one) => isPrompt(one) && !after.frames[one.frame]?.objects.some(({ id }) => id === (after.became.get(one.object) ?? one.object)));
-    if (isNothing) this.#store.say(strings.notices.nothingThere);
+    const annotations = 'annotations' in next ? next.annotations : [];
+    const nothing = annotations.filter((one) => isPrompt(one) && !after.frames[one.frame]?.objects.some(({ id }) => id === (after.became.get(one.object) ?? one.object)));
+    if (nothing.length > 0) this.#store.say(strings.notices.nothingThere);
+    // What else was said with it stays.
+    const isNothing = nothing.length > 0 && nothing.length === annotations.length;
     corrections.settled = corrections.now = isNothing ? before : after;
     if (!isNothing) set({ past: [...now.past, before], future: [] });
     // Later corrections stay on screen.

@@ -1,14 +1,14 @@
 //! Masks from files of annotation tools, taken as corrections of the frames that they are of. Loaded on first use, with its texts.
 
-import { readAnnotations } from 'veronese/formats';
+import { type AnnotationNote, readAnnotations } from 'veronese/formats';
 import { PageError } from '../../common/errors.js';
-import { strings } from '../../common/strings.js';
+import { strings, withNotes } from '../../common/strings.js';
 import { packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
-import type { Painted } from '../../state/annotation.js';
+import type { Annotation, Prompt } from '../../state/annotation.js';
 import type { Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
@@ -57,30 +57,38 @@ export async function importMasks(files: readonly File[], store: Store, objects:
   const { tracked } = store.get();
   if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
   try {
-    const { painted, classes, left } = await masksFrom(files, tracked);
+    const imported = await masksFrom(files, tracked);
+    const { painted, prompts, classes, left, notes } = imported;
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     shown.kind('objects');
-    void objects.carrying.correct({ annotations: mapsOf(painted, tracked), notes: objects.withClasses(classes) });
-    if (left.length > 0) store.say(texts.taken(painted.size, left));
+    void objects.carrying.correct({ annotations: annotationsOf(imported, tracked), notes: objects.withClasses(classes) });
+    const taken = new Set([...painted.keys(), ...prompts.map(({ frame }) => frame)]).size;
+    const sentence = withNotes(left.length > 0 ? texts.taken(taken, left) : '', notes).trim();
+    if (sentence !== '') store.say(sentence);
   } catch (error) {
     report(store, error);
   }
 }
 
-/** Label maps of frames, without what is locked. */
-function mapsOf(painted: Imported['painted'], { frames, locked }: Tracked): Painted[] {
-  return [...painted].flatMap(([frame, all]) => {
+/** Label maps and boxes of frames, without what is locked. */
+function annotationsOf({ painted, prompts }: Imported, { frames, locked }: Tracked): Annotation[] {
+  const maps = [...painted].map(([frame, all]): Annotation => {
     const { width, height } = frames[frame]!.runs;
     return { frame, object: 0, propagate: 'both', labels: packed(all.map((label) => (locked.has(label) ? UNLABELLED : label)), width, height) };
   });
+  return [...maps, ...prompts.filter(({ object }) => !locked.has(object))];
 }
 
 interface Imported {
   /** Labels by index of the frame: numbers of objects here, and 255 where that is left open. */
   readonly painted: ReadonlyMap<number, Uint8Array>;
+  /** Boxes of objects that have no mask there. */
+  readonly prompts: readonly Prompt[];
   readonly classes: ReadonlyMap<number, string>;
   /** Frames of the files that have no masks here, by name. */
   readonly left: readonly string[];
+  /** What files were taken for, and what of them was left out. */
+  readonly notes: readonly AnnotationNote[];
 }
 
 /** Throws the package's errors, or a {@link PageError} if no frame is one of the clip's or the sizes differ. */
@@ -90,15 +98,20 @@ async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Impo
   const stems = stemsOf(tracked);
   const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems });
   const indices = new Map(stems.map((stem, index) => [keyOf(stem), index]));
-  const numbers = numbersFor(tracked);
-  const [painted, left] = [new Map<number, Uint8Array>(), [] as string[]];
-  for (const [name, frame] of found.frames) {
+  const masked = (name: string) => {
     const index = indices.get(keyOf(name)) ?? -1;
     const runs = frames[index]?.runs;
-    if (runs === undefined || spanAt(spans, index) === null) {
-      left.push(name);
+    return runs === undefined || spanAt(spans, index) === null ? null : { index, runs };
+  };
+  const numbers = numbersFor(tracked);
+  const [painted, left] = [new Map<number, Uint8Array>(), new Set<string>()];
+  for (const [name, frame] of found.frames) {
+    const here = masked(name);
+    if (here === null) {
+      left.add(name);
       continue;
     }
+    const { index, runs } = here;
     const fits = frame.width === clip.width && frame.height === clip.height;
     if (!fits) throw new PageError('frame-size-mismatch', texts.otherSize(name, frame, clip));
     const labels = resized(packed(frame.read(), clip.width, clip.height), runs);
@@ -106,9 +119,19 @@ async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Impo
     // The page stays responsive between frames.
     await new Promise((resolve) => setTimeout(resolve));
   }
-  if (painted.size === 0) throw new PageError('invalid-input', texts.none(left));
+  const prompts = found.boxes.flatMap(({ frame, object, box: [x, y, width, height] }): Prompt[] => {
+    const here = masked(frame);
+    if (here === null) return left.add(frame) && [];
+    // Masks can be smaller than frames; a box has at least a pixel of theirs.
+    const scale = here.runs.width / clip.width;
+    const [column, row] = [Math.floor(x * scale), Math.floor(y * scale)];
+    const [right, bottom] = [Math.min(Math.ceil((x + width) * scale), here.runs.width), Math.min(Math.ceil((y + height) * scale), here.runs.height)];
+    const box = [column, row, right - column, bottom - row] as const;
+    return [{ frame: here.index, object: numbers[object]!, propagate: 'both', clicks: [], box }];
+  });
+  if (painted.size === 0 && prompts.length === 0) throw new PageError('invalid-input', texts.none([...left]));
   const given = Object.entries(found.names).filter(([, name]) => name !== CLASS);
-  return { painted, left, classes: new Map(given.map(([label, name]) => [numbers[Number(label)]!, name])) };
+  return { painted, prompts, left: [...left], notes: found.notes, classes: new Map(given.map(([label, name]) => [numbers[Number(label)]!, name])) };
 }
 
 /** The number of an object here by that in a file. One that was merged goes on in the other; one that was deleted is a new object. */

@@ -108,7 +108,7 @@ export class ClipSegmenting {
       let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
       try {
         await this.#take(found, frames, masks, set);
-        if (frames.same) run = { ...run, cause: 'same' };
+        run = frames.same ? { ...run, cause: 'same' } : { ...run, notes: found.tracks().notes ?? [] };
       } catch (error) {
         if (error !== STOPPED) throw error;
         run = { phase: 'cancelled' };
