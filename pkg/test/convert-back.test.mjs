@@ -43,7 +43,7 @@ test('every format that is read back, of what convert writes', async (t) => {
   const never = { 'cvat-points': 'cvat-points.json', mot: 'mot', yolo: 'yolo', 'web-annotation': 'web-annotation.json' };
   const all = folder.path('all');
   const formats = [...Object.keys(back), ...Object.keys(never)].join();
-  await run('convert', folder.path('clip'), '--to', formats, '--tolerance', '0', '--background', '--out', all);
+  await run('convert', folder.path('clip'), '--to', formats, '--tolerance', '0', '--background', '--frame-rate', '25', '--out', all);
   for (const [name, source] of Object.entries(back)) {
     const out = folder.path(`back-${name}`);
     const [answer] = await run('convert', join(all, source), '--to', 'corrections', '--clip', folder.path('clip'), '--out', out);

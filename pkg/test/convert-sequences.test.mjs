@@ -104,8 +104,9 @@ describe('a clip', () => {
 
   test('times, where tracks.json or an option says them', async (t) => {
     const folder = temporaryFolder(t);
+    let said;
     const times = async (...args) => {
-      await converted(folder.path('clip'), '--to', 'mot,label-studio-video', ...args);
+      said = (await converted(folder.path('clip'), '--to', 'mot,label-studio-video', ...args)).notes;
       const [task] = json(folder.path('clip'), 'label-studio-video.json');
       const { duration, sequence } = task.predictions[0].result[0].value;
       const [, rate] = /frameRate=(\d+)/.exec(read(folder.path('clip'), 'mot', 'seqinfo.ini'));
@@ -113,11 +114,16 @@ describe('a clip', () => {
     };
     clipFolder(folder.path('clip'), { frameRate: 12.5 });
     assert.deepEqual(await times(), { video: 'clip', duration: 0.56, second: 0.08, rate: 13 });
+    assert.equal(said, undefined);
     assert.deepEqual(await times('--frame-rate', '10', '--video', 'boat.mp4'), { video: 'boat.mp4', duration: 0.7, second: 0.1, rate: 10 });
     clipFolder(folder.path('clip'), { timestamps: [5, 5.5, 6, 6.25, 6.5, 7.5, 8] });
     assert.deepEqual(await times('--from', '1'), { video: 'clip', duration: 3, second: 0.5, rate: 2 });
+    assert.equal(said, undefined);
     clipFolder(folder.path('clip'));
     assert.deepEqual(await times(), { video: 'clip', duration: 0.28, second: 0.04, rate: 25 });
+    const message = `the frame rate of '${folder.path('clip')}' is not known: 25 frames per second are assumed; '--frame-rate' says another`;
+    assert.deepEqual(said, [{ code: 'frame-rate-assumed', message }], 'once for all formats');
+    assert.equal((await converted(folder.path('clip'), '--to', 'coco,youtube-vis,cvat-video', '--out', folder.path('out'))).notes, undefined, 'nothing with times');
   });
 
   test('frames of a video, which are no files, are called what their labels are', async (t) => {

@@ -2,25 +2,36 @@
 
 import { type Stats, statSync } from 'node:fs';
 import { join } from 'node:path';
+import type { Note } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ConvertCommand } from './arguments.js';
 import { openBatch, pairFolders } from './batch-folder.js';
 import { LABELS, openClip, TRACKS } from './clip-folder.js';
+import { rateOf, USUAL_RATE } from '../formats/frames.js';
 import type { OutputFile } from './files.js';
 import { FORMATS, isFormatName, type Masks } from './formats.js';
+import type { Io } from './io.js';
 import type { Output } from './output.js';
 import { readPair } from './pair-folder.js';
 import { SEQUENCE_FORMATS } from './sequence-formats.js';
+import { note } from './terminal.js';
 
 /** Writes the files; returns one line of JSON that names them. */
-export async function convert(command: ConvertCommand, output: Output): Promise<string> {
+export async function convert(command: ConvertCommand, output: Output, io: Io): Promise<string> {
   const kind = kindOf(command.folder);
   checkOptions(command, kind);
   const written = kind === 'pair' ? await convertPair(command, output) : await convertSequence(command, kind, output);
+  for (const each of written.notes ?? []) note(io, each);
   return `${JSON.stringify({ version: 1, folder: output.folder, ...written })}\n`;
 }
 
 type Kind = 'pair' | 'batch' | 'clip';
+
+interface Written {
+  files: string[];
+  frames?: number;
+  notes?: Note[];
+}
 
 /** Which command the folder is of; one that is of none is taken for a pair's, whose error names what is missing. */
 function kindOf(folder: string): Kind {
@@ -67,7 +78,7 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
   }
 }
 
-async function convertPair(command: ConvertCommand, output: Output): Promise<{ files: string[] }> {
+async function convertPair(command: ConvertCommand, output: Output): Promise<Written> {
   const { folder, to, grouped, image, background, tolerance } = command;
   const { labels, width, height, motions, ...pair } = await readPair(folder, grouped);
   const names = pair.grouped && { names: Object.fromEntries(motions.map(({ label }) => [label, `group-${label}`])) };
@@ -78,7 +89,7 @@ async function convertPair(command: ConvertCommand, output: Output): Promise<{ f
   return { files: files.map(({ name }) => name) };
 }
 
-async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', output: Output) {
+async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', output: Output): Promise<Written> {
   const { folder, to, range, background, grouped, frameRate, shapes = 'polygon', tolerance, video } = command;
   const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
   // Names that depend on frames are checked when they are written.
@@ -87,5 +98,7 @@ async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', 
   const files = await output.stage(async (write) => {
     for (const name of to) await SEQUENCE_FORMATS[name].convert(sequence, settings, write);
   });
-  return { files, frames: sequence.count };
+  const isAssumed = to.some((name) => SEQUENCE_FORMATS[name].timed) && rateOf(sequence.meta) === undefined;
+  const message = `the frame rate of '${folder}' is not known: ${USUAL_RATE} frames per second are assumed; '--frame-rate' says another`;
+  return { files, frames: sequence.count, ...(isAssumed && { notes: [{ code: 'frame-rate-assumed', message }] }) };
 }

@@ -38,7 +38,7 @@ async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, 
   const outputIn = (folder: string, { force }: { force: boolean }) => new Output(folder, { force, signal: io.signal });
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
-  if (command.name === 'convert') return (await import('./convert.js')).convert(command, outputIn(command.out ?? command.folder, command));
+  if (command.name === 'convert') return (await import('./convert.js')).convert(command, outputIn(command.out ?? command.folder, command), io);
   if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command), io);
   if (command.name === 'pair') return pair(command, command.out === undefined ? undefined : outputIn(command.out, command), io);
   return jsonLine((await threads(1).run({ kind: 'points', file: command.file, options: command.options })).report);

@@ -24,12 +24,15 @@ interface SequenceFormat {
   files: readonly string[];
   /** Whether a label must be the same object in all frames. */
   tracks: boolean;
+  /** Whether files say when frames are, or how many there are in a second. */
+  timed?: boolean;
 }
 
 type Files = Pick<SequenceFormat, 'convert' | 'files'>;
 
 const images = (files: Files): SequenceFormat => ({ ...files, tracks: false });
 const tracks = (files: Files): SequenceFormat => ({ ...files, tracks: true });
+const timed = (files: Files): SequenceFormat => ({ ...files, tracks: true, timed: true });
 
 /** One file of all frames. */
 function whole(name: string, encode: (sequence: Sequence, settings: SequenceSettings) => Promise<Content | object>): Files {
@@ -146,13 +149,13 @@ export const SEQUENCE_FORMATS = {
   ),
   'cvat-points': images(list('cvat-points.json', (all, _, frame) => formats.encodeCvatPoints(...all).map((shape) => ({ ...shape, frame })))),
   'cvat-mots': tracks(whole('cvat-mots.zip', (frames) => formats.encodeCvatMots(frames, frames.meta))),
-  mots: tracks(motFolder('mots', (frames) => formats.encodeMots(frames, frames.meta))),
-  mot: tracks(motFolder('mot', (frames) => formats.encodeMotChallenge(frames, frames.meta))),
+  mots: timed(motFolder('mots', (frames) => formats.encodeMots(frames, frames.meta))),
+  mot: timed(motFolder('mot', (frames) => formats.encodeMotChallenge(frames, frames.meta))),
   'label-studio': images(list('label-studio.json', (all) => [formats.encodeLabelStudio(...all, { shape: 'brush' })])),
   'label-studio-polygon': images(
     list('label-studio-polygon.json', (all, { tolerance }) => [formats.encodeLabelStudio(...all, { shape: 'polygon', tolerance })]),
   ),
-  'label-studio-video': tracks(
+  'label-studio-video': timed(
     whole('label-studio-video.json', async (frames, settings) => [await formats.encodeLabelStudioVideo(frames, videoMeta(frames, settings))]),
   ),
   labelme: images(each(({ stem }) => `labelme/${stem}.json`, (all) => formats.encodeLabelMe(...all, { shape: 'mask' }))),

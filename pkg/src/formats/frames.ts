@@ -44,7 +44,7 @@ export interface Gathering<Document> {
 type Start<Document> = () => { add: (frame: LabelFrame) => void; finish: () => Document };
 
 /** Frames per second where none are given and a format has to have them. */
-const USUAL_RATE = 25;
+export const USUAL_RATE = 25;
 
 /**
  * The document of all frames. Throws, or rejects with, `invalid-input` where there is none or one is no frame, and
@@ -122,19 +122,21 @@ function noFrames(): VeroneseError {
 function checkedClip(meta: unknown): Clip {
   const known = checkedMeta(meta, ['clip', 'frameRate', 'timestamps', 'tracked']);
   return reading(() => {
-    const { clip = 'clip', frameRate, timestamps, tracked = false } = (meta ?? {}) as ClipMeta;
+    const given = (meta ?? {}) as ClipMeta;
+    const { clip = 'clip', frameRate, timestamps, tracked = false } = given;
     if (typeof clip !== 'string') throw invalidInput('clip must be text, a name');
     if (typeof tracked !== 'boolean') throw invalidInput('tracked must be true or false');
     if (frameRate !== undefined && !(isFinite(frameRate) && frameRate > 0)) throw invalidInput('frameRate must be a number above 0');
     if (timestamps !== undefined && !isRising(timestamps)) throw invalidInput('timestamps must be numbers, none below the one before it');
-    const rate = frameRate ?? rateOf(timestamps ?? []) ?? USUAL_RATE;
+    const rate = rateOf(given) ?? USUAL_RATE;
     const time = (index: number) => timestamps?.[index] ?? index / rate;
     return { ...known, name: clip, tracked, rate, times: timestamps?.length || undefined, time, duration: (length) => (timestamps ? time(length - 1) - time(0) + 1 / rate : length / rate) };
   });
 }
 
-/** The mean number of frames per second. */
-function rateOf(timestamps: readonly number[]): number | undefined {
+/** The number of frames per second, the mean where only times are given. */
+export function rateOf({ frameRate, timestamps = [] }: Pick<ClipMeta, 'frameRate' | 'timestamps'>): number | undefined {
+  if (frameRate !== undefined) return frameRate;
   const [first, last] = [timestamps[0], timestamps.at(-1)];
   const rate = (timestamps.length - 1) / ((last ?? 0) - (first ?? 0));
   return isFrameRate(rate) ? rate : undefined;

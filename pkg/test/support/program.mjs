@@ -34,9 +34,11 @@ export async function veronese(args, { stdin = '', onLine } = {}) {
 /** The line of `veronese convert` for these arguments, which has to work. */
 export async function converted(...args) {
   const { code, stdout, stderr } = await veronese(['convert', ...args]);
-  assert.deepEqual([code, stderr], [0, '']);
+  assert.equal(code, 0, stderr);
   assert.match(stdout, /^\{.*\}\n$/, 'one line');
-  return JSON.parse(stdout);
+  const answer = JSON.parse(stdout);
+  assert.equal(stderr, (answer.notes ?? []).map(({ message }) => `veronese: note: ${message}\n`).join(''), 'what the answer says, and nothing else');
+  return answer;
 }
 
 /** `veronese convert` ends with this error, prints nothing else, and leaves everything below `folder` as it is. */
