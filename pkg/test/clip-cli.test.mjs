@@ -256,12 +256,33 @@ describe('veronese clip VIDEO', () => {
     });
   }
 
-  test('says of a video that it is HDR, and reads it', { skip }, async (t) => {
-    const { file, out } = video(t, 'a.mkv', '-vf', 'format=yuv420p10le,setparams=color_primaries=bt2020:color_trc=smpte2084:colorspace=bt2020nc', '-c:v', 'ffv1');
-    const { code, stderr } = await veronese(['clip', '--quality', 'fast', file, '--out', out]);
-    assert.equal(code, 0, stderr);
-    assert.match(stderr, /^veronese: note: '.*a\.mkv' is HDR \(PQ\): [^\n]+\n$/);
-    assert.equal(tracksOf(out).notes[0].code, 'video-hdr');
+  const ODD = {
+    'is HDR of PQ': ['video-hdr', /'.*a\.mkv' is HDR \(PQ\): /, 'format=yuv420p10le,setparams=color_primaries=bt2020:color_trc=smpte2084:colorspace=bt2020nc'],
+    'is HDR of HLG': ['video-hdr', /'.*a\.mkv' is HDR \(HLG\): /, 'format=yuv420p10le,setparams=color_primaries=bt2020:color_trc=arib-std-b67:colorspace=bt2020nc'],
+    'has other pixels than squares': ['video-aspect', /the pixels of '.*a\.mkv' are no squares but 16:11: /, 'format=yuv420p,setsar=16/11'],
+  };
+  for (const [kind, [noteCode, sentence, filter]] of Object.entries(ODD)) {
+    test(`says of a video that it ${kind}, and reads it`, { skip }, async (t) => {
+      const { file, out } = video(t, 'a.mkv', '-vf', filter, '-c:v', 'ffv1');
+      for (const name of ['clip', 'video']) {
+        const { code, stderr } = await veronese([name, '--quality', 'fast', file, '--out', `${out}-${name}`]);
+        assert.equal(code, 0, stderr);
+        assert.match(stderr, new RegExp(`^veronese: note: ${sentence.source}[^\\n]+\\n$`));
+      }
+      const { notes, objects, width, height } = tracksOf(`${out}-clip`);
+      assert.deepEqual([notes.map(({ code }) => code), objects.length, width, height], [[noteCode], 1, 64, 48]);
+    });
+  }
+
+  test('frames stand as they are shown', { skip }, async (t) => {
+    const { file, out, path } = video(t, 'a.mp4', '-c:v', 'mpeg4', '-q:v', '1');
+    const turned = path('turned.mp4');
+    // From 6 on by an option; before, by a tag. One of them is refused.
+    const ways = [['-display_rotation', '90', '-i', file], ['-i', file, '-metadata:s:v', 'rotate=270']];
+    assert.ok(ways.some((way) => spawnSync('ffmpeg', ['-v', 'error', '-y', ...way, '-c', 'copy', turned]).status === 0));
+    await run([turned, '--out', out]);
+    const { width, height, objects } = tracksOf(out);
+    assert.deepEqual([width, height, objects.length], [48, 64, 1]);
   });
 
   test('the rate and the times of the frames are in tracks.json and in what is converted', { skip }, async (t) => {

@@ -11,7 +11,7 @@ import { jsonLine, type Report } from './pair.js';
 import { checkPairs, writePair } from './store.js';
 import { complain, note, print, ProgressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
-import { videoFrames } from './video.js';
+import { notesOnVideo, videoFrames, type VideoInfo } from './video.js';
 import type { PairTask, TaskResult } from './work.js';
 
 interface Pair {
@@ -37,7 +37,8 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
     output.removeLeftovers();
   }
 
-  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' }, io);
+  const about: VideoInfo = { times: [] };
+  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' }, io, about);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
   const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
@@ -68,6 +69,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   } finally {
     output?.discard();
     bar.clear();
+    for (const each of command.name === 'video' ? notesOnVideo(command.file, about) : []) note(io, each);
     for (const failure of failures) complain(io, failure);
   }
   if (failures.length === 0) return;

@@ -12,7 +12,7 @@ import { findFrames, isVideo, readList } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
 import { decoded, narrowRange, type Range, rangeNote } from './pair.js';
-import { timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
+import { notesOnVideo, timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */
 interface Seen extends FrameFile {
@@ -174,7 +174,6 @@ async function framesOfVideo(video: Video, io: Io): Promise<ClipFrames> {
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
   const reader = new VideoReader({ ...video, quiet: true }, io);
-  const notes = about.light ? [{ code: 'video-hdr', message: `'${file}' is HDR (${about.light}): its brightness is taken as that of a usual video, without tone mapping` }] : [];
-  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), times: timesOf(about, files.length, every), notes };
+  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), times: timesOf(about, files.length, every), notes: notesOnVideo(file, about) };
   return new ClipFrames(files, [file], source);
 }

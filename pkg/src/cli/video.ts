@@ -6,6 +6,7 @@ import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { createInterface } from 'node:readline';
 import { promisify } from 'node:util';
+import type { Note } from '../../types/index.js';
 import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { checkName, type Frame } from './frames.js';
@@ -37,6 +38,8 @@ export interface VideoInfo {
   frameRate?: number;
   /** How brightness is coded, where it is not the usual way. */
   light?: string;
+  /** Width to height of a pixel, where it is no square. */
+  aspect?: string;
 }
 
 /** Codes of brightness that go beyond that of a usual screen, as ffmpeg calls them. */
@@ -56,6 +59,14 @@ export function timesOf({ times, frameRate }: VideoInfo, count: number, every: n
   return { frameRate: Number(((count - 1) / last).toFixed(6)), timestamps };
 }
 
+/** What is assumed of the video. */
+export function notesOnVideo(file: string, { light, aspect }: VideoInfo): Note[] {
+  const notes: Note[] = [];
+  if (light) notes.push({ code: 'video-hdr', message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping` });
+  if (aspect) notes.push({ code: 'video-aspect', message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file` });
+  return notes;
+}
+
 /** Takes down what a line of ffmpeg says of the video. */
 function note(about: VideoInfo, line: string): void {
   const [, time] = /\bn: *\d+ pts: *\S+ pts_time: *(\S+)/.exec(line) ?? [];
@@ -66,6 +77,9 @@ function note(about: VideoInfo, line: string): void {
   if (isFrameRate(rate)) about.frameRate = rate;
   const light = Object.keys(LIGHT).find((name) => line.includes(name));
   if (light !== undefined) about.light = LIGHT[light] as string;
+  // The last is that of the container, which goes before that of the pictures.
+  const [, aspect] = /.*\bSAR ([1-9]\d*:[1-9]\d*)/.exec(line) ?? [];
+  if (aspect !== undefined && aspect !== '1:1') about.aspect = aspect;
 }
 
 /**
