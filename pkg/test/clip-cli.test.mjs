@@ -319,4 +319,15 @@ describe('veronese clip VIDEO', () => {
       assert.equal(lines.length, COUNT + 1);
     });
   }
+
+  const canWrite = !skip && /libwebp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-encoders']).stdout);
+  const canRead = !skip && /webp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-demuxers']).stdout);
+  test('an animated WebP is a clip, where ffmpeg reads it; elsewhere an error says what to do', { skip: skip || (!canWrite && 'this ffmpeg writes no WebP') }, async (t) => {
+    const { file, out } = video(t, 'a.webp', '-c:v', 'libwebp_anim', '-lossless', '1');
+    if (canRead) assert.equal((await run([file, '--out', out])).lines.length, COUNT + 1);
+    else {
+      const { stderr } = await fails([file, '--out', out], 'unreadable-video');
+      assert.match(stderr, /a\.webp' cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file \(.+\)$/m);
+    }
+  });
 });

@@ -117,7 +117,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
       number += every;
     }
     const problem = await ended;
-    if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(said) ?? problem}`);
+    if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(said, file) ?? problem}`);
     const damage = lastLine(said) ?? (await missingEnd(file, status.size));
     if (damage === undefined || (allowDamaged && quiet)) return;
     const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
@@ -220,8 +220,10 @@ async function framesAsTheyAre(): Promise<string[]> {
 }
 
 /** The message of ffmpeg when it ends with an error, as the end of a sentence that begins with the file. */
-function reasonIn(said: string): string | undefined {
+function reasonIn(said: string, file: string): string | undefined {
   if (/matches no streams/.test(said)) return 'has no pictures: there is no video stream in it';
+  // Versions that read WebP read no animated ones at first.
+  if (/\.webp$/i.test(file)) return `cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file (${lastLine(said)})`;
   const line = lastLine(said);
   return line && `cannot be read: ${line}`;
 }
