@@ -32,6 +32,10 @@ const IMAGES = {
   'labelme-polygon': (...all) => [file('labelme.json', formats.encodeLabelMe(...all, { shape: 'polygon' }))],
   'label-studio': (...all) => [file('label-studio.json', [formats.encodeLabelStudio(...all)])],
   supervisely: (...all) => [file('ann/first.png.json', formats.encodeSupervisely(...all))],
+  yolo: (labels, width, height, meta) => {
+    const { text, names } = formats.encodeYolo(labels, width, height, meta);
+    return [file('labels/first.txt', text), file('names.txt', names.join('\n')), file('images/first.png', formats.encodeDavis(labels, width, height))];
+  },
   davis: (labels, width, height) => [file('first.png', formats.encodeDavis(labels, width, height))],
   veronese: (...all) => [file('veronese.json', formats.encodeVeronese(...all))],
 };
@@ -75,7 +79,7 @@ describe('one image', () => {
         const found = frames.get('first');
         assert.deepEqual([found.width, found.height], [width, height]);
         // Without numbers of their own, objects are counted in their order.
-        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'label-studio', 'supervisely'].includes(name);
+        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'label-studio', 'supervisely', 'yolo'].includes(name);
         if (name.startsWith('cvat-poly')) {
           const numbers = new Map([[0, 0], ...Object.entries(called).map(([number, name]) => [Number(name.slice(6)), Number(number)])]);
           assert.deepEqual(found.read(), ground(labels).map((label) => numbers.get(label)));
@@ -555,5 +559,60 @@ describe('what is none of that', () => {
         assert.ok(seconds < 20, `${seconds} s`);
       });
     }
+  });
+});
+
+describe('YOLO', () => {
+  const SQUARE = '0.25 0.25 0.75 0.25 0.75 0.75 0.25 0.75';
+  const size = { width: 8, height: 4 };
+  /** Columns 2 to 5 of rows 1 and 2. */
+  const square = (number) => Array.from({ length: 32 }, (_, p) => (p % 8 >= 2 && p % 8 < 6 && p >= 8 && p < 24 ? number : 0));
+  const yolo = (text, ...more) => readAnnotations([file('set/labels/a.txt', text), ...more], { size });
+
+  test('outlines and boxes, with the confidence of what was found or without; a text without lines is a frame without objects', () => {
+    const { format, frames, names, boxes } = yolo(`1 ${SQUARE} 0.87\r\n0 0.25 0.5 0.5 1\n0 0.5 0.5 1 1 0.4\n`, file('set/labels/b.txt', '\n'), file('set/notes.txt', ''));
+    assert.equal(format, 'yolo');
+    assert.deepEqual([...frames.keys()], ['a', 'b']);
+    assert.deepEqual([...frames.get('b').read()], Array(32).fill(0));
+    assert.deepEqual(names, { 1: 'class-1', 2: 'class-0', 3: 'class-0' });
+    assert.deepEqual(boxes, [{ frame: 'a', object: 2, box: [0, 0, 4, 4] }, { frame: 'a', object: 3, box: [0, 0, 8, 4] }]);
+    const open = square(1).map((label, p) => label || (p >= 0 ? 255 : 0));
+    assert.deepEqual([...frames.get('a').read()], open);
+  });
+
+  const LISTS = {
+    'by number': ['set/data.yaml', '# classes\nnc: 2\nnames:\n  0: person\n\n  1: "a \\"b\\": c" # c\ntrain: x\n'],
+    'as a list': ['data.yaml', "names:\n- person\n- 'a \"b\": c'\nnc: 2\n"],
+    'in brackets': ['set/data.yml', `path: ../set\r\nnames: ['person', 'a "b": c']\r\n`],
+    'over lines in brackets': ['set/data.yaml', `names: [\n  person,\n  'a "b": c',\n]\n`],
+    'in braces': ['set/data.yaml', `names: {1: 'a "b": c', 0: person}`],
+    'in a text': ['set/classes.txt', 'person\na "b": c\n'],
+  };
+  for (const [how, list] of Object.entries(LISTS)) {
+    test(`names of classes ${how}`, () => {
+      const other = file('other/data.yaml', 'names: [x, y]');
+      assert.deepEqual(yolo(`1 ${SQUARE}\n`, file(...list), other).names, { 1: 'a "b": c' });
+    });
+  }
+
+  test('the size is that of the image with the name, PNG or JPEG; of several that of the folder of images', () => {
+    const png = formats.encodeDavis(new Uint8Array(64), 16, 4);
+    const jpeg = Uint8Array.of(0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xff, 0xc2, 0, 11, 8, 0, 8, 0, 4, 1, 1, 0x11, 0);
+    const sizeOf = (...more) => {
+      const { width, height } = yolo(`0 ${SQUARE}`, ...more).frames.get('a');
+      return [width, height];
+    };
+    assert.deepEqual(sizeOf(), [8, 4]);
+    assert.deepEqual(sizeOf(file('set/images/a.png', png)), [16, 4]);
+    assert.deepEqual(sizeOf(file('elsewhere/A.JPG', jpeg)), [4, 8]);
+    assert.deepEqual(sizeOf(file('masks/a.png', png), file('set/images/a.jpg', jpeg)), [4, 8]);
+    const alone = () => readAnnotations([file('set/labels/a.txt', `0 ${SQUARE}`), file('b.png', png)]);
+    assert.throws(alone, { code: 'invalid-input', message: "'set/labels/a.txt': it does not say the size of its image: give that as PNG or JPEG as well, or the clip (--clip)" });
+  });
+
+  test('what is wrong is named by its line', () => {
+    const wrong = { [`0 ${SQUARE}\n0 0.1 0.2 0.3`]: /line 2: it must have/, [`0 ${SQUARE}\nx`]: /line 2: it must/, '0 10 10 90 10 90 90': /line 1: its numbers are no shares/ };
+    for (const [text, message] of Object.entries(wrong)) assert.throws(() => yolo(text), { code: 'invalid-input', message: new RegExp(`^'set/labels/a.txt': ${message.source}`) });
+    assert.throws(() => readAnnotations([file('a.txt', `0 ${SQUARE}`)], { size: 5 }), { code: 'invalid-option' });
   });
 });

@@ -37,6 +37,7 @@ const FILES = {
   'cvat-video': formats.encodeCvatVideo(frames, clip),
   'cvat-boxes': formats.encodeCvatVideo(frames, clip, { shape: 'box' }),
   mots: formats.encodeMots(frames, clip).gt,
+  yolo: `${formats.encodeYolo(...all).text}1 0.5 0.5 0.25 0.5\n`,
   'cvat-mots': formats.encodeCvatMots(frames, clip),
   davis: formats.encodeDavis(labels, width, height),
   ...Object.fromEntries(Object.entries(DOCUMENTS).map(([name, document]) => [name, JSON.stringify(document)])),
@@ -52,7 +53,7 @@ const bytesOf = (content) => (typeof content === 'string' ? new TextEncoder().en
 function outcome(content, what) {
   const started = process.cpuUsage();
   try {
-    const { frames, boxes, notes } = formats.readAnnotations([{ name: 'folder/the.file', bytes: bytesOf(content) }]);
+    const { frames, boxes, notes } = formats.readAnnotations([{ name: 'folder/the.file', bytes: bytesOf(content) }], { size: { width, height } });
     for (const frame of frames.values()) assert.equal(frame.read().length, frame.width * frame.height, what);
     for (const { message } of notes) assert.match(message, /the\.file/);
     assert.ok(frames.size + boxes.length > 0 || notes.length > 0, `${what}: nothing, and no word`);

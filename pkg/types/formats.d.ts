@@ -382,7 +382,7 @@ export interface AnnotationFile {
 }
 
 /** The formats of {@link readAnnotations}: `cvat` is of images or of a video, `png` are masks of any kind, each file a frame. */
-export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'label-studio' | 'datumaro' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese';
+export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'label-studio' | 'datumaro' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese' | 'yolo';
 
 /** One frame that was annotated. */
 export interface AnnotatedFrame {
@@ -415,7 +415,8 @@ export interface AnnotationNote {
 /**
  * Reads masks from files of annotation tools, in the formats that the encoders write: corrections for `segmentClip`. The format is
  * recognised by the content; pictures beside other annotations are ignored. `frames` are the names of a clip's frames in their order,
- * without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … Throws `invalid-input`, `unreadable-image` or
+ * without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … `size` is that of its frames, for YOLO without
+ * the images. Throws `invalid-input`, `unreadable-image` or
  * `frame-size-mismatch` with the name of the file.
  */
-export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[] }): Annotations;
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[]; size?: { width: number; height: number } }): Annotations;

@@ -1,7 +1,7 @@
 //! Masks of annotation tools, imported into a clip as corrections of its frames.
 
 import { type Page } from '@playwright/test';
-import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe } from 'veronese/formats';
+import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeYolo } from 'veronese/formats';
 
 import { type Upload, clipFrames, clipInNode, differences, expect, give, goTo, labelsOnCanvas, openEmpty, openExport, openSegmented, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
@@ -98,6 +98,12 @@ test('boxes without masks point to objects; what is left out is said', async ({ 
   await corrected(page);
   await goTo(page, 1);
   await expect(page.locator('#lane-names button')).toContainText([/^Disc/]);
+  // YOLO's texts lack the size of their images: it is that of the clip.
+  const text = (name: string, content: string): Upload => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
+  const { text: lines, names } = encodeYolo(withBox(new Uint8Array(SIZE.width * SIZE.height), 1, 100), SIZE.width, SIZE.height, { names: { 1: 'Plate' }, labels: [1] });
+  await give(page, 'drop', [text('f02.txt', lines), text('classes.txt', names.join('\n'))]);
+  await corrected(page);
+  await expect(page.locator('#class-names option')).toHaveText(['Disc', 'Plate']);
   const labels = await labelsOnCanvas(page);
   const inside = labels.filter((_, p) => Math.hypot((p % SIZE.width) - 44, Math.floor(p / SIZE.width) - 51.4) < 18);
   expect(new Set(inside).size).toBe(1);

@@ -15,15 +15,17 @@ import type { Output } from './output.js';
 import { note } from './terminal.js';
 
 /** Of files in a folder those that can be annotations, or name their classes. */
-const POSSIBLE = /\.(json|xml|png|txt|zip)$/i;
+const POSSIBLE = /\.(json|xml|png|jpe?g|txt|ya?ml|zip)$/i;
+/** Of a JPEG the size alone is wanted, which is near its beginning, bytes. */
+const HEAD = 2 ** 18;
 
 /** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
 export async function convertBack({ source, clip }: CorrectionsCommand, output: Output, io: Io): Promise<string> {
   await output.check([EDITS]);
-  const frames = clip === undefined ? undefined : await framesOf(clip);
+  const known = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
-  for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path) });
-  const { format, frames: annotated, names, boxes, notes } = readAnnotations(files, frames && { frames });
+  for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path, /\.jpe?g$/i.test(path) ? HEAD : undefined) });
+  const { format, frames: annotated, names, boxes, notes } = readAnnotations(files, known);
   for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {
@@ -35,10 +37,11 @@ export async function convertBack({ source, clip }: CorrectionsCommand, output: 
   return `${JSON.stringify({ version: 1, folder: output.folder, format, files: written, frames: annotated.size, ...(boxes.length > 0 && { boxes: boxes.length }), ...(notes.length > 0 && { notes }) })}\n`;
 }
 
-/** The names of a clip's frames. */
-async function framesOf(folder: string): Promise<string[]> {
+/** The names of a clip's frames, and their size. */
+async function framesOf(folder: string): Promise<{ frames: string[]; size: { width: number; height: number } }> {
   const path = join(folder, TRACKS);
-  return tracksOf(await readJson(path), path).frames;
+  const { frames, width, height } = tracksOf(await readJson(path), path);
+  return { frames, size: { width, height } };
 }
 
 /** The file, or those in the folder and the folders in it, by name. */

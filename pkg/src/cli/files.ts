@@ -2,7 +2,7 @@
 
 import { createHash } from 'node:crypto';
 import { lstatSync, mkdirSync, readFileSync, type Stats, statSync } from 'node:fs';
-import { readFile, stat } from 'node:fs/promises';
+import { open, readFile, stat } from 'node:fs/promises';
 import { dirname, resolve } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
 
@@ -11,15 +11,18 @@ const LARGEST = 512 * 1024 * 1024;
 
 /**
  * Throws `file-not-found` or `unreadable-file`. Only whole files are read: a read that waits for a pipe would keep the
- * process from ending when it is told to.
+ * process from ending when it is told to. With `most`, of a larger one the beginning alone.
  */
-export async function readInput(path: string): Promise<Uint8Array> {
+export async function readInput(path: string, most = Infinity): Promise<Uint8Array> {
   try {
     const status = await stat(path);
     if (status.isDirectory()) throw new VeroneseError('unreadable-file', `'${path}' is a folder`);
     if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${path}' is a pipe or a device, not a file`);
     if (status.size > LARGEST) throw tooLarge(path);
-    return new Uint8Array(await readFile(path));
+    if (status.size <= most) return new Uint8Array(await readFile(path));
+    const file = await open(path);
+    const { buffer, bytesRead } = await file.read(new Uint8Array(most), 0, most, 0).finally(() => file.close());
+    return buffer.subarray(0, bytesRead);
   } catch (thrown) {
     if (thrown instanceof VeroneseError) throw thrown;
     const { code, message } = thrown as NodeJS.ErrnoException;

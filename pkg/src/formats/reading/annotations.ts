@@ -19,13 +19,15 @@ import { decodeVeronese } from '../veronese-json.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { type Context, isObjectNumber, isPng, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
+import { checkSize, type Context, isObjectNumber, isPng, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
 import { readDatumaro } from './datumaro.js';
 import { readLabelMe } from './labelme.js';
 import { readLabelStudio } from './label-studio.js';
 import { readMasks } from './masks.js';
 import { areMots, isMots, readMots, readMotsPng } from './mots.js';
+import { sizeOfPicture } from './pictures.js';
 import { readSupervisely } from './supervisely.js';
+import { isYolo, namesInYaml, readYolo } from './yolo.js';
 
 /** Most bytes in an archive: more than the annotations of any clip. */
 const LARGEST = 2 ** 30;
@@ -40,22 +42,22 @@ interface Recognised {
   read: (context: Context) => ReadFrame[];
 }
 
-export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[] }): Annotations {
-  const { names, sources } = reading(() => ({ names: namesOf(options), sources: [...files].map(checkedSource) }));
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[]; size?: Size }): Annotations {
+  const { clip, sources } = reading(() => ({ clip: clipOf(options), sources: [...files].map(checkedSource) }));
   const all = sources.flatMap((source) => (isArchive(source.bytes) ? naming(source.name, () => unpacked(source)) : [source]));
   // Images beside a document are the frames that it is about.
   const documents = all.flatMap((source) => (isPng(source.bytes) ? [] : naming(source.name, () => recognised(source))));
   const [first, ...others] = documents;
   if (!first && !all.some(({ bytes }) => isPng(bytes))) throw invalidInput(nothingIn(sources));
-  if (!first) return ofPictures(all, names);
+  if (!first) return ofPictures(all, clip);
   const other = others.find(({ format }) => format !== first.format);
   if (other) {
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
     throw invalidInput(sentence);
   }
   const left = new LeftOut();
-  const context = contextOf(all, names, left);
-  const frames = [first, ...others].flatMap(({ source, read }) => naming(source.name, () => read(context)));
+  const context = contextOf(all, clip, left);
+  const frames = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) => naming(source.name, () => read(context)));
   const notes = left.notes();
   if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
   const found = numbered(frames);
@@ -65,22 +67,44 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
 }
 
 /** Annotations that are pictures themselves. */
-function ofPictures(all: readonly Source[], names: readonly string[] | undefined): Annotations {
+function ofPictures(all: readonly Source[], clip: Clip): Annotations {
   const pictures = all.filter(({ bytes }) => isPng(bytes));
   if (areMots(pictures)) {
-    const context = contextOf(all, names, new LeftOut());
+    const context = contextOf(all, clip, new LeftOut());
     return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))), notes: [] };
   }
   const { frames, notes } = readMasks(pictures);
   return { format: 'png', ...numbered(frames), notes };
 }
 
+/** Texts of YOLO that say that there is nothing: those without a line, beside others. */
+function blankIn(all: readonly Source[], documents: readonly Recognised[]): Recognised[] {
+  const folders = new Set(documents.map(({ source }) => folderOf(source.name)));
+  const isBlank = ({ name, bytes }: Source) => /\.txt$/i.test(name) && folders.has(folderOf(name)) && bytes.every((byte) => BEFORE.includes(byte));
+  return all.filter(isBlank).map((source) => ({ source, format: 'yolo', read: (context) => [readYolo(source, '', context)] }));
+}
 
-function namesOf(options: unknown): readonly string[] | undefined {
-  const { frames } = entriesOf(options, ['frames']);
+interface Size {
+  width: number;
+  height: number;
+}
+
+/** What is known of the clip. */
+interface Clip {
+  names: readonly string[] | undefined;
+  size: Size | undefined;
+}
+
+function clipOf(options: unknown): Clip {
+  const { frames, size } = entriesOf(options, ['frames', 'size']);
   const isName = (name: unknown): name is string => typeof name === 'string';
-  if (frames === undefined || isListOf(frames, isName)) return frames;
-  throw invalidOption('frames', 'a list of names', frames);
+  if (frames !== undefined && !isListOf(frames, isName)) throw invalidOption('frames', 'a list of names', frames);
+  if (size !== undefined && !isObject(size)) throw invalidOption('size', 'a width and a height', size);
+  return { names: frames, size: size && checkSize(size['width'], size['height'], 'the frames') };
+}
+
+function folderOf(name: string): string {
+  return name.slice(0, name.lastIndexOf('/') + 1);
 }
 
 function checkedSource(file: unknown): Source {
@@ -105,9 +129,26 @@ class LeftOut {
   }
 }
 
-function contextOf(all: readonly Source[], names: readonly string[] | undefined, left: LeftOut): Context {
-  const folderOf = (name: string) => name.slice(0, name.lastIndexOf('/') + 1);
+function contextOf(all: readonly Source[], { names, size }: Clip, left: LeftOut): Context {
+  const lists = all.filter(({ name }) => /\.ya?ml$|(^|\/)(names|classes)\.txt$/i.test(name)).map(({ name, bytes }) => ({
+    folder: folderOf(name),
+    names: naming(name, () => (name.endsWith('.txt') ? textOf(bytes).trim().split(/\s*\n/) : namesInYaml(textOf(bytes)))),
+  }));
+  // The nearest one in a folder around the file.
+  lists.sort((a, b) => b.folder.length - a.folder.length);
+  const pictures = new Map<string, Source[]>();
+  const stem = (name: string) => keyOf(name.replace(/^.*\//s, '').replace(/\.[^.]*$/s, ''));
+  for (const picture of all) if (/\.(png|jpe?g)$/i.test(picture.name)) pictures.set(stem(picture.name), [...(pictures.get(stem(picture.name)) ?? []), picture]);
   return {
+    namesOf: (file) => lists.find(({ folder, names }) => file.startsWith(folder) && names.length > 0)?.names ?? [],
+    sizeOf(file) {
+      const folder = folderOf(file).replace(/(^|\/)labels\//, '$1images/');
+      const some = pictures.get(stem(file)) ?? [];
+      const picture = some.find(({ name }) => folderOf(name) === folder) ?? some[0];
+      const known = (picture && naming(picture.name, () => sizeOfPicture(picture.bytes))) ?? size;
+      if (known) return known;
+      throw invalidInput('it does not say the size of its image: give that as PNG or JPEG as well, or the clip (--clip)');
+    },
     nameOf(index) {
       const name = names ? names[index] : String(index).padStart(5, '0');
       if (name === undefined) throw invalidInput(`it has a frame ${index}, and the clip has ${names?.length}`);
@@ -129,7 +170,8 @@ function recognised(source: Source): Recognised[] {
   if (start === 0x3c) return [{ source, format: 'cvat', read: (context) => readCvat(textOf(bytes), name, context) }];
   if (start === 0x7b || start === 0x5b) return recognisedJson(source);
   const text = start !== undefined && start >= 0x30 && start <= 0x39 ? textOf(bytes) : '';
-  return isMots(text) ? [{ source, format: 'mots', read: (context) => readMots(source, text, context) }] : [];
+  if (isMots(text)) return [{ source, format: 'mots', read: (context) => readMots(source, text, context) }];
+  return isYolo(text) ? [{ source, format: 'yolo', read: (context) => [readYolo(source, text, context)] }] : [];
 }
 
 function recognisedJson(source: Source): Recognised[] {
@@ -169,7 +211,7 @@ function parsed(text: string): unknown {
 
 function nothingIn(files: readonly Source[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
-  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, PNG masks, veronese`;
+  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, YOLO, PNG masks, veronese`;
 }
 
 function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
@@ -245,7 +287,7 @@ function isArchive(bytes: Uint8Array): boolean {
 function unpacked({ name: archive, bytes }: Source): Source[] {
   let size = 0;
   const filter = ({ name, originalSize }: { name: string; originalSize: number }) => {
-    if (!/\.(json|xml|png|txt)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
+    if (!/\.(json|xml|png|jpe?g|txt|ya?ml)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
     size += originalSize;
     if (size > LARGEST) throw invalidInput('the archive is too large');
     return true;

@@ -44,6 +44,10 @@ export interface Context {
   nameOf: (index: number) => string;
   /** The lines of the file `labels.txt` in the same folder: the names of classes by number, from 1. */
   classesOf: (source: Source) => string[];
+  /** The names of YOLO's classes, by number, that hold for a file. */
+  namesOf: (file: string) => string[];
+  /** The size of the frame that is called as the file, where the format does not say it. */
+  sizeOf: (file: string) => { width: number; height: number };
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
   leaveOut: (file: string, kind: string) => void;
 }

@@ -34,7 +34,9 @@ function listed(names: readonly string[]): string {
 
 /** Annotations of other kinds than pictures, and what is beside them, names of classes. */
 const ANNOTATIONS = /\.(json|xml|zip)$|^gt\.txt$/i;
-const NO_PICTURES = /\.(json|xml|zip|txt)$/i;
+const NO_PICTURES = /\.(json|xml|zip|txt|ya?ml)$/i;
+/** The beginning of a text of YOLO: a class, and four numbers or more. */
+const YOLO = /^\s*\d+(\s+[\d.e+-]+){4}/;
 /** Of the header of a PNG: the place of its colour type, and that of indices into a palette. */
 const PNG = { colourType: 25, indexed: 3 };
 /** The class of objects that were given none. */
@@ -45,7 +47,10 @@ export async function areMasks(files: readonly File[], { tracked }: State): Prom
   const { project, video, images } = selectOpenable(files);
   const pictures = images.filter(({ name }) => !NO_PICTURES.test(name));
   if (tracked === null || project !== null || video !== null) return false;
-  if (pictures.length === 0) return files.some(({ name }) => ANNOTATIONS.test(name));
+  if (pictures.length === 0) {
+    const heads = files.filter(({ name }) => /\.txt$/i.test(name)).map((file) => file.slice(0, 200).text());
+    return files.some(({ name }) => ANNOTATIONS.test(name)) || (await Promise.all(heads)).some((head) => YOLO.test(head));
+  }
   const stems = new Set(stemsOf(tracked).map(keyOf));
   if (!pictures.every(({ name }) => /\.png$/i.test(name) && stems.has(keyOf(stemOf(name))))) return false;
   const [type] = new Uint8Array(await pictures[0]!.slice(PNG.colourType, PNG.colourType + 1).arrayBuffer());
@@ -96,7 +101,7 @@ async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Impo
   const { clip, frames, spans } = tracked;
   const read = async (file: File) => ({ name: pathOf(file).join('/'), bytes: new Uint8Array(await file.arrayBuffer()) });
   const stems = stemsOf(tracked);
-  const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems });
+  const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems, size: { width: clip.width, height: clip.height } });
   const indices = new Map(stems.map((stem, index) => [keyOf(stem), index]));
   const masked = (name: string) => {
     const index = indices.get(keyOf(name)) ?? -1;

@@ -1,0 +1,63 @@
+// YOLO: a text for each image, a line for each object: the number of its class, then its outline or its box, in shares of the image's sides. A
+// text without lines says that there is nothing.
+
+import { invalidInput } from '../../common/checks.js';
+import type { Canvas } from './canvas.js';
+import { type Context, frameOfShapes, known, placed, type ReadFrame, type Shape, type Source, stemOf, Unnumbered } from './frame.js';
+
+/** How far outside a share may be: outlines are rounded, and moved. */
+const SLACK = 0.01;
+
+/** Whether text begins as YOLO's labels do. */
+export function isYolo(text: string): boolean {
+  return lineOf(/\S.*/.exec(text)?.[0] ?? '') !== undefined;
+}
+
+export function readYolo({ name: file }: Source, text: string, context: Context): ReadFrame {
+  const name = stemOf(file);
+  const { width, height } = context.sizeOf(file);
+  const names = context.namesOf(file);
+  const unnumbered = new Unnumbered();
+  const shapes = text.split('\n').flatMap((written, at): Shape[] => {
+    if (written.trim() === '') return [];
+    return [
+      placed(`line ${at + 1}`, () => {
+        const line = lineOf(written);
+        if (!line) throw invalidInput('it must have the number of a class, then a box, or three vertices or more');
+        if (line.shares.some((share) => share < -SLACK || share > 1 + SLACK)) throw invalidInput('its numbers are no shares of the sides, from 0 to 1');
+        const called = names[line.class] ?? `class-${line.class}`;
+        const places = line.shares.map((share, k) => share * (k % 2 === 0 ? width : height)) as [number, number, number, number];
+        return { ...known(unnumbered.keyOf(called), undefined, called), ...drawing(places) };
+      }),
+    ];
+  });
+  return frameOfShapes({ name, file, width, height }, shapes, context);
+}
+
+function drawing(places: readonly number[]): { draw: (canvas: Canvas, label: number) => void } | { box: number[] } {
+  if (places.length > 4) return { draw: (canvas, label) => canvas.polygon(places, label) };
+  const [x, y, width, height] = places as [number, number, number, number];
+  return { box: [x - width / 2, y - height / 2, width, height] };
+}
+
+/** A class, and columns and rows of vertices, or the middle, width and height of a box. Programs that find objects write their confidence behind it. */
+function lineOf(text: string): { class: number; shares: number[] } | undefined {
+  const [number = '', ...rest] = text.trim().split(/\s+/);
+  if (!/^\d+$/.test(number) || rest.length < 4 || !rest.every((share) => Number.isFinite(Number(share)))) return undefined;
+  return { class: Number(number), shares: rest.slice(0, rest.length - (rest.length % 2)).map(Number) };
+}
+
+/** The names of classes in a `data.yaml`, by number: a list or a map, over lines or within brackets. */
+export function namesInYaml(text: string): string[] {
+  const [, within = ''] = /^names[ \t]*:((?:.*[[{][^\]}]*)|(?:.*\n(?=[ \t\r\n#-]|\d+:))*.*)/m.exec(text) ?? [];
+  const isFlow = /^\s*[[{]/.test(within);
+  const names: string[] = [];
+  const entry = isFlow ? /(?:(\d+)\s*:\s*)?("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s,[{][^,]*)/g : /^[ \t]*(?:-|(\d+)[ \t]*:)[ \t]*("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s#][^#\r\n]*)/gm;
+  for (const [, number = names.length, name = ''] of within.matchAll(entry)) names[Number(number)] = plain(name.trim());
+  return names;
+}
+
+function plain(name: string): string {
+  const [quote] = name;
+  return quote === '"' || quote === "'" ? name.slice(1, -1).replace(quote === '"' ? /\\(.)/g : /'(')/g, '$1') : name;
+}
