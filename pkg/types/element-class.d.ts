@@ -54,7 +54,7 @@ export type ElementPrompt =
  * segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
  *
  * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
- * `detail`. They do not bubble.
+ * `detail`. They do not bubble. Where nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
  *
  * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
  * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer.

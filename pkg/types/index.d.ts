@@ -203,7 +203,8 @@ export interface PointMeasurements {
 /**
  * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: the next frame is asked for while one is worked
  * on, and may reuse its buffer. `{ length, read(index) }` is a whole clip: each frame is read for its pairs, then for its labels, and
- * in any order for corrections, and must be the same each time. An array is a stream unless an option needs a whole clip.
+ * in any order for corrections, and must be the same each time; some are read once more to say why nothing was found. An array is a stream
+ * unless an option needs a whole clip.
  */
 export type ClipSource =
   | Iterable<Pixels | Promise<Pixels>>
