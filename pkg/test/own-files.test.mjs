@@ -190,7 +190,7 @@ describe('convert', () => {
   test('replaces files that it wrote, and no others', async (t) => {
     const folder = temporaryFolder(t);
     const clip = folder.path('clip');
-    clipFolder(clip);
+    clipFolder(clip, { frameRate: 25 });
     for (const [format, name] of Object.entries(names)) {
       const args = ['convert', clip, '--to', `veronese,${format}`];
       const place = join(clip, name);
