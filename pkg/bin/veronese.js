@@ -31,6 +31,6 @@ process.exitCode = await main(process.argv.slice(2), {
     return process.stdin;
   },
   stdout,
-  stderr: { isTTY: stderr.isTTY, write: say },
+  stderr: { isTTY: stderr.isTTY, hasColors: () => stderr.hasColors?.(), write: say },
   signal: stopping.signal,
 });

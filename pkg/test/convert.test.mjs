@@ -96,7 +96,7 @@ describe('veronese convert', () => {
     await refused([out], 'usage', /needs '--to FORMATS'/);
     await refused(['--to', 'coco'], 'usage', /takes one folder/);
     await refused([out, '--to', 'coco', '--overlay'], 'wrong-usage', /has no option '--overlay'/);
-    await refused([out, '--to', 'coco,xyz'], 'invalid-option', /not 'coco,xyz'/);
+    await refused([out, '--to', 'coco,xyz'], 'invalid-option', /there is no format 'xyz'/);
     await refused([out, '--to', 'toString'], 'invalid-option', /toString/);
     await refused([folder.path(), '--to', 'coco'], 'file-not-found', /labels\.png/);
     await refused([out, '--to', 'coco', '--out', join(out, 'result.json')], 'write-failed', /it is a file/);

@@ -129,7 +129,7 @@ function pictureProblem(target) {
 function linkProblem(target) {
   const other = /^\.\.\/([\w-]+)\/(?:#[\w-]+)?$/.exec(target)?.[1];
   if (other) return all.some(({ name }) => name === other) ? undefined : 'there is no such page';
-  if (/^\.\.\/\.\.\/(?:app|method|reference|comparison|changes)\/$/.test(target)) return undefined;
+  if (/^\.\.\/\.\.\/(?:app|method|reference(?:\/command-line)?|comparison|changes)\/$/.test(target)) return undefined;
   if (target.startsWith(`${identity.repository}/`)) {
     const [, path] = /\/(?:blob|tree|raw)\/main\/([^#]+)/.exec(target) ?? [];
     if (path) return existsSync(join(root, path)) ? undefined : 'there is no such file in the repository';

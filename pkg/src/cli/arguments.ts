@@ -5,154 +5,15 @@ import { parseArgs } from 'node:util';
 import { FRAME_RATES, LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
-import { isFormatName } from './formats.js';
+import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf, SHELLS } from './commands.js';
 import type { Range } from './sequence.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
 /** Largest look-ahead, as in the core. */
 const LONGEST_LOOK_AHEAD = 8;
 
-/** Names of the formats, wrapped to fit a terminal. */
-const FORMAT_NAMES = wrapped(Object.keys(SEQUENCE_FORMATS), 80, '\n' + ' '.repeat(41));
-/** Those that are not for all folders. */
-const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
-  Object.entries(SEQUENCE_FORMATS)
-    .flatMap(([name, { tracks }]) => (tracks === ofTracks && isFormatName(name) === ofPair ? [name] : []))
-    .join(', ');
-
-export const HELP = `veronese segments two video frames by motion: how many motions there are, what each one is, and which pixels follow it.
-
-  veronese pair FIRST SECOND [options]   segment two frames: PNG, JPEG, WebP, BMP or PNM
-      --motions auto|1..10   number of motions (default: auto)
-      --quality fast|best    speed or accuracy (default: best)
-      --grouped              write groups instead of motions to labels.png and mask-K.png; one rigid background is one group
-      --mark-unknown         use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous
-      --out DIR              write labels.png, result.json and mask-K.png to DIR
-      --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
-      --overlay              also write overlay.png: the first frame with each motion in its colour
-      --allow-damaged        take a JPEG file of which a part is missing as it is, with a note; otherwise that is an error
-      --force                overwrite files in DIR that are not of this program; without it they are an error
-
-  veronese batch FRAMES... [options]     segment every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
-      --list FILE            read frames from FILE, one path per line (- reads standard input)
-      --every K              use only every K-th frame (default: 1)
-      --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
-      --jobs N               number of pairs processed at once (default: the number of processors)
-      --shard I/N            process only part I of N, to share the pairs between N machines
-      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay, --allow-damaged, --force as for pair
-
-  veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
-      options as for batch, without --list
-      --allow-damaged        take what can be decoded of a damaged video, with a warning; otherwise that is an error
-
-  veronese clip FRAMES... | VIDEO --out DIR [options]
-                                         follow what moves through a clip: objects keep their number; FRAMES as for batch, VIDEO as for video
-      --list FILE            read frames from FILE, one path per line (- reads standard input)
-      --every K              use only every K-th frame (default: 1)
-      --motions auto|1..10   number of motions in each pair of frames (default: auto)
-      --quality fast|best    speed or accuracy (default: best)
-      --look-ahead N         let each frame wait for N others, 0 to 8 (default: the whole clip)
-      --masks DIR            masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background,
-                             255: nothing said; alone it is the object), a colour for each object on black, or what is not transparent;
-                             DIR/3/NAME.png for object 3 alone; and DIR/edits.json
-      --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
-                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
-                             "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
-      --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
-      --jobs N               number of frames compared at once (default: the number of processors); the files are the same
-      --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
-      --overlay              also write overlay/NAME.png: the frames with each object in its colour
-      --allow-damaged        as for pair and video
-      --force                as for pair
-
-  veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
-                                         ${FORMAT_NAMES}
-                                         only of clip: ${formatsFor(false, true)}
-                                         only of pair and clip: ${formatsFor(true, true)}
-                                         only of batch and clip: ${formatsFor(false, false)}
-      --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0.5); 0 follows its pixels
-      --background           convert the background, label 0, as well
-      --out DIR              output folder (default: the input folder)
-      --force                as for pair
-    of pair and batch:
-      --grouped              groups instead of motions
-    of pair:
-      --image NAME           file name of the image that the masks belong to (default: first.png)
-    of batch and clip, where images are named as the frames are:
-      --from N, --until M    convert only frames N to M, both inclusive, counted from 0 (default: all)
-    of clip:
-      --shapes polygon|box   shapes in cvat-video (default: polygon)
-      --video NAME           file name of the video, for cvat-video and label-studio-video (default: the name of DIR)
-      --frame-rate N         frames per second, for formats that need it (default: the clip's, else 25)
-
-  veronese convert SOURCE --to corrections --out DIR
-                                         read masks back, for --corrections of clip: NAME.png for each annotated frame, and edits.json; SOURCE
-                                         is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS,
-                                         Supervisely, PNG masks
-      --clip DIR             the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)
-      --force                as for pair
-
-  veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
-      --motions auto|1..10   number of motions (default: auto)
-      --method paper|best    the paper's own algorithm, or ours (default: best)
-      --seed N               random seed (default: 1)
-
-  veronese --help | --version
-
-Prints one line of JSON on stdout; batch and video print one line per pair, clip one line per frame and a last one.
-Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
-`;
-
-/** The format of `convert` that reads masks back. */
-const BACK = 'corrections';
-
-const OPTIONS = {
-  help: { type: 'boolean', short: 'h' },
-  version: { type: 'boolean' },
-  motions: { type: 'string', default: 'auto' },
-  quality: { type: 'string', default: 'best' },
-  method: { type: 'string', default: 'best' },
-  grouped: { type: 'boolean', default: false },
-  'mark-unknown': { type: 'boolean', default: false },
-  confidence: { type: 'boolean', default: false },
-  seed: { type: 'string', default: '1' },
-  out: { type: 'string' },
-  overlay: { type: 'boolean', default: false },
-  to: { type: 'string' },
-  image: { type: 'string' },
-  background: { type: 'boolean', default: false },
-  from: { type: 'string', default: '0' },
-  until: { type: 'string' },
-  shapes: { type: 'string' },
-  video: { type: 'string' },
-  'frame-rate': { type: 'string' },
-  tolerance: { type: 'string', default: '0.5' },
-  list: { type: 'string' },
-  every: { type: 'string', default: '1' },
-  jobs: { type: 'string', short: 'j' },
-  shard: { type: 'string', default: '1/1' },
-  'look-ahead': { type: 'string' },
-  masks: { type: 'string' },
-  corrections: { type: 'string' },
-  clip: { type: 'string' },
-  'allow-damaged': { type: 'boolean', default: false },
-  force: { type: 'boolean', default: false },
-} as const;
-
-const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'allow-damaged', 'force'];
-const OF_SEQUENCES = [...OF_PAIRS, 'every', 'jobs', 'shard'];
-const OF_CLIPS = ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'];
-const OF_CONVERT = ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'];
-
-/** By command the options that it has, and who reads what is asked. */
-const COMMANDS = {
-  pair: { options: OF_PAIRS, read: pair },
-  batch: { options: ['list', ...OF_SEQUENCES], read: batch },
-  video: { options: OF_SEQUENCES, read: video },
-  clip: { options: OF_CLIPS, read: clip },
-  convert: { options: OF_CONVERT, read: convert },
-  points: { options: ['motions', 'method', 'seed'], read: points },
-};
+/** By command who reads what is asked. */
+const READ = { pair, batch, video, clip, convert, points, completion };
 
 type Values = ReturnType<typeof parsed>['values'];
 
@@ -162,7 +23,11 @@ export type ConvertCommand = Extract<ReturnType<typeof convert>, { name: 'conver
 export type CorrectionsCommand = Extract<ReturnType<typeof convert>, { name: 'corrections' }>;
 export type ClipCommand = ReturnType<typeof clip>;
 export type SequenceCommand = ReturnType<typeof batch> | ReturnType<typeof video>;
-export type Command = { name: 'help' } | { name: 'version' } | ReturnType<(typeof COMMANDS)[keyof typeof COMMANDS]['read']>;
+export type Command = { quiet?: boolean } & (
+  | { name: 'help'; of: CommandName | 'all' | undefined }
+  | { name: 'version' }
+  | ReturnType<(typeof READ)[keyof typeof READ]>
+);
 
 /**
  * Throws a {@link VeroneseError} with code `wrong-usage` for an option that the command does not have, `invalid-option` for an invalid value
@@ -170,18 +35,37 @@ export type Command = { name: 'help' } | { name: 'version' } | ReturnType<(typeo
  */
 export function parseCommand(args: string[]): Command {
   const { values, positionals, tokens } = parsed(args);
-  if (values.help) return { name: 'help' };
-  if (values.version) return { name: 'version' };
   const [name, ...files] = positionals;
-  if (name === undefined) throw usage('a command is missing');
-  if (!Object.hasOwn(COMMANDS, name)) throw usage(`there is no command '${name}'`);
-  const { options, read } = COMMANDS[name as keyof typeof COMMANDS];
+  if (values.version) return { name: 'version' };
+  if (name === undefined && values.help) return { name: 'help', of: args.includes('--help') ? 'all' : undefined };
+  if (name === 'help') return { name: 'help', of: files[0] === undefined ? undefined : commandNamed(files[0]) };
+  if (name === undefined) throw usage(`a command is missing${hint(undefined)}`);
+  const command = commandNamed(name);
+  if (values.help) return { name: 'help', of: command };
+  const own = optionsOf(command).map((option) => option.name);
   const given = tokens.filter((token) => token.kind === 'option');
   for (const { name: option, value } of given) {
-    if (!options.includes(option)) throw unknown(`'${name}' has no option '--${option}'`);
-    if (value === '') throw usage(`option '--${option}' is empty`);
+    if (!own.includes(option)) throw unknown(`'${command}' has no option`, `--${option}`, command);
+    if (value === '') throw valueOf(option, command);
   }
-  return read(values, files, given.map((option) => option.name));
+  try {
+    return { ...READ[command](values, files, given.map((option) => option.name)), quiet: values.quiet };
+  } catch (thrown) {
+    if (!(thrown instanceof VeroneseError) || thrown.code !== 'usage') throw thrown;
+    throw usage(`${thrown.message}${hint(command)}`);
+  }
+}
+
+function commandNamed(name: string): CommandName {
+  if (isCommand(name)) return name;
+  throw usage(`there is no command '${name}'${question(meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`);
+}
+
+function completion(_: Values, files: string[]) {
+  const [shell] = exactly(1, files, "'completion' takes the name of a shell") as [string];
+  const known = SHELLS.find((name) => name === shell);
+  if (known === undefined) throw usage(`the shell must be bash, zsh or fish, not '${shell}'`);
+  return { name: 'completion' as const, shell: known };
 }
 
 function points(values: Values, files: string[]) {
@@ -264,12 +148,23 @@ function parsed(args: string[]) {
   try {
     return parseArgs({ args, options: OPTIONS, allowPositionals: true, tokens: true });
   } catch (thrown) {
+    const command = args.find(isCommand);
     const text = thrown instanceof Error ? thrown.message : String(thrown);
-    // The first sentence names the mistake; the rest explains quoting.
-    const sentence = text.split(/[.\n]\s/)[0]?.replace(/\.$/, '') ?? text;
-    const lower = sentence.charAt(0).toLowerCase() + sentence.slice(1);
-    throw (thrown as NodeJS.ErrnoException).code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION' ? unknown(lower) : usage(lower);
+    // Node's sentences begin with the mistake, and name the option.
+    const [, option = ''] = /'(?:-\w, )?(--?[^' ]+)/.exec(text) ?? [];
+    if ((thrown as NodeJS.ErrnoException).code === 'ERR_PARSE_ARGS_UNKNOWN_OPTION') throw unknown('unknown option', option, command);
+    throw valueOf(option.slice(2) as OptionName, command);
   }
+}
+
+/** Of an option without its value, or with one that it does not have. */
+function valueOf(name: OptionName, command: CommandName | undefined): VeroneseError {
+  const { value }: Option = OPTIONS[name];
+  return usage(`option '--${name}' ${value === undefined ? 'takes no value' : `needs ${value}`}${hint(command)}`);
+}
+
+function hint(command: CommandName | undefined): string {
+  return `; see 'veronese help${command ? ` ${command}` : ''}'`;
 }
 
 function checkFrames(command: string, files: string[], list: string | undefined): void {
@@ -299,10 +194,11 @@ function seed(text: string): number {
 }
 
 function formats(text: string): SequenceFormatName[] {
-  const names = [...new Set(text.split(','))];
-  const known: SequenceFormatName[] = names.filter(isSequenceFormatName);
-  if (known.length === names.length) return known;
-  throw invalid('to', `formats of ${Object.keys(SEQUENCE_FORMATS).join(', ')}`, text);
+  return [...new Set(text.split(','))].map((name) => {
+    if (isSequenceFormatName(name)) return name;
+    const known = Object.keys(SEQUENCE_FORMATS);
+    throw new VeroneseError('invalid-option', `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`);
+  });
 }
 
 function range(from: string, until?: string): Range {
@@ -321,16 +217,6 @@ function decimal(name: string, text: string, least = 0, most = LONGEST_SIDE): nu
   const value = Number(text);
   if (/^\d+(\.\d+)?$/.test(text) && value >= least && value <= most) return value;
   throw invalid(name, `a number from ${least} to ${most}, in digits`, text);
-}
-
-function wrapped(words: readonly string[], width: number, lineBreak: string): string {
-  let [text, used] = ['', 0];
-  for (const [k, word] of words.entries()) {
-    const piece = k + 1 < words.length ? `${word}, ` : word;
-    if (used > 0 && used + piece.length > width) [text, used] = [text.trimEnd() + lineBreak, 0];
-    [text, used] = [text + piece, used + piece.length];
-  }
-  return text;
 }
 
 function jobs(text: string | undefined, unasked: number): number {
@@ -363,10 +249,15 @@ function invalid(name: string, wanted: string, found: string): VeroneseError {
   return new VeroneseError('invalid-option', `option '--${name}' must be ${wanted}, not '${found}'`);
 }
 
-function unknown(sentence: string): VeroneseError {
-  return new VeroneseError('wrong-usage', `${sentence}; see 'veronese --help'`);
+function unknown(sentence: string, option: string, command: CommandName | undefined): VeroneseError {
+  const words = (command ? optionsOf(command).map(({ name }) => name) : Object.keys(OPTIONS)).map((name) => `--${name}`);
+  return new VeroneseError('wrong-usage', `${sentence} '${option}'${question(meant(option, words)) ?? hint(command)}`);
+}
+
+function question(word: string | undefined): string | undefined {
+  return word && `; did you mean '${word}'?`;
 }
 
 function usage(sentence: string): VeroneseError {
-  return new VeroneseError('usage', `${sentence}; see 'veronese --help'`);
+  return new VeroneseError('usage', sentence);
 }

@@ -8,7 +8,7 @@ import type { ConvertCommand } from './arguments.js';
 import { openBatch, pairFolders } from './batch-folder.js';
 import { LABELS, openClip, TRACKS } from './clip-folder.js';
 import { rateOf, USUAL_RATE } from '../formats/frames.js';
-import type { OutputFile } from './files.js';
+import { notFound, type OutputFile } from './files.js';
 import { FORMATS, isFormatName, type Masks } from './formats.js';
 import type { Io } from './io.js';
 import type { Output } from './output.js';
@@ -33,7 +33,7 @@ interface Written {
   notes?: Note[];
 }
 
-/** Which command the folder is of; one that is of none is taken for a pair's, whose error names what is missing. */
+/** Which command the folder is of. Throws `file-not-found`. */
 function kindOf(folder: string): Kind {
   const has = (name: string) => statusOf(join(folder, name));
   if (has(TRACKS)) return 'clip';
@@ -41,7 +41,9 @@ function kindOf(folder: string): Kind {
   if (has(LABELS)?.isDirectory()) {
     throw new VeroneseError('invalid-input', `'${folder}' has no ${TRACKS}: the clip is not finished, run 'veronese clip' again to finish it`);
   }
-  return has('.')?.isDirectory() && pairFolders(folder).length > 0 ? 'batch' : 'pair';
+  if (!has('.')) throw notFound(join(folder, '.'));
+  if (has('.')?.isDirectory() && pairFolders(folder).length > 0) return 'batch';
+  throw new VeroneseError('file-not-found', `'${folder}' is not a folder of pair, batch or clip: it has no labels.png and no ${TRACKS}`);
 }
 
 function statusOf(path: string): Stats | undefined {

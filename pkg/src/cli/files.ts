@@ -3,7 +3,7 @@
 import { createHash } from 'node:crypto';
 import { lstatSync, mkdirSync, readFileSync, type Stats, statSync } from 'node:fs';
 import { open, readFile, stat } from 'node:fs/promises';
-import { dirname, resolve } from 'node:path';
+import { dirname, extname, resolve } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
 
 /** Largest input, bytes: more than the largest frame needs in the most wasteful of the formats. */
@@ -26,9 +26,21 @@ export async function readInput(path: string, most = Infinity): Promise<Uint8Arr
   } catch (thrown) {
     if (thrown instanceof VeroneseError) throw thrown;
     const { code, message } = thrown as NodeJS.ErrnoException;
-    if (code === 'ENOENT' || code === 'ENOTDIR') throw new VeroneseError('file-not-found', `there is no file '${path}'`);
+    if (code === 'ENOENT' || code === 'ENOTDIR') throw notFound(path);
     throw new VeroneseError('unreadable-file', `'${path}' cannot be read: ${message}`);
   }
+}
+
+/** Names the first folder on the way that is missing. */
+export function notFound(path: string): VeroneseError {
+  let [missing, above] = [path, dirname(path)];
+  for (; above !== dirname(above) && !exists(above); above = dirname(above)) missing = above;
+  const kind = missing !== path ? 'folder' : extname(path) === '' ? 'file or folder' : 'file';
+  return new VeroneseError('file-not-found', `there is no ${kind} '${missing}'${missing === path ? '' : `, and so no '${path}'`}`);
+}
+
+function exists(place: string): boolean {
+  return statSync(place, { throwIfNoEntry: false }) !== undefined;
 }
 
 function tooLarge(path: string): VeroneseError {

@@ -6,6 +6,7 @@ import { Socket } from 'node:net';
 import { basename, extname, join, parse, sep } from 'node:path';
 import { text } from 'node:stream/consumers';
 import { VeroneseError } from '../common/errors.js';
+import { notFound } from './files.js';
 import { isFileName } from './sequence.js';
 
 const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
@@ -30,6 +31,8 @@ export interface Frame {
 export function findFrames(names: readonly string[], listed: readonly string[] = []): string[] {
   const paths = [...names.flatMap(framesOf), ...listed];
   for (const path of paths) checkName(path);
+  const [only] = paths;
+  if (paths.length === 1 && only !== undefined && kindOf(only) === undefined) throw notFound(only);
   return paths;
 }
 
@@ -66,7 +69,7 @@ export async function readList(list: string | undefined, stdin: NodeJS.ReadableS
     return (await contentOf(list, stdin)).split(/\r?\n/).filter((line) => line.trim() !== '');
   } catch (thrown) {
     const { code, message } = thrown as NodeJS.ErrnoException;
-    if (code === 'ENOENT') throw new VeroneseError('file-not-found', `there is no file '${list}'`);
+    if (code === 'ENOENT') throw notFound(list);
     throw new VeroneseError('unreadable-file', `'${list}' cannot be read: ${message}`);
   }
 }

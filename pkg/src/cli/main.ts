@@ -2,13 +2,12 @@
 
 import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
-import { type ClipCommand, type Command, HELP, type PairCommand, parseCommand, type SequenceCommand } from './arguments.js';
-import { batch } from './batch.js';
+import { type ClipCommand, type Command, type PairCommand, parseCommand, type SequenceCommand } from './arguments.js';
 import type { Io } from './io.js';
 import { idsOf, Output } from './output.js';
 import { isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
 import { jsonLine, type Report } from './pair.js';
-import { complain, note, print } from './terminal.js';
+import { ClosedPipe, complain, heading, note, print } from './terminal.js';
 import { threads } from './threads.js';
 
 const EXIT = { done: 0, failed: 1, usage: 2 } as const;
@@ -18,17 +17,19 @@ export async function main(args: string[], io: Io): Promise<number> {
   let command: Command;
   try {
     command = parseCommand(args);
+    io.stderr.quiet = command.quiet === true;
   } catch (thrown) {
     complain(io, thrown);
     return EXIT.usage;
   }
   io.signal.addEventListener('abort', () => complain(io, new VeroneseError('cancelled', 'stopped by a signal')));
   try {
-    if (command.name === 'batch' || command.name === 'video') await batch(command, io);
+    if (command.name === 'batch' || command.name === 'video') await (await import('./batch.js')).batch(command, io);
     else if (command.name === 'clip') await (await import('./clip.js')).clip(command, io);
     else await print(io, await answer(command, io));
     return EXIT.done;
   } catch (thrown) {
+    if (thrown instanceof ClosedPipe) return EXIT.done;
     complain(io, thrown);
     return EXIT.failed;
   }
@@ -36,7 +37,8 @@ export async function main(args: string[], io: Io): Promise<number> {
 
 async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, io: Io): Promise<string> {
   const outputIn = (folder: string, { force }: { force: boolean }) => new Output(folder, { force, signal: io.signal });
-  if (command.name === 'help') return HELP;
+  if (command.name === 'help') return (await import('./help.js')).help(command.of, heading(io));
+  if (command.name === 'completion') return (await import('./completion.js')).completion(command.shell);
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') return (await import('./convert.js')).convert(command, outputIn(command.out ?? command.folder, command), io);
   if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command), io);

@@ -3,10 +3,13 @@
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import type { Io, Stderr } from './io.js';
 
+/** Nobody reads the results any more: the end of the work, and no error. */
+export class ClosedPipe extends Error {}
+
 export function print({ stdout }: Io, text: string): Promise<void> {
   return new Promise((resolve, reject) => {
-    const failed = (error: Error) => {
-      reject(new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
+    const failed = (error: NodeJS.ErrnoException) => {
+      reject(error.code === 'EPIPE' ? new ClosedPipe() : new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
     };
     stdout.once('error', failed);
     stdout.write(text, (error) => {
@@ -17,20 +20,39 @@ export function print({ stdout }: Io, text: string): Promise<void> {
   });
 }
 
-/** One line on stderr, whatever the error's message looks like. */
+/** Colours of a terminal, by their numbers in its escape sequences. */
+const BOLD = 1;
+const KINDS = { error: 31, warning: 33, note: 36 } as const;
+
+/** How headings are printed. */
+export function heading({ stdout }: Io): (text: string) => string {
+  return (text) => (stdout.hasColors?.() ? coloured(text, BOLD) : text);
+}
+
+function coloured(text: string, ...numbers: number[]): string {
+  return `\u001b[${numbers.join(';')}m${text}\u001b[0m`;
+}
+
+/** One line on stderr, whatever the message looks like. */
+function say(stderr: Stderr, kind: keyof typeof KINDS, sentence: string): void {
+  const begin = stderr.hasColors?.() ? `veronese: ${coloured(`${kind}:`, BOLD, KINDS[kind])}` : `veronese: ${kind}:`;
+  stderr.write(`${begin} ${sentence.replace(/\s+/g, ' ').trim()}\n`);
+}
+
+/** Of what ended the work. */
 export function complain({ stderr }: Io, thrown: unknown): void {
   const { code, message } = veroneseError(thrown);
-  stderr.write(`veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
+  say(stderr, 'error', `${code}: ${message}`);
 }
 
-/** As {@link complain}, of what does not end the work. */
+/** Of what does not end it. */
 export function warn({ stderr }: Io, sentence: string): void {
-  stderr.write(`veronese: warning: ${sentence}\n`);
+  if (!stderr.quiet) say(stderr, 'warning', sentence);
 }
 
-/** One line on stderr of what was assumed. */
+/** Of what was assumed. */
 export function note({ stderr }: Io, { message }: { message: string }): void {
-  stderr.write(`veronese: note: ${message.replace(/\s+/g, ' ').trim()}\n`);
+  if (!stderr.quiet) say(stderr, 'note', message);
 }
 
 export interface Tally {
@@ -65,14 +87,14 @@ export class ProgressBar {
 
   update(tally: Tally): void {
     const now = this.#now();
-    if (!this.#stream.isTTY || now - this.#drawn < INTERVAL) return;
+    if (!this.#stream.isTTY || this.#stream.quiet || now - this.#drawn < INTERVAL) return;
     this.#drawn = now;
     this.#stream.write(`\r\u001b[K${this.#title}${line(tally, this.#total, (now - this.#started) / 1000, this.#unit)}`);
   }
 
   /** Takes the line away, for what is to be read there. */
   clear(): void {
-    if (this.#stream.isTTY && this.#drawn > -Infinity) this.#stream.write('\r\u001b[K');
+    if (this.#drawn > -Infinity) this.#stream.write('\r\u001b[K');
   }
 }
 

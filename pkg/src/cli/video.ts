@@ -9,6 +9,7 @@ import { promisify } from 'node:util';
 import type { Note } from '../../types/index.js';
 import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
+import { notFound } from './files.js';
 import { checkName, type Frame } from './frames.js';
 import type { Io } from './io.js';
 import { warn } from './terminal.js';
@@ -89,7 +90,7 @@ function note(about: VideoInfo, line: string): void {
 export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, io: Io, about?: VideoInfo): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
   const status = statusOf(file);
-  if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
+  if (!status) throw notFound(file);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
   const input = ['-nostdin', '-hide_banner', '-nostats', '-v', 'level+info', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
   const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter((_, __, [, chain]) => chain);
