@@ -19,6 +19,7 @@ const ENTRIES = sources({
   'worker-node': 'worker/worker-node',
   element: 'element/element',
   'element-class': 'element/element-class',
+  react: 'element/react',
   'formats/index': 'formats/index',
 });
 const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work' });
@@ -37,7 +38,7 @@ const CALLS = ['module/', 'calls/(?!(?:clip/(?:given-masks|notes|shared-pairs)|n
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({
   input: { ...ENTRIES, ...PROGRAM },
-  external: [/^node:/],
+  external: [/^node:/, 'react'],
   plugins: [
     {
       name: 'entries',
@@ -56,7 +57,10 @@ const bundle = await rolldown({
   experimental: { attachDebugInfo: 'none' },
   // A warning stops the build, as does a circle of imports.
   checks: { circularDependency: true },
-  onLog: (level, log, standard) => standard(level === 'warn' ? 'error' : level, log),
+  onLog: (level, log, standard) => {
+    // The first line of an entry stays its first line: `'use client'` is for React.
+    if (log.code !== 'MODULE_LEVEL_DIRECTIVE') standard(level === 'warn' ? 'error' : level, log);
+  },
 });
 await bundle.write({
   dir: folder('dist'),

@@ -15,6 +15,8 @@ import { View } from './view.js';
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = globalThis.HTMLElement ?? class {};
 
+const PROPERTIES = ['frames', 'currentFrame', 'selected', 'src', 'name', 'disabled', 'required'] as const;
+
 export class VeroneseSegmenterElement extends Base {
   static readonly formAssociated = true;
   static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'grouped', 'name', 'required'];
@@ -47,6 +49,13 @@ export class VeroneseSegmenterElement extends Base {
       select: (object) => this.#tell('select', object),
       step: (frames) => (this.currentFrame += frames),
     });
+    for (const name of PROPERTIES) {
+      // Set when this was not yet an element of ours.
+      if (!Object.hasOwn(this, name)) continue;
+      const value = this[name];
+      Reflect.deleteProperty(this, name);
+      Object.assign(this, { [name]: value });
+    }
   }
 
   /** The last result of two frames, as {@link Segmenter.segmentPair} gave it. */

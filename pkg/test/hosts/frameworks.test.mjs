@@ -55,9 +55,10 @@ describe('types', () => {
     test(`${name}: the element's attributes, properties and events, and none that it has not`, () => {
       const folder = folderWith(`types-${name}`, packages);
       writeFileSync(join(folder, 'sample.tsx'), sampleOf(name));
+      if (name === 'react') cpSync(join(here, 'markup/react-component.tsx'), join(folder, 'component.tsx'));
       const strict = { strict: true, exactOptionalPropertyTypes: true, noUncheckedIndexedAccess: true, noEmit: true, skipLibCheck: false };
       const compilerOptions = { ...strict, target: 'ES2022', lib: ['ES2022', 'DOM', 'DOM.Iterable'], types: [], module: 'ESNext', moduleResolution: 'Bundler', ...options };
-      writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['sample.tsx'] }));
+      writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['*.tsx'] }));
       run(tsc, ['-p', folder]);
     });
   }
@@ -79,6 +80,16 @@ const RUNNING = {
   solid: { packages: ['solid-js'], plugin: async () => (await import('vite-plugin-solid')).default() },
 };
 
+/** The outcome of each of these applications. */
+async function expectedClip() {
+  const frames = pair();
+  const whole = segmentClip({ length: 2, read: (index) => frames[index] }, { quality: 'fast', motions: 3 });
+  const first = await whole.next();
+  for await (const _ of whole);
+  const attributes = { motions: '3', quality: 'fast', grouped: true };
+  return { objects: whole.tracks().objects.length, labels: Array.from(first.value.labels).join(''), attributes };
+}
+
 describe('JSX', () => {
   for (const [name, { packages, config, plugin }] of Object.entries(RUNNING)) {
     test(`${name}: frames arrive as a property, options as attributes, and listeners hear the events`, async (t) => {
@@ -91,15 +102,48 @@ describe('JSX', () => {
       await build({ root: folder, configFile: false, logLevel: 'error', clearScreen: false, plugins: plugin ? [await plugin()] : [], ...config });
       const { address } = await serve(t, join(folder, 'dist'));
       const { outcome, complaints } = await outcomeOf(t, browser, address);
-      const frames = pair();
-      const whole = segmentClip({ length: 2, read: (index) => frames[index] }, { quality: 'fast', motions: 3 });
-      const first = await whole.next();
-      for await (const _ of whole);
       assert.deepEqual(complaints, []);
-      const attributes = { motions: '3', quality: 'fast', grouped: true };
-      assert.deepEqual(outcome, { objects: whole.tracks().objects.length, labels: Array.from(first.value.labels).join(''), attributes });
+      assert.deepEqual(outcome, await expectedClip());
     });
   }
+});
+
+describe('a page made by a server', () => {
+  test("React's component takes it over: properties, attributes, listeners and its reference are those of the element", async (t) => {
+    const folder = folderWith('rendered-react', RUNNING.react.packages);
+    // Without it, Next would take the component for one of the server's.
+    assert.match(readFileSync(join(folder, 'node_modules/veronese/dist/react.js'), 'utf8'), /^'use client';/);
+    for (const part of ['run', 'rendered']) cpSync(join(here, 'markup', part), folder, { recursive: true });
+    cpSync(join(app, 'frames.js'), join(folder, 'frames.js'));
+    writeFileSync(join(folder, 'package.json'), '{ "private": true, "type": "module" }\n');
+    const { build } = await import('vite');
+    // In its development form React says where the two pages differ.
+    const common = { root: folder, configFile: false, logLevel: 'error', clearScreen: false, mode: 'development', define: { 'process.env.NODE_ENV': '"development"' }, ...RUNNING.react.config };
+    await build({ ...common, build: { ssr: 'server.jsx', outDir: 'server' } });
+    const { html } = await import(join(folder, 'server/server.js'));
+    assert.equal(html, '<veronese-segmenter id="masks" class="wide"></veronese-segmenter>');
+    writeFileSync(join(folder, 'index.html'), `<!doctype html>\n<link rel="icon" href="data:," />\n<body><div id="root">${html}</div><script type="module" src="/browser.jsx"></script></body>\n`);
+    await build(common);
+    const { address } = await serve(t, join(folder, 'dist'));
+    const { outcome, complaints } = await outcomeOf(t, browser, address);
+    assert.deepEqual(complaints, []);
+    assert.deepEqual(outcome, await expectedClip());
+  });
+
+  test('properties that were set before the element was defined are its own', async (t) => {
+    const folder = folderWith('set-before', []);
+    cpSync(join(app, 'frames.js'), join(folder, 'frames.js'));
+    const script = `import { first, second } from './frames.js';
+      const element = document.querySelector('veronese-segmenter');
+      Object.assign(element, { frames: [first, second], name: 'masks', selected: 1 });
+      element.addEventListener('tracks', () => (globalThis.outcome = { own: Object.keys(element), frames: element.frameCount, name: element.getAttribute('name'), selected: element.selected }));
+      await import('./node_modules/veronese/dist/element.js');`;
+    writeFileSync(join(folder, 'index.html'), `<!doctype html>\n<link rel="icon" href="data:," />\n<veronese-segmenter quality="fast"></veronese-segmenter><script type="module">${script}</script>\n`);
+    const { address } = await serve(t, folder);
+    const { outcome, complaints } = await outcomeOf(t, browser, address);
+    assert.deepEqual(complaints, []);
+    assert.deepEqual(outcome, { own: [], frames: 2, name: 'masks', selected: 1 });
+  });
 });
 
 /** Imports of each example, its configuration included. */
