@@ -40,6 +40,27 @@ export type VeroneseSegmenterEventMap = Omit<HTMLElementEventMap, keyof Veronese
   [Type in keyof VeroneseSegmenterEvents]: CustomEvent<VeroneseSegmenterEvents[Type]>;
 };
 
+/** The texts of the element. Numbers of frames begin with 1. */
+export interface VeroneseSegmenterMessages {
+  /** What the picture is, for those who do not see it. */
+  noFrame: string;
+  pair: (motions: number) => string;
+  frame: (number: number, of: number, objects: number) => string;
+  /** The list of objects, and each of them. */
+  objects: string;
+  object: (number: number) => string;
+  /** The slider for the frames of a clip, and where it is. */
+  timeline: string;
+  time: (number: number, of: number) => string;
+  /** The progress of a clip. */
+  progress: string;
+  /** Why a form cannot be submitted. */
+  busy: string;
+  missing: string;
+  /** What went wrong, in the line of status and for forms. */
+  error: (error: VeroneseError) => string;
+}
+
 /** An object that clicks and a box point to, as a {@link ClipPrompt} without its frame. */
 export type ElementPrompt =
   | { object: number; clicks?: readonly ClipClick[] | undefined; box?: readonly [x: number, y: number, width: number, height: number] | undefined }
@@ -81,6 +102,9 @@ export class VeroneseSegmenterElement extends HTMLElement {
    */
   get frames(): ClipFrames | undefined;
   set frames(frames: ClipFrames | undefined | null);
+  /** Texts in place of the English ones, such as those of another language. */
+  get messages(): Partial<VeroneseSegmenterMessages>;
+  set messages(messages: Partial<VeroneseSegmenterMessages> | undefined | null);
   /** The attribute `src`. Setting it takes the place of frames that were set by a script. */
   src: string;
   /** Number of frames of a clip that are done. */

@@ -537,6 +537,7 @@ export type ErrorCode =
   | 'internal'
   // the custom element and the command line
   | 'unreadable-video'
+  | 'too-few-frames'
   // the command line only
   | 'usage'
   | 'wrong-usage' // of an option that the command does not have
@@ -545,7 +546,6 @@ export type ErrorCode =
   | 'invalid-json'
   | 'write-failed'
   | 'file-exists'
-  | 'too-few-frames'
   | 'pairs-failed'
   | 'ffmpeg-missing';
 

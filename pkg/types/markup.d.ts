@@ -1,6 +1,6 @@
 // Attributes, properties and listeners of <veronese-segmenter> where frameworks write it as markup.
 
-import type { ClipFrames, VeroneseSegmenterEvents } from './element-class.js';
+import type { ClipFrames, VeroneseSegmenterEvents, VeroneseSegmenterMessages } from './element-class.js';
 
 /** The element's own attributes. */
 export interface VeroneseSegmenterAttributes {
@@ -26,6 +26,7 @@ export interface VeroneseSegmenterAttributes {
 
 /** The properties that are no attributes. */
 export interface VeroneseSegmenterProperties {
+  messages?: Partial<VeroneseSegmenterMessages> | null | undefined;
   frames?: ClipFrames | null | undefined;
   currentFrame?: number | undefined;
   selected?: number | null | undefined;

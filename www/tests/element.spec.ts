@@ -1,4 +1,5 @@
 //! <veronese-segmenter> by itself: clips, keyboard, forms.
+// cspell:ignore bild bilder braucht fehlen kein noch objekt objekte objekten zwei
 
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -320,6 +321,86 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
     const pictures = [[found.labels.png, found.labels.labels], ...found.frames.map((png, index) => [png, found.shown[index]!])] as [number[], number[]][];
     for (const [png, labels] of pictures) expect(differences(await labelsOfDavis(Uint8Array.from(png)), labels)).toBe(0);
   });
+});
+
+// Addresses that lead nowhere are complained of.
+unwatched('says what happened, in words that a page may replace', async ({ page }) => {
+  await openEmpty(page);
+  await page.route('**/missing.*', (route) => route.fulfill({ status: 404, contentType: 'text/html', body: '<!doctype html>' }));
+  const found = await page.evaluate(async () => {
+    const said: Record<string, string> = {};
+    const [frame] = clip(1);
+    const failing = (name: string, give: (element: VeroneseSegmenterElement) => void): Promise<void> =>
+      new Promise((resolve) => {
+        const element = document.createElement('veronese-segmenter');
+        element.addEventListener('error', ({ detail: { code, message } }) => {
+          said[name] = `${code}: ${message}`;
+          element.remove();
+          resolve();
+        });
+        document.body.append(element);
+        give(element);
+      });
+    const address = './embed.html';
+    await failing('missing', (element) => {
+      element.setAttribute('second', address);
+      element.setAttribute('first', 'missing.png');
+    });
+    await failing('text', (element) => {
+      element.setAttribute('second', address);
+      element.setAttribute('first', address);
+    });
+    await failing('video', (element) => element.setAttribute('src', 'missing.mp4'));
+    await failing('motions', (element) => {
+      element.setAttribute('motions', 'zz');
+      void element.setFrames(frame!, frame!).catch(() => undefined);
+    });
+    await failing('none', (element) => (element.frames = []));
+    await failing('one', (element) => (element.frames = [frame!]));
+    await failing('one of a stream', (element) => (element.frames = [frame!].values()));
+    return said;
+  });
+  const address = (name: string): string => new URL(name, page.url()).href;
+  expect(found).toEqual({
+    missing: `unreadable-image: the first frame cannot be loaded: ${address('missing.png')} answered 404 Not Found`,
+    text: 'unreadable-image: the first frame is not an image that this browser can read',
+    video: `unreadable-video: the clip cannot be loaded: ${address('missing.mp4')} answered 404 Not Found`,
+    motions: "invalid-option: option 'motions': must be 'auto' or a whole number from 1 to 10, not 'zz'",
+    none: 'too-few-frames: a clip needs two frames, found none',
+    one: 'too-few-frames: a clip needs two frames, found one',
+    'one of a stream': 'too-few-frames: a clip needs two frames, found one',
+  });
+
+  await page.evaluate(async () => {
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    element.toggleAttribute('required');
+    document.body.append(element);
+    element.messages = {
+      noFrame: 'noch kein Bild',
+      frame: (number, of, objects) => `Bild ${number} von ${of} mit ${objects} Objekten`,
+      objects: 'Objekte',
+      object: (number) => `Objekt ${number}`,
+      timeline: 'Bild',
+      time: (number, of) => `Bild ${number} von ${of}`,
+      missing: 'Es fehlen Bilder.',
+      error: ({ code }) => (code === 'too-few-frames' ? 'Ein Film braucht zwei Bilder.' : code),
+    };
+  });
+  const element = page.locator('veronese-segmenter');
+  await expect(element.getByRole('img')).toHaveAccessibleName('noch kein Bild');
+  expect(await element.evaluate((one: VeroneseSegmenterElement) => one.validationMessage)).toBe('Es fehlen Bilder.');
+  await element.evaluate((one: VeroneseSegmenterElement) => (one.frames = clip(1)));
+  await expect(element.getByRole('status')).toHaveText('Ein Film braucht zwei Bilder.');
+  await element.evaluate((one: VeroneseSegmenterElement) => (one.frames = clip(3)));
+  await expect(element.getByRole('img')).toHaveAccessibleName('Bild 1 von 3 mit 1 Objekten');
+  await expect(element.getByRole('listbox')).toHaveAccessibleName('Objekte');
+  await expect(element.getByRole('option')).toHaveAccessibleName('Objekt 1');
+  await expect(element.getByRole('slider')).toHaveAccessibleName('Bild');
+  await expect(element.getByRole('slider')).toHaveAttribute('aria-valuetext', 'Bild 1 von 3');
+  await element.evaluate((one: VeroneseSegmenterElement) => (one.messages = null));
+  await expect(element.getByRole('option')).toHaveAccessibleName('Object 1');
+  await expect(element.getByRole('img')).toHaveAccessibleName('frame 1 of 3 with the masks of 1 object');
 });
 
 test('a clip takes corrections: the host may stop them, and undo them', async ({ page }) => {

@@ -1,9 +1,10 @@
 // A clip in the element: frames of any kind for `segmentClip`, the pictures and masks of those that are done, a timeline. Loaded
 // when there is a clip.
 
-import type { ClipFrames, FrameSource } from '../../types/element-class.js';
+import type { ClipFrames, FrameSource, VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
 import { type FoundFrame, Tracks } from '../calls/clip/tracks.js';
+import { VeroneseError } from '../common/errors.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import { type Place, pixelsOf } from './sources.js';
 import { Video } from './video.js';
@@ -41,6 +42,7 @@ export class ElementClip {
   readonly progress = part('progress', 'progress');
   readonly #done: Packed[] = [];
   readonly #found: FoundFrame[] = [];
+  readonly #texts: () => VeroneseSegmenterMessages;
   readonly #listeners: Listeners;
   #source: Source | undefined;
   #clip: Clip | undefined;
@@ -52,17 +54,24 @@ export class ElementClip {
   #showing: Promise<void> | undefined;
   #closed = false;
 
-  constructor(listeners: Listeners) {
+  constructor(texts: () => VeroneseSegmenterMessages, listeners: Listeners) {
+    this.#texts = texts;
     this.#listeners = listeners;
     this.timeline.type = 'range';
     this.timeline.min = this.timeline.max = this.timeline.value = '0';
-    this.timeline.setAttribute('aria-label', 'Frame');
     this.timeline.addEventListener('input', (event) => {
       // Seen from outside it would be an input of the element, whose value it does not change.
       event.stopPropagation();
       this.show(this.timeline.valueAsNumber);
     });
-    this.progress.setAttribute('aria-label', 'Progress');
+    this.name();
+  }
+
+  /** Names the slider and the progress. */
+  name(): void {
+    this.timeline.setAttribute('aria-label', this.#texts().timeline);
+    this.progress.setAttribute('aria-label', this.#texts().progress);
+    this.#mark();
   }
 
   /** Number of frames that are done. */
@@ -81,7 +90,11 @@ export class ElementClip {
 
   /** The first frame, before it has masks. Frames that come once are not taken for it. */
   async poster(): Promise<Pixels | undefined> {
-    return this.#source?.length ? this.#source.picture(0) : undefined;
+    const { length, picture } = this.#source as Source;
+    if (length === undefined) return undefined;
+    const first = length > 0 ? await picture(0) : undefined;
+    checkCount(length);
+    return first;
   }
 
   /** Yields each frame when it can be shown. `begin` begins to segment frames. */
@@ -96,6 +109,7 @@ export class ElementClip {
       this.#mark();
       yield frame;
     }
+    checkCount(this.length);
     this.#state = await clip.state();
   }
 
@@ -169,9 +183,9 @@ export class ElementClip {
   }
 
   #mark(): void {
-    this.timeline.max = String(this.length - 1);
+    this.timeline.max = String(Math.max(0, this.length - 1));
     this.timeline.value = String(this.#current);
-    this.timeline.setAttribute('aria-valuetext', `frame ${this.#current + 1} of ${this.length}`);
+    this.timeline.setAttribute('aria-valuetext', this.#texts().time(this.#current + 1, this.length));
   }
 
   /** The masks that are done, as `veronese clip` names those of a video. */
@@ -185,6 +199,10 @@ export class ElementClip {
     this.progress.remove();
     this.#source?.close?.();
   }
+}
+
+function checkCount(frames: number): void {
+  if (frames < 2) throw new VeroneseError('too-few-frames', `a clip needs two frames, found ${frames === 0 ? 'none' : 'one'}`);
 }
 
 async function sourceOf(given: ClipFrames | string, place: Place): Promise<Source> {

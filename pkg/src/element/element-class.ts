@@ -1,13 +1,14 @@
 // <veronese-segmenter>: two frames or a clip in, masks over the frames out, as a custom element and a control of forms. Importing this
 // file registers nothing.
 
-import type { ClipFrames, ElementPrompt, FrameSource, VeroneseSegmenterEvents } from '../../types/element-class.js';
+import type { ClipFrames, ElementPrompt, FrameSource, VeroneseSegmenterEvents, VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
 import { groupLabels, maskOf } from '../calls/labels.js';
 import { isObject, UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { SegmenterPool } from '../entries/web.js';
 import type { ElementClip, ShownFrame } from './clip.js';
+import { ENGLISH } from './messages.js';
 import { optionsOf } from './options.js';
 import { type Kept, kept, type Place, pixelsOf } from './sources.js';
 import { View } from './view.js';
@@ -15,7 +16,7 @@ import { View } from './view.js';
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = globalThis.HTMLElement ?? class {};
 
-const PROPERTIES = ['frames', 'currentFrame', 'selected', 'src', 'name', 'disabled', 'required'] as const;
+const PROPERTIES = ['messages', 'frames', 'currentFrame', 'selected', 'src', 'name', 'disabled', 'required'] as const;
 
 export class VeroneseSegmenterElement extends Base {
   static readonly formAssociated = true;
@@ -40,12 +41,13 @@ export class VeroneseSegmenterElement extends Base {
   #corrected: Promise<unknown> = Promise.resolve();
   #carries = 0;
   #planned = false;
+  #messages: Partial<VeroneseSegmenterMessages> = {};
 
   constructor() {
     super();
     this.#internals = this.attachInternals();
     this.#internals.role = 'group';
-    this.#view = new View(this.attachShadow({ mode: 'open', delegatesFocus: true }), {
+    this.#view = new View(this.attachShadow({ mode: 'open', delegatesFocus: true }), () => this.#texts, {
       select: (object) => this.#tell('select', object),
       step: (frames) => (this.currentFrame += frames),
     });
@@ -78,6 +80,25 @@ export class VeroneseSegmenterElement extends Base {
     this.abort();
     this.#given = frames === undefined || frames === null ? {} : { frames };
     this.#plan();
+  }
+
+  get messages(): Partial<VeroneseSegmenterMessages> {
+    return this.#messages;
+  }
+
+  /** Shows at once what there is in these words. */
+  set messages(messages: Partial<VeroneseSegmenterMessages> | undefined | null) {
+    this.#messages = { ...messages };
+    this.#view.name();
+    this.#clip?.name();
+    if (this.#clip) this.#clip.show(this.currentFrame);
+    else if (this.#result) this.#paintPair(this.#result);
+    if (this.#failure) this.#view.status.textContent = this.#texts.error(this.#failure);
+    this.#validate();
+  }
+
+  get #texts(): VeroneseSegmenterMessages {
+    return { ...ENGLISH, ...this.#messages };
   }
 
   /** Number of the clip's frames that are done. */
@@ -325,7 +346,7 @@ export class VeroneseSegmenterElement extends Base {
     signal.throwIfAborted();
     this.#leaveClip();
     this.#result = undefined;
-    const clip = new ElementClip({ show: (frame) => this.#paintFrame(frame), fail: (thrown) => this.#fail(veroneseError(thrown)) });
+    const clip = new ElementClip(() => this.#texts, { show: (frame) => this.#paintFrame(frame), fail: (thrown) => this.#fail(veroneseError(thrown)) });
     this.#clip = clip;
     this.#view.stage.append(clip.progress);
     this.#view.stage.after(clip.timeline);
@@ -425,7 +446,7 @@ export class VeroneseSegmenterElement extends Base {
   #paintPair(result: Segmentation): void {
     const { width, height, count } = result;
     const labels = this.labels();
-    if (labels) this.#view.paint(this, labels, width, height, `the first frame with the masks of ${counted(count, 'motion')}`);
+    if (labels) this.#view.paint(this, labels, width, height, this.#texts.pair(count));
   }
 
   #paintFrame({ index, of, picture, labels }: ShownFrame): void {
@@ -433,7 +454,7 @@ export class VeroneseSegmenterElement extends Base {
     const objects = new Set(labels.filter((label) => label !== 0 && label !== UNLABELLED)).size;
     this.#shown = labels;
     this.#view.draw(picture);
-    this.#view.paint(this, labels, width, height, `frame ${index + 1} of ${of} with the masks of ${counted(objects, 'object')}`);
+    this.#view.paint(this, labels, width, height, this.#texts.frame(index + 1, of, objects));
     this.#tell('show', { index, width, height, labels });
   }
 
@@ -457,7 +478,8 @@ export class VeroneseSegmenterElement extends Base {
   #validate(): void {
     const busy = this.#request !== undefined;
     const missing = this.required && this.labels() === undefined;
-    const sentence = busy ? 'The masks are not ready yet.' : (this.#failure?.message ?? (missing ? 'Frames are missing.' : ''));
+    const failure = this.#failure && this.#texts.error(this.#failure);
+    const sentence = busy ? this.#texts.busy : (failure ?? (missing ? this.#texts.missing : ''));
     const flags = missing && !busy && !this.#failure ? { valueMissing: true } : { customError: sentence !== '' };
     this.#internals.ariaBusy = String(busy);
     this.#internals.setValidity(flags, sentence, this.#view.objects);
@@ -472,7 +494,7 @@ export class VeroneseSegmenterElement extends Base {
 
   #fail(error: VeroneseError): void {
     this.#failure = error;
-    this.#view.status.textContent = error.message;
+    this.#view.status.textContent = this.#texts.error(error);
     this.#validate();
     void this.#carry();
     this.#tell('error', error);
@@ -482,8 +504,4 @@ export class VeroneseSegmenterElement extends Base {
   #tell(type: keyof VeroneseSegmenterEvents, detail: unknown, cancelable = false): boolean {
     return this.dispatchEvent(new CustomEvent(type, { detail, cancelable }));
   }
-}
-
-function counted(count: number, thing: string): string {
-  return `${count} ${thing}${count === 1 ? '' : 's'}`;
 }

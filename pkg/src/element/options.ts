@@ -6,7 +6,7 @@ export function optionsOf(attribute: (name: string) => string | null): SegmentOp
   const options: Record<string, unknown> = {};
   for (const name of ['motions', 'quality']) {
     const value = attribute(name);
-    if (value !== null && value !== '') options[name] = name === 'quality' || value === 'auto' ? value : Number(value);
+    if (value !== null && value !== '') options[name] = /^\d+$/.test(value) ? Number(value) : value;
   }
   return options;
 }

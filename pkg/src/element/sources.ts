@@ -35,11 +35,11 @@ export async function pixelsOf(name: string, source: FrameSource, { base, signal
   if (typeof source !== 'string' && !(source instanceof URL) && !(source instanceof Blob)) return reading(() => checkedPixels(name, source));
   let bitmap: ImageBitmap | undefined;
   try {
-    const blob = source instanceof Blob ? source : await fetched(new URL(source, base), signal);
+    const blob = source instanceof Blob ? source : await fetched(name, source, base, signal);
     bitmap = await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
     return pixelsOfImage(bitmap);
   } catch (cause) {
-    throw unreadable(name, cause);
+    throw cause instanceof VeroneseError ? cause : unreadable(name, cause);
   } finally {
     bitmap?.close();
   }
@@ -57,8 +57,18 @@ function unreadable(name: string, cause: unknown): VeroneseError {
   return new VeroneseError('unreadable-image', `${name} is not an image that this browser can read`, { cause });
 }
 
-async function fetched(url: URL, signal: AbortSignal | undefined): Promise<Blob> {
-  const response = await fetch(url, { signal: signal ?? null });
-  if (!response.ok) throw new Error(`${url.href} answered ${response.status}`);
-  return response.blob();
+/** Throws `unreadable-image` with the address, and what its server answered. */
+async function fetched(name: string, source: string | URL, base: string, signal: AbortSignal | undefined): Promise<Blob> {
+  const url = URL.canParse(String(source), base) ? new URL(source, base) : null;
+  if (url === null) throw new VeroneseError('unreadable-image', `${name} cannot be loaded: '${source}' is no address`);
+  const answer = await answered(url.href, { signal: signal ?? null });
+  if (typeof answer === 'string') throw new VeroneseError('unreadable-image', `${name} cannot be loaded: ${answer}`);
+  return answer.blob();
+}
+
+/** What a server answers with success; otherwise a sentence with the address and the status. */
+export async function answered(address: string, request: RequestInit): Promise<Response | string> {
+  const response = await fetch(address, request).catch((thrown: Error) => thrown);
+  if (response instanceof Error) return `${address} cannot be reached, or its origin does not allow this page to read it (CORS): ${response.message}`;
+  return response.ok ? response : `${address} answered ${`${response.status} ${response.statusText}`.trim()}`;
 }

@@ -3,7 +3,7 @@
 
 import type { Pixels } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
-import { pixelsOfImage } from './sources.js';
+import { answered, pixelsOfImage } from './sources.js';
 
 /** Seconds between the positions at which the second frame is looked for: a frame of a video with 240 a second. */
 const STEP = 1 / 240;
@@ -37,7 +37,12 @@ export class Video {
     video.crossOrigin = 'anonymous';
     const loaded = this.#event('loadeddata');
     video.src = this.#address;
-    await loaded;
+    await loaded.catch(async (thrown) => {
+      // The browser does not say whether there was a file at all.
+      if (!this.#address.startsWith('http')) throw thrown;
+      const answer = await answered(this.#address, { method: 'HEAD' });
+      throw typeof answer === 'string' ? new VeroneseError('unreadable-video', `the clip cannot be loaded: ${answer}`) : thrown;
+    });
     if (!(video.videoWidth > 0) || !Number.isFinite(video.duration)) throw this.#unreadable();
     this.#start = await this.#seek(0);
     this.#duration = await this.#measured(video.duration - this.#start);

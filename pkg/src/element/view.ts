@@ -1,5 +1,6 @@
 // The view of the element: a frame, its masks, and the objects as a list box that lies over them.
 
+import type { VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Pixels } from '../../types/index.js';
 import { UNLABELLED } from '../common/checks.js';
 import { coloursOf } from './colours.js';
@@ -35,21 +36,22 @@ export class View {
   readonly #picture = part('div', 'picture');
   readonly #frame = part('canvas', 'frame');
   readonly #masks = part('canvas', 'masks');
+  readonly #texts: () => VeroneseSegmenterMessages;
   readonly #listeners: Listeners;
   #labels: { labels: Uint8Array; width: number; height: number } | undefined;
   #selected: number | null = null;
   #disabled = false;
 
-  constructor(root: ShadowRoot, listeners: Listeners) {
+  constructor(root: ShadowRoot, texts: () => VeroneseSegmenterMessages, listeners: Listeners) {
+    this.#texts = texts;
     this.#listeners = listeners;
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(STYLE);
     root.adoptedStyleSheets = [sheet];
     this.#picture.setAttribute('role', 'img');
-    this.#picture.setAttribute('aria-label', 'no frame yet');
     this.status.setAttribute('role', 'status');
     this.objects.setAttribute('role', 'listbox');
-    this.objects.setAttribute('aria-label', 'Objects');
+    this.name();
     this.objects.tabIndex = 0;
     this.objects.addEventListener('keydown', (event) => this.#key(event));
     this.objects.addEventListener('click', (event) => this.#click(event));
@@ -58,6 +60,12 @@ export class View {
     this.#picture.append(this.#frame, this.#masks);
     this.stage.append(this.#picture, this.objects, this.status);
     root.append(this.stage);
+  }
+
+  /** Names what has a name whatever is shown. */
+  name(): void {
+    this.objects.setAttribute('aria-label', this.#texts().objects);
+    if (this.#labels === undefined) this.#picture.setAttribute('aria-label', this.#texts().noFrame);
   }
 
   get selected(): number | null {
@@ -111,7 +119,7 @@ export class View {
     const options = [...boxesOf(labels, width)].map(([object, [left, top, right, bottom]]) => {
       const option = part('div', 'object');
       option.setAttribute('role', 'option');
-      option.setAttribute('aria-label', `Object ${object}`);
+      option.setAttribute('aria-label', this.#texts().object(object));
       option.id = `object-${object}`;
       option.dataset.object = String(object);
       const percent = (pixels: number, of: number) => `${(100 * pixels) / of}%`;
