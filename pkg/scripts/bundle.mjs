@@ -1,7 +1,7 @@
 // Joins the compiled sources into few files: each one is a request, and a browser that loads the package unbundled is ready only
 // after the last; part of `npm run build`.
 
-import { copyFileSync } from 'node:fs';
+import { copyFileSync, writeFileSync } from 'node:fs';
 import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { rolldown } from 'rolldown';
@@ -19,6 +19,7 @@ const ENTRIES = sources({
   'worker-node': 'worker/worker-node',
   element: 'element/element',
   'element-class': 'element/element-class',
+  'element-inline': 'element/inline',
   react: 'element/react',
   'formats/index': 'formats/index',
 });
@@ -36,6 +37,11 @@ const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `f
 const CALLS = ['module/', 'calls/(?!(?:clip/(?:given-masks|notes|shared-pairs)|nothing)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
+const worker = await rolldown({ input: resolve(folder('build'), 'worker/worker.js'), platform: 'browser' });
+const { output } = await worker.generate({ format: 'iife', minify: true, comments: false, codeSplitting: false });
+const code = `${output[0].code}\nURL.revokeObjectURL(location);`;
+writeFileSync(resolve(folder('build'), 'element/inline-worker.js'), `export const code = ${JSON.stringify(code)};\n`);
+
 const bundle = await rolldown({
   input: { ...ENTRIES, ...PROGRAM },
   external: [/^node:/, 'react'],

@@ -1,6 +1,6 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError, WasmSource, WorkerLike } from './index.js';
 
 /** A frame: a URL, a file, a bitmap, or pixels. */
 export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
@@ -90,6 +90,12 @@ export type ElementPrompt =
  * `status`, and of a clip `timeline` and `progress`.
  */
 export class VeroneseSegmenterElement extends HTMLElement {
+  /**
+   * Where the workers of all elements and the module come from, where that is not beside the package: set it before an element is in a page.
+   * As in `SegmenterPool`; `veronese/element/inline` needs neither.
+   */
+  static worker: (() => WorkerLike) | undefined;
+  static source: WasmSource | Promise<WasmSource> | undefined;
   static readonly formAssociated: true;
   static readonly observedAttributes: string[];
   /** The last result of two frames; undefined for a clip. */

@@ -76,7 +76,7 @@ async function bundleScripts(site, { build }) {
 /** The package's scripts as they are, but without comments and spaces. */
 async function minifyPackage({ build }) {
   const folder = join(root, 'pkg/dist');
-  const entryPoints = readdirSync(folder).filter((name) => name.endsWith('.js') && !/^(cli|inline|node|worker-node)/.test(name));
+  const entryPoints = readdirSync(folder).filter((name) => name.endsWith('.js') && !/^(cli|inline|element-inline|node|worker-node)/.test(name));
   await build({ entryPoints: entryPoints.map((name) => join(folder, name)), outdir: join(OUT, 'package/dist'), minify: true, format: 'esm', target: 'es2022' });
 }
 

@@ -2,7 +2,7 @@
 // file registers nothing.
 
 import type { ClipFrames, ElementPrompt, FrameSource, VeroneseSegmenterEvents, VeroneseSegmenterMessages } from '../../types/element-class.js';
-import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
+import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, Pixels, Progress, Segmentation, WasmSource, WorkerLike } from '../../types/index.js';
 import { groupLabels, maskOf } from '../calls/labels.js';
 import { isObject, UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
@@ -19,6 +19,10 @@ const Base = globalThis.HTMLElement ?? class {};
 const PROPERTIES = ['messages', 'frames', 'currentFrame', 'selected', 'src', 'name', 'disabled', 'required'] as const;
 
 export class VeroneseSegmenterElement extends Base {
+  /** Makes the workers, and is the module's source; undefined for the files beside this one. */
+  static worker: (() => WorkerLike) | undefined;
+  static source: WasmSource | Promise<WasmSource> | undefined;
+  static Pool: typeof SegmenterPool = SegmenterPool;
   static readonly formAssociated = true;
   static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'grouped', 'name', 'required'];
 
@@ -415,7 +419,8 @@ export class VeroneseSegmenterElement extends Base {
     if (this.#segmenter === undefined) {
       // Of more than two processors one is left for the page; more than eight workers are not worth their memory.
       const processors = navigator.hardwareConcurrency || 1;
-      this.#segmenter = new SegmenterPool({ jobs: Math.min(processors > 2 ? processors - 1 : processors, 8) });
+      const { Pool, worker, source } = this.constructor as typeof VeroneseSegmenterElement;
+      this.#segmenter = new Pool({ jobs: Math.min(processors > 2 ? processors - 1 : processors, 8), worker, source });
       this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker gives the error
     }
     return this.#segmenter;

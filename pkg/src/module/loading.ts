@@ -11,7 +11,7 @@ export async function compile(source: WasmSource | Promise<WasmSource>, read: Re
     const given = await source;
     if (given instanceof WebAssembly.Module) return given;
     const isPlace = typeof given === 'string' || given instanceof URL;
-    const bytes = await bytesOf(isPlace ? await read(given) : given);
+    const bytes = await bytesOf(isPlace ? await read(given).catch((thrown: Error) => notReached(String(given), thrown)) : given);
     if (!isModule(bytes)) throw noModule(bytes, isPlace ? String(given) : (given as Partial<Response>).url);
     return await WebAssembly.compile(bytes);
   } catch (thrown) {
@@ -19,6 +19,14 @@ export async function compile(source: WasmSource | Promise<WasmSource>, read: Re
     const reason = thrown instanceof Error ? thrown.message : String(thrown);
     throw loadFailed(reason, thrown);
   }
+}
+
+const REMEDY =
+  '; serve the file there, pass its URL to init() (of the element, VeroneseSegmenterElement.source), ' +
+  'or import veronese/inline (veronese/element/inline), which has it inside';
+
+function notReached(place: string, thrown: Error): never {
+  throw loadFailed(`${place} cannot be reached (${thrown.message})${REMEDY}`, thrown);
 }
 
 export function loadFailed(reason: string, cause?: unknown): VeroneseError {
@@ -30,7 +38,7 @@ async function bytesOf(source: Response | ArrayBuffer | ArrayBufferView): Promis
   if (source instanceof ArrayBuffer) return new Uint8Array(source);
   // Last, because in Node the name alone loads all that fetches, which takes as long as compiling the module.
   if (source instanceof Response) {
-    if (!source.ok) throw loadFailed(`${source.url || 'the server'} answered ${source.status} ${source.statusText}`);
+    if (!source.ok) throw loadFailed(`${source.url || 'the server'} answered ${`${source.status} ${source.statusText}`.trim()}${REMEDY}`);
     return new Uint8Array(await source.arrayBuffer());
   }
   throw loadFailed('the source must be a URL, string, Response, BufferSource or WebAssembly.Module');

@@ -40,7 +40,7 @@ export function spawnWith<Task, Result>(
       worker.addEventListener('message', (event: MessageEvent<Reply<Result>>) => onReply(event.data));
       worker.addEventListener('error', (event: ErrorEvent) => {
         event.preventDefault();
-        onDeath(event.message || 'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src)');
+        onDeath(event.message || UNLOADED);
       });
       worker.addEventListener('messageerror', () => onDeath('a message could not be read'));
     }
@@ -53,6 +53,11 @@ export function spawnWith<Task, Result>(
     };
   };
 }
+
+/** Browsers name neither the address nor the status. */
+const UNLOADED =
+  'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src); ' +
+  "the option 'worker' names another (of the element, VeroneseSegmenterElement.worker), and veronese/element/inline needs none";
 
 function isOfNode(worker: NodeThread | WebThread): worker is NodeThread {
   return has(worker, 'ref');
