@@ -6,6 +6,7 @@ import { parseArgs } from 'node:util';
 
 import { buildPackage, buildPage } from './lib/builds.mjs';
 import { describe } from './lib/describe.mjs';
+import { nextSteps } from './lib/next-steps.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command, interruption, run } from './lib/run.mjs';
@@ -26,8 +27,8 @@ await command(async (args) => {
   await buildPackage();
   await segmentSample();
   await buildPage();
-  if (!options.serve) return 0;
-  await serveUntilInterrupted(options);
+  if (options.serve) await serveUntilInterrupted(options);
+  else console.log(nextSteps());
   return 0;
 });
 
@@ -77,8 +78,7 @@ function relativeToRoot(path) {
 async function serveUntilInterrupted({ port, host }) {
   const server = await serve(join(root, 'www', 'dist'), { port, host });
   const ended = interruption();
-  const shown = host === '127.0.0.1' ? 'localhost' : host;
-  console.log(`The page is at http://${shown}:${server.address().port}/ (Ctrl-C ends it)`);
+  console.log(nextSteps({ host, port: server.address().port }));
   await ended;
   server.close();
   server.closeAllConnections();
