@@ -68,7 +68,9 @@ describe('direct calls and workers', () => {
     await slim.initPoints(read('../wasm/points/veronese_points_bg.wasm'));
     for (const [place, [name, args]] of Object.entries(CALLS)) {
       for (const value of Object.values(VALUES)) {
-        const [expected, ...others] = await Promise.all([index, slim, inline, codecs.api].map(
+        // In Node alone the entry reads files.
+        const isFile = typeof value === 'string' && value !== '' && /^segmentPair: (first|second)$/.test(place);
+        const [expected, ...others] = await Promise.all([...(isFile ? [] : [index]), slim, inline, codecs.api].map(
           (entry) => entry[name](...args(value)).then(() => 'done', ({ name, code, message }) => `${name} ${code}: ${message}`),
         ));
         for (const other of others) assert.equal(other, expected, place);

@@ -12,6 +12,9 @@ export interface Pixels {
   height: number;
 }
 
+/** In Node, the path or address of an image file, in place of its pixels; read as `veronese/codecs` does. Elsewhere code `invalid-input`. */
+export type FrameFile = string | URL;
+
 /** Progress of a call: a stage has just begun. */
 export interface Progress {
   /** The stage's stable camelCase name, also its key in `milliseconds`. */
@@ -207,9 +210,9 @@ export interface PointMeasurements {
  * unless an option needs a whole clip.
  */
 export type ClipSource =
-  | Iterable<Pixels | Promise<Pixels>>
-  | AsyncIterable<Pixels>
-  | { readonly length: number; read(index: number): Pixels | Promise<Pixels> };
+  | Iterable<Pixels | FrameFile | Promise<Pixels | FrameFile>>
+  | AsyncIterable<Pixels | FrameFile>
+  | { readonly length: number; read(index: number): Pixels | FrameFile | Promise<Pixels | FrameFile> };
 
 /** Progress of a clip: work on a frame begins. */
 export interface ClipProgress {
@@ -573,7 +576,7 @@ export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
 /** Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. */
-export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
 
 /**
  * Segments a clip: objects that move get a number that they keep from their first frame to their last. Objects are numbered by first
@@ -678,7 +681,7 @@ export interface PoolOptions extends SegmenterOptions {
 export class Segmenter {
   /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
-  segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+  segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
   relabel(
     first: Pixels,
     second: Pixels,

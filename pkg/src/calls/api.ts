@@ -26,7 +26,7 @@ export class Api {
 
   readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
-  readonly segmentPair: typeof calls.segmentPair = (...given) => start(() => segmentCall(...given), this.perform);
+  readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> => start(() => segmentCall(...given), this.perform);
 
   readonly relabel: typeof calls.relabel = (...given) => start(() => relabelCall(...given), this.perform);
 

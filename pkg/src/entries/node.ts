@@ -13,4 +13,6 @@ export const { init, initPoints, segmentPair, segmentClip, relabel, fitMotions, 
   points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),
   worker: () => new Worker(new URL('./worker-node.js', import.meta.url), { name: 'veronese' }),
   jobs: availableParallelism,
+  // With a module of its own, which only files need.
+  decode: async (place) => (await import('./frame-files.js')).decodeFile(place),
 });

@@ -3,9 +3,11 @@
 // First in the file as well, where gzip packs it best: measured, 1 % of the whole.
 import { glue } from '../module/glue.js';
 import { glue as pointsGlue } from '../module/glue-points.js';
+import type * as calls from '../../types/index.js';
 import type { Clip, ClipOptions, ClipSource } from '../../types/index.js';
 import { Api } from '../calls/api.js';
 import { clipOf } from '../calls/clip.js';
+import { withPlaces } from '../calls/places.js';
 import { VeroneseError } from '../common/errors.js';
 import { Core } from '../module/core.js';
 import type { Read } from '../module/loading.js';
@@ -17,7 +19,7 @@ export { VeroneseError } from '../common/errors.js';
 export { davisPalette } from '../common/palette.js';
 
 /** The differences between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
-interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
+interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'decode'>> {
   read?: Read;
   /** Where the core module lies by default. */
   frames?: URL;
@@ -26,14 +28,15 @@ interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
 }
 
 /** Without an address the caller has to name the module, without `worker` to make the workers. */
-export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors }: Entry) {
+export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, decode }: Entry) {
   const newCore = () => new Core(glue, read, frames);
   const newPoints = () => new Core(pointsGlue, read, points);
   const api = new Api(newCore(), newPoints());
   // Not one of `Api`: workers have that, and none of the code that takes frames to them.
   const segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
-    clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }));
-  return { ...api, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs }) };
+    clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }), decode);
+  const segmentPair: typeof calls.segmentPair = withPlaces(decode, api.segmentPair);
+  return { ...api, segmentPair, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs, decode }) };
 }
 
 function noWorker(): never {

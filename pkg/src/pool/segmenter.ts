@@ -14,12 +14,14 @@ import type {
   Progress,
   Segmentation,
   SegmenterOptions,
+  SegmentOptions,
   WasmSource,
   WorkerLike,
 } from '../../types/index.js';
 import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
+import { type Decode, withPlaces } from '../calls/places.js';
 import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
@@ -39,6 +41,8 @@ export interface Host {
   worker: () => WorkerLike;
   /** Default number of workers. */
   jobs: () => number;
+  /** Reads frames that are named. */
+  decode: Decode | undefined;
 }
 
 /** The classes for one host. */
@@ -57,7 +61,7 @@ export function segmenters(host: Host) {
     }
 
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
-      return start(() => segmentCall(...given), this.#perform);
+      return withPlaces<SegmentOptions, Segmentation>(host.decode, (...pair) => start(() => segmentCall(...pair), this.#perform))(...given);
     }
 
     relabel(...given: Parameters<typeof calls.relabel>): Promise<Segmentation> {
@@ -69,7 +73,7 @@ export function segmenters(host: Host) {
     }
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
-      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }));
+      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }), host.decode);
     }
 
     async warmUp(): Promise<void> {

@@ -4,6 +4,7 @@ import type { Pixels } from '../../../types/index.js';
 import { reading } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import { inOrder } from '../ordered.js';
+import { type Decode, isPlace } from '../places.js';
 import { taken } from '../taking.js';
 import { checkedPixels } from '../tasks.js';
 
@@ -19,10 +20,12 @@ export class Frames {
   /** Width and height of all frames, once known. */
   size: Pick<Pixels, 'width' | 'height'> | undefined;
   readonly #signal: AbortSignal | undefined;
+  readonly #decode: Decode | undefined;
   #ask = () => {};
 
-  constructor(signal: AbortSignal | undefined) {
+  constructor(signal: AbortSignal | undefined, decode: Decode | undefined) {
     this.#signal = signal;
+    this.#decode = decode;
   }
 
   /**
@@ -38,8 +41,9 @@ export class Frames {
     source: Iterable<unknown> | AsyncIterable<unknown>,
     { indices, transfer = false }: TakeOptions = {},
   ): AsyncGenerator<Pixels, void, undefined> {
-    const take = async (input: unknown, position: number) => {
+    const take = async (given: unknown, position: number) => {
       try {
+        const input = this.#decode && isPlace(given) ? await this.#decode(given) : given;
         return { frame: reading(() => this.#taken(input, indices?.[position] ?? position, transfer)) };
       } catch (thrown) {
         return { failure: { thrown } };

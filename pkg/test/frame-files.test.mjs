@@ -1,0 +1,70 @@
+// Frames as files: in Node, a path or an address stands for the pixels.
+
+import assert from 'node:assert/strict';
+import { createServer } from 'node:http';
+import { pathToFileURL } from 'node:url';
+import { test } from 'node:test';
+import { Segmenter, SegmenterPool, segmentClip, segmentPair } from 'veronese';
+import { pair, png } from './support/frames.mjs';
+import { temporaryFolder } from './support/program.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+function files(t) {
+  const folder = temporaryFolder(t);
+  return { folder, paths: pair().map((frame, k) => folder.file(`${k}.png`, png(frame))) };
+}
+
+async function labelsOf(clip) {
+  const all = [];
+  for await (const { labels } of clip) all.push(labels);
+  return all;
+}
+
+test('two frames: paths, file addresses, addresses of a server, and pixels beside them', async (t) => {
+  const { paths } = files(t);
+  const [first, second] = pair();
+  const expected = timeless(await segmentPair(first, second));
+  const server = createServer((request, response) => {
+    if (request.url === '/1.png') response.end(png(second));
+    else response.writeHead(404).end();
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  t.after(() => server.close());
+  const address = `http://127.0.0.1:${server.address().port}`;
+  const segmenter = new Segmenter();
+  t.after(() => segmenter.close());
+  for (const call of [segmentPair, (...given) => segmenter.segmentPair(...given)]) {
+    assert.deepEqual(timeless(await call(...paths)), expected);
+    assert.deepEqual(timeless(await call(pathToFileURL(paths[0]), `${address}/1.png`)), expected);
+    assert.deepEqual(timeless(await call(first, new URL(`${address}/1.png`))), expected);
+  }
+  const missing = await failure(segmentPair(first, `${address}/2.png`));
+  assert.deepEqual([missing.code, missing.message], ['file-not-found', `${address}/2.png answered 404 Not Found`]);
+});
+
+test('clips: lists of paths, streams, and frames that are read again', async (t) => {
+  const { paths } = files(t);
+  const expected = await labelsOf(segmentClip(pair(), { quality: 'fast' }));
+  assert.deepEqual(await labelsOf(segmentClip(paths, { quality: 'fast' })), expected);
+  async function* stream() {
+    yield pair()[0];
+    yield pathToFileURL(paths[1]);
+  }
+  assert.deepEqual(await labelsOf(segmentClip(stream(), { quality: 'fast' })), expected);
+  const whole = await labelsOf(segmentClip({ length: 2, read: (index) => pair()[index] }, { quality: 'fast' }));
+  const pool = new SegmenterPool({ jobs: 2 });
+  t.after(() => pool.close());
+  assert.deepEqual(await labelsOf(pool.segmentClip({ length: 2, read: async (index) => paths[index] }, { quality: 'fast' })), whole);
+});
+
+test('what cannot be read is named', async (t) => {
+  const { folder, paths } = files(t);
+  const none = folder.path('none.png');
+  const text = folder.file('text.png', 'text');
+  for (const [place, code] of [[none, 'file-not-found'], [text, 'unreadable-image'], [folder.path('.'), 'unreadable-file'], [pathToFileURL(none), 'file-not-found']]) {
+    const error = await failure(segmentPair(paths[0], place));
+    assert.equal(error.code, code);
+    assert.ok(error.message.includes(String(place)), error.message);
+    assert.equal((await failure(labelsOf(segmentClip([paths[0], place])))).code, code);
+  }
+});
