@@ -25,6 +25,7 @@ mod scaling;
 mod still;
 mod strokes;
 mod template;
+mod trace;
 mod track;
 
 use super::annotation::{ObjectSet, Spread, UNANNOTATED};
@@ -183,7 +184,7 @@ impl FrameCorrection {
             let own: Vec<u8> = own.into_iter().map(|inside| object * inside).collect();
             let own = at_features(&own, UNANNOTATED, clip.size()[0], features);
             let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &own, flows: None };
-            let anchor = Anchor { frame: index, spread: Spread::Both };
+            let anchor = Anchor { frame: index, spread: Spread::Both, is_whole: false };
             let mut track = Track::new(object, vec![anchor], index + 1);
             track.learn_shown(features, &own);
             let mut group = Group { tracks: vec![track], changing: vec![object] };

@@ -252,6 +252,12 @@ impl FrameAnnotation {
         self.strokes(0).is_some_and(|map| map.labels.names(object))
     }
 
+    /// Whether the mask of an object is painted as a whole: what a prompt outlines is no one's word.
+    pub(super) fn is_whole(&self, object: u8) -> bool {
+        let painted = [self.strokes(object), self.strokes(0).filter(|_| self.names_in_map(object))];
+        painted.into_iter().flatten().any(|of| !of.labels.names(UNANNOTATED))
+    }
+
     /// Where the annotations of an object spread.
     #[inline(never)]
     pub(super) fn spread_of(&self, object: u8) -> Spread {

@@ -30,7 +30,12 @@ impl SegmentedClip {
                 Some(annotation) if annotation.anchored.contains(&object) => Some(annotation.spread_of(object)),
                 _ => self.frames[t].accepts(object).then_some(Spread::Both),
             };
-            (first..=last).filter_map(|frame| Some(Anchor { frame, spread: spread(frame)? })).collect()
+            let is_whole = |t: usize| {
+                self.frames[t].accepts(object)
+                    || self.frames[t].annotation.as_ref().is_some_and(|of| of.is_whole(object))
+            };
+            let anchor = |frame| Some(Anchor { frame, spread: spread(frame)?, is_whole: is_whole(frame) });
+            (first..=last).filter_map(anchor).collect()
         };
         (0..UNANNOTATED).map(of).collect()
     }

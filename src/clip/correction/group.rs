@@ -63,6 +63,7 @@ impl Group {
                 seeds: seeds.as_ref().map(|(seeds, _)| &seeds[..]),
                 is_anchor: track.anchor(frame).is_some(),
                 spreads: seeds.as_ref().is_none_or(|(_, spread)| spread.directions()[direction as usize]),
+                is_whole: track.anchor(frame).is_some_and(|anchor| anchor.is_whole),
                 spreads_to_all: track.anchor(frame).is_some_and(|anchor| anchor.spread == Spread::Both),
             })
             .collect();
@@ -145,7 +146,7 @@ mod tests {
     const SIZE: [usize; 2] = [96, 64];
 
     fn anchor(frame: usize) -> crate::clip::correction::plan::Anchor {
-        crate::clip::correction::plan::Anchor { frame, spread: Spread::Both }
+        crate::clip::correction::plan::Anchor { frame, spread: Spread::Both, is_whole: true }
     }
 
     /// The seeds of an object that a label map names.

@@ -8,6 +8,8 @@ use crate::clip::options::MAX_LOOK_AHEAD;
 pub(super) struct Anchor {
     pub(super) frame: usize,
     pub(super) spread: Spread,
+    /// Whether the object's mask there is a person's as a whole.
+    pub(super) is_whole: bool,
 }
 
 /// A direction through the frames.
@@ -84,7 +86,7 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
     let tracked = (1..UNANNOTATED).filter(|object| objects().any(|(of, _)| of == object));
     let samples: Vec<(u8, Vec<usize>)> = tracked.map(|object| (object, sample(&found(object)))).collect();
     let spreads_to_all = |frame: usize| {
-        let anchor = Anchor { frame, spread: Spread::Both };
+        let anchor = Anchor { frame, spread: Spread::Both, is_whole: false };
         objects().any(|(_, anchors)| anchors.contains(&anchor))
     };
     let mut visits = Vec::new();
@@ -128,7 +130,7 @@ mod tests {
     use super::*;
 
     fn anchors(frames: &[(usize, Spread)]) -> Vec<Anchor> {
-        frames.iter().map(|&(frame, spread)| Anchor { frame, spread }).collect()
+        frames.iter().map(|&(frame, spread)| Anchor { frame, spread, is_whole: false }).collect()
     }
 
     /// Tasks of the visits, in short: learn, anchor, forward, forward but kept, backward.

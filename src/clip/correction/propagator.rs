@@ -1,17 +1,18 @@
 //! Propagation of one object from frame to frame in one direction: predict, cut, update.
 //!
 //! ```text
-//! z(p) = bias + w_T logit p_T + w_M logit p_M + evidence        odds of the object against everything else, nats
+//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + evidence      odds of the object against everything else, nats
 //! ```
 //! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
-//! probability of the pixel's colour at its place by the appearance model; the evidence is that of the labels found automatically. One cut
-//! gives the mask.
+//! probability of the pixel's colour at its place by the appearance model; `p_A` are the labels of the annotated frame where the pixel was
+//! there; the evidence is that of the labels found automatically. One cut gives the mask.
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
 use super::label_evidence::LabelEvidence;
 use super::placement::{Placement, Whole};
 use super::proposal::{Proposal, centre_of, logit};
+use super::trace::Trace;
 use crate::clip::annotation::Seed;
 use crate::clip::evidence::Flow;
 use crate::clip::options::model;
@@ -35,6 +36,8 @@ pub(super) struct Observation<'a> {
     pub(super) is_anchor: bool,
     /// Whether the annotation spreads in this direction.
     pub(super) spreads: bool,
+    /// Whether the object's mask is a person's as a whole.
+    pub(super) is_whole: bool,
     /// Whether it spreads to all frames.
     pub(super) spreads_to_all: bool,
 }
@@ -64,6 +67,8 @@ pub(super) struct Propagator {
     reached: Option<Reached>,
     appearance: Option<AppearanceModel>,
     label_evidence: LabelEvidence,
+    /// From the frame passed last in which the whole mask is a person's.
+    trace: Option<Trace>,
     /// Whether it has learnt the annotations that spread to all frames.
     knows_annotations: bool,
 }
@@ -93,7 +98,13 @@ impl Propagator {
             label_evidence.learn(found, &reached.mask, true);
         }
         let reached = self.reached.as_ref().map(|reached| Reached { whole: reached.whole.turned(), ..reached.clone() });
-        Propagator { reached, appearance, label_evidence, knows_annotations: self.knows_annotations }
+        Propagator {
+            reached,
+            appearance,
+            label_evidence,
+            trace: self.trace.clone(),
+            knows_annotations: self.knows_annotations,
+        }
     }
 
     /// Learns the appearance of an object from its mask in a frame, before the propagation begins.
@@ -160,6 +171,7 @@ impl Propagator {
         let mask = proposal.plane(features);
         let centre = centre_of(&mask).unwrap_or(centre);
         let whole = Whole::new(&mask, features, centre, !partly);
+        self.trace = of.is_whole.then(|| Trace::new(&mask, features));
         self.reach(of, Reached { mask, centre, whole }, [partly, true]);
         proposal
     }
@@ -189,7 +201,7 @@ impl Propagator {
         let reached = self.reached.as_ref()?;
         let (features, [width, height]) = (of.features, of.features.size);
         let still = Flow::still(features.size);
-        let [to, _] = of.flows.unwrap_or([&still, &still]);
+        let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&reached.mask, model().motion);
         let all = gaussian(&reached.whole.template.mask, model().motion);
         let near = |p: usize| {
@@ -226,13 +238,16 @@ impl Propagator {
             appearance.learn_seeds(features, centre, of.seeds);
         }
         let remembered = self.appearance.as_ref().map(|appearance| appearance.read(features, &area, centre));
+        let traced = self.trace.as_mut().map(|trace| trace.follow(features, flows, &area));
         let odds = area.pixels(width).enumerate().map(|(k, p)| {
+            let traced = traced.as_ref().map_or(0.0, |of| of[k]);
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             let evidence = self.label_evidence.ratio(of.found[p]);
             let z = of.odds_seen(p)
                 + model().bias
                 + weight * logit(carried.values()[p])
                 + model().memory * memory
+                + model().trace * traced
                 + evidence;
             // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
             let most = if hidden.is_some() && carried.values()[p] < model().expected {
@@ -280,6 +295,9 @@ impl Propagator {
             }
         };
         let mask = goes_on.as_ref().unwrap_or(&proposal).plane(features);
+        if of.is_whole && of.spreads {
+            self.trace = Some(Trace::new(&mask, features));
+        }
         if let Some(reached) = self.reached.take() {
             let seen = centre_of(&mask).unwrap_or(centre);
             let whole = reached.whole.gone_on(&mask, features, seen, placement.as_ref());

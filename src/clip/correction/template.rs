@@ -30,12 +30,12 @@ struct Sample {
 }
 
 /// Colours of a pixel.
-fn at(planes: &[Plane; 3], p: usize) -> [f32; 3] {
+pub(super) fn at(planes: &[Plane; 3], p: usize) -> [f32; 3] {
     planes.each_ref().map(|plane| plane.values()[p])
 }
 
 /// Squared difference of colours, as a share of the truncation.
-fn difference(one: [f32; 3], other: [f32; 3]) -> f32 {
+pub(super) fn difference(one: [f32; 3], other: [f32; 3]) -> f32 {
     let steps: [f32; 3] = std::array::from_fn(|k| one[k] - other[k]);
     (steps.map(|step| step * step).iter().sum::<f32>() / model().truncation).min(1.0)
 }
