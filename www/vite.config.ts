@@ -139,7 +139,8 @@ export default defineConfig({
     target: 'es2023',
     // No data: URLs, because the content security policy allows scripts and WebAssembly from files only.
     assetsInlineLimit: 0,
-    modulePreload: { polyfill: false },
+    // What is loaded later needs little besides what is there: the list of that would be larger than what it saves.
+    modulePreload: { polyfill: false, resolveDependencies: (_file, needed, { hostType }) => needed.filter((name) => hostType === 'html' || name.endsWith('.css')) },
     rolldownOptions: { input: [here('index.html'), HOST_PAGE] },
   },
   // Not pre-bundled, because the package finds its worker and module by import.meta.url.

@@ -53,15 +53,12 @@ test('folders are clips in the order of their names, of subfolders one after ano
     await dropPaths(page, [join(root, 'clip')]);
     await page.getByRole('button', { name: 'All 6 images, folder by folder' }).click();
     await expect(page.locator('#clip-name')).toHaveText('clip, 6 frames, 96 × 64');
-    const seen: string[] = [];
-    for (let k = 0; k < names.length; k++) {
+    for (const [k, name] of ['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png'].entries()) {
       await page.locator('[name=clip-first]').fill(String(k));
       await page.locator('[name=clip-first]').dispatchEvent('change');
-      await expect(page.locator('#clip-first-at')).toHaveText(`#${k}`);
+      await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`${name},`);
       await done(page);
-      seen.push((await page.locator('[data-slot=first] .slot-name').textContent())!.split(',')[0]!);
     }
-    expect(seen).toEqual(['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png']);
   });
   const picked = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
   await withFolder(Object.fromEntries(picked.map((name) => [`clip/${name}`, buffer])), async (root) => {

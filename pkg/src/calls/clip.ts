@@ -5,17 +5,17 @@ import { reading } from '../common/checks.js';
 import { cancelled } from '../common/errors.js';
 import { checkedOptions } from './clip/options.js';
 import { Frames } from './clip/frames.js';
-import type { Decode } from './places.js';
+import type { Places } from './places.js';
 import { type Place, PlacedClip } from './clip/place.js';
 import { streamed } from './clip/stream.js';
 import { type ClipResults, Tracks } from './clip/tracks.js';
 import { segmentedTwice } from './clip/whole.js';
 
 /** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
-export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>, decode?: Decode): Clip {
+export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>, places?: Places): Clip {
   const results: ClipResults = { tracks: new Tracks() };
   const rest = { tracks: () => results.tracks.value(), state: async () => results.state?.slice(), changes: async () => structuredClone(results.changes ?? []) };
-  const clip = Object.assign(segmented(frames, options, reserve, decode, results), rest);
+  const clip = Object.assign(segmented(frames, options, reserve, places, results), rest);
   dropped.register(clip, results);
   return clip;
 }
@@ -27,7 +27,7 @@ async function* segmented(
   frames: ClipSource,
   options: ClipOptions | undefined,
   reserve: (signal?: AbortSignal) => Promise<Place>,
-  decode: Decode | undefined,
+  places: Places | undefined,
   results: ClipResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const task = reading(() => checkedOptions(frames, options));
@@ -39,7 +39,7 @@ async function* segmented(
   try {
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
-    const taken = new Frames(signal, decode);
+    const taken = new Frames(signal, places);
     for await (const frame of whole ? segmentedTwice(clip, taken, task, results) : streamed(clip, taken, task, results)) {
       place.pause?.(true);
       yield frame;

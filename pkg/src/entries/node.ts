@@ -2,6 +2,7 @@
 
 import { availableParallelism } from 'node:os';
 import { Worker } from 'node:worker_threads';
+import { placesBy } from './named.js';
 import { packageFor } from './package.js';
 import { read } from './reading.js';
 
@@ -14,5 +15,5 @@ export const { init, initPoints, segmentPair, segmentClip, relabel, fitMotions, 
   worker: () => new Worker(new URL('./worker-node.js', import.meta.url), { name: 'veronese' }),
   jobs: availableParallelism,
   // With a module of its own, which only files need.
-  decode: async (place) => (await import('./frame-files.js')).decodeFile(place),
+  places: placesBy(async (place) => (await import('./frame-files.js')).decodeFile(place)),
 });

@@ -7,7 +7,6 @@ import type * as calls from '../../types/index.js';
 import type { Clip, ClipOptions, ClipSource } from '../../types/index.js';
 import { Api } from '../calls/api.js';
 import { clipOf } from '../calls/clip.js';
-import { withPlaces } from '../calls/places.js';
 import { VeroneseError } from '../common/errors.js';
 import { Core } from '../module/core.js';
 import type { Read } from '../module/loading.js';
@@ -19,7 +18,7 @@ export { VeroneseError } from '../common/errors.js';
 export { davisPalette } from '../common/palette.js';
 
 /** The differences between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
-interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'decode'>> {
+interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'places'>> {
   read?: Read;
   /** Where the core module lies by default. */
   frames?: URL;
@@ -28,15 +27,15 @@ interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'decode'>> {
 }
 
 /** Without an address the caller has to name the module, without `worker` to make the workers. */
-export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, decode }: Entry) {
+export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, places }: Entry) {
   const newCore = () => new Core(glue, read, frames);
   const newPoints = () => new Core(pointsGlue, read, points);
   const api = new Api(newCore(), newPoints());
   // Not one of `Api`: workers have that, and none of the code that takes frames to them.
   const segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
-    clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }), decode);
-  const segmentPair: typeof calls.segmentPair = withPlaces(decode, api.segmentPair);
-  return { ...api, segmentPair, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs, decode }) };
+    clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }), places);
+  const segmentPair: typeof calls.segmentPair = places?.pair(api.segmentPair) ?? (api.segmentPair as typeof calls.segmentPair);
+  return { ...api, segmentPair, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs, places }) };
 }
 
 function noWorker(): never {

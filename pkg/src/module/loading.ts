@@ -21,9 +21,7 @@ export async function compile(source: WasmSource | Promise<WasmSource>, read: Re
   }
 }
 
-const REMEDY =
-  '; serve the file there, pass its URL to init() (of the element, VeroneseSegmenterElement.source), ' +
-  'or import veronese/inline (veronese/element/inline), which has it inside';
+const REMEDY = '; give its URL to init(), or import veronese/inline (of the element: source, veronese/element/inline)';
 
 function notReached(place: string, thrown: Error): never {
   throw loadFailed(`${place} cannot be reached (${thrown.message})${REMEDY}`, thrown);

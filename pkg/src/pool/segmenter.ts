@@ -10,6 +10,7 @@ import type {
   PairInput,
   PairOutcome,
   PairsOptions,
+  Pixels,
   PoolOptions,
   Progress,
   Segmentation,
@@ -21,7 +22,7 @@ import type {
 import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
-import { type Decode, withPlaces } from '../calls/places.js';
+import type { PairCall, Places } from '../calls/places.js';
 import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
@@ -42,7 +43,7 @@ export interface Host {
   /** Default number of workers. */
   jobs: () => number;
   /** Reads frames that are named. */
-  decode: Decode | undefined;
+  places: Places | undefined;
 }
 
 /** The classes for one host. */
@@ -61,7 +62,8 @@ export function segmenters(host: Host) {
     }
 
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
-      return withPlaces<SegmentOptions, Segmentation>(host.decode, (...pair) => start(() => segmentCall(...pair), this.#perform))(...given);
+      const call: PairCall<Pixels, SegmentOptions, Segmentation> = (...pair) => start(() => segmentCall(...pair), this.#perform);
+      return (host.places?.pair(call) ?? (call as typeof calls.segmentPair))(...given);
     }
 
     relabel(...given: Parameters<typeof calls.relabel>): Promise<Segmentation> {
@@ -73,7 +75,7 @@ export function segmenters(host: Host) {
     }
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
-      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }), host.decode);
+      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }), host.places);
     }
 
     async warmUp(): Promise<void> {

@@ -56,8 +56,7 @@ export function spawnWith<Task, Result>(
 
 /** Browsers name neither the address nor the status. */
 const UNLOADED =
-  'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src); ' +
-  "the option 'worker' names another (of the element, VeroneseSegmenterElement.worker), and veronese/element/inline needs none";
+  'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src)';
 
 function isOfNode(worker: NodeThread | WebThread): worker is NodeThread {
   return has(worker, 'ref');

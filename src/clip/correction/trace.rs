@@ -35,6 +35,7 @@ impl Trace {
     }
 
     /// Goes on to a frame by the flows to the one before and from there. Returns the odds of the object at the pixels of an area, nats.
+    #[inline(never)]
     pub(super) fn follow(&mut self, features: &FrameFeatures, [to, from]: [&Flow; 2], area: &Area) -> Vec<f32> {
         let (size @ [width, _], pixels) = (features.size, features.pixels());
         let places: Vec<[f32; 2]> = (0..pixels).map(|p| self.place_before(to, [p % width, p / width], size)).collect();
@@ -61,17 +62,19 @@ impl Trace {
     }
 
     /// Where a pixel of the next frame was. Beyond the border it goes on as there.
+    #[inline(never)]
     fn place_before(&self, to: &Flow, [x, y]: [usize; 2], size: [usize; 2]) -> [f32; 2] {
         let [u, v] = to.at(x, y);
         let before = [x as f32 + u as f32, y as f32 + v as f32];
         let footprint = Footprint::new(before[0], before[1], size[0], size[1]);
         [0, 1].map(|k| {
-            let beyond = before[k] - before[k].clamp(0.0, size[k] as f32 - 1.0);
+            let beyond = before[k] - before[k].max(0.0).min(size[k] as f32 - 1.0);
             footprint.sample(self.places[k].values()) + beyond
         })
     }
 
     /// How much the colours of the pixels of an area differ from those a step from their places, 0…1.
+    #[inline(never)]
     fn disagreement(&self, features: &FrameFeatures, area: &Area, step: [isize; 2]) -> Plane {
         let [width, height] = features.size.map(|side| side as isize);
         let of = |p: usize| {
@@ -83,6 +86,7 @@ impl Trace {
         gaussian(&Plane::from_vec(area.width(), area.height(), differences), model().border)
     }
 
+    #[inline(never)]
     fn odds(&self, p: usize, disagreement: f32, [width, height]: [usize; 2]) -> f32 {
         let place = self.places.each_ref().map(|places| places.values()[p]);
         let odds = logit(Footprint::new(place[0], place[1], width, height).sample(self.mask.values()));
@@ -93,6 +97,7 @@ impl Trace {
 }
 
 /// The pixel of the frame before that a pixel was, if that one comes here.
+#[inline(never)]
 fn source(to: &Flow, from: &Flow, [x, y]: [usize; 2]) -> Option<usize> {
     let (step, [px, py]) = (to.at(x, y), to.destination(x, y)?);
     let back = from.at(px, py);

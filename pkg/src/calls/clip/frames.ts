@@ -4,7 +4,7 @@ import type { Pixels } from '../../../types/index.js';
 import { reading } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import { inOrder } from '../ordered.js';
-import { type Decode, isPlace } from '../places.js';
+import type { Places } from '../places.js';
 import { taken } from '../taking.js';
 import { checkedPixels } from '../tasks.js';
 
@@ -20,12 +20,12 @@ export class Frames {
   /** Width and height of all frames, once known. */
   size: Pick<Pixels, 'width' | 'height'> | undefined;
   readonly #signal: AbortSignal | undefined;
-  readonly #decode: Decode | undefined;
+  readonly #places: Places | undefined;
   #ask = () => {};
 
-  constructor(signal: AbortSignal | undefined, decode: Decode | undefined) {
+  constructor(signal: AbortSignal | undefined, places: Places | undefined) {
     this.#signal = signal;
-    this.#decode = decode;
+    this.#places = places;
   }
 
   /**
@@ -43,7 +43,7 @@ export class Frames {
   ): AsyncGenerator<Pixels, void, undefined> {
     const take = async (given: unknown, position: number) => {
       try {
-        const input = this.#decode && isPlace(given) ? await this.#decode(given) : given;
+        const input = this.#places ? await this.#places.frame(given) : given;
         return { frame: reading(() => this.#taken(input, indices?.[position] ?? position, transfer)) };
       } catch (thrown) {
         return { failure: { thrown } };
