@@ -40,7 +40,7 @@ export function spawnWith<Task, Result>(
       worker.addEventListener('message', (event: MessageEvent<Reply<Result>>) => onReply(event.data));
       worker.addEventListener('error', (event: ErrorEvent) => {
         event.preventDefault();
-        onDeath(event.message || UNLOADED);
+        onDeath(event.message || 'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src)');
       });
       worker.addEventListener('messageerror', () => onDeath('a message could not be read'));
     }
@@ -53,10 +53,6 @@ export function spawnWith<Task, Result>(
     };
   };
 }
-
-/** Browsers name neither the address nor the status. */
-const UNLOADED =
-  'its file could not be loaded (from another origin it needs CORS, and its origin and blob: in worker-src)';
 
 function isOfNode(worker: NodeThread | WebThread): worker is NodeThread {
   return has(worker, 'ref');

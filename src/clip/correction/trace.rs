@@ -35,7 +35,6 @@ impl Trace {
     }
 
     /// Goes on to a frame by the flows to the one before and from there. Returns the odds of the object at the pixels of an area, nats.
-    #[inline(never)]
     pub(super) fn follow(&mut self, features: &FrameFeatures, [to, from]: [&Flow; 2], area: &Area) -> Vec<f32> {
         let (size @ [width, _], pixels) = (features.size, features.pixels());
         let places: Vec<[f32; 2]> = (0..pixels).map(|p| self.place_before(to, [p % width, p / width], size)).collect();
@@ -62,7 +61,6 @@ impl Trace {
     }
 
     /// Where a pixel of the next frame was. Beyond the border it goes on as there.
-    #[inline(never)]
     fn place_before(&self, to: &Flow, [x, y]: [usize; 2], size: [usize; 2]) -> [f32; 2] {
         let [u, v] = to.at(x, y);
         let before = [x as f32 + u as f32, y as f32 + v as f32];
@@ -74,7 +72,6 @@ impl Trace {
     }
 
     /// How much the colours of the pixels of an area differ from those a step from their places, 0…1.
-    #[inline(never)]
     fn disagreement(&self, features: &FrameFeatures, area: &Area, step: [isize; 2]) -> Plane {
         let [width, height] = features.size.map(|side| side as isize);
         let of = |p: usize| {
@@ -86,7 +83,6 @@ impl Trace {
         gaussian(&Plane::from_vec(area.width(), area.height(), differences), model().border)
     }
 
-    #[inline(never)]
     fn odds(&self, p: usize, disagreement: f32, [width, height]: [usize; 2]) -> f32 {
         let place = self.places.each_ref().map(|places| places.values()[p]);
         let odds = logit(Footprint::new(place[0], place[1], width, height).sample(self.mask.values()));
@@ -97,7 +93,6 @@ impl Trace {
 }
 
 /// The pixel of the frame before that a pixel was, if that one comes here.
-#[inline(never)]
 fn source(to: &Flow, from: &Flow, [x, y]: [usize; 2]) -> Option<usize> {
     let (step, [px, py]) = (to.at(x, y), to.destination(x, y)?);
     let back = from.at(px, py);

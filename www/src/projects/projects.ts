@@ -1,7 +1,7 @@
 //! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. Only what watches is loaded with
 //! the page.
 
-import { isStorageFull, PageError } from '../common/errors.js';
+import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS, hasEdits } from '../correction/edits.js';
@@ -91,8 +91,10 @@ export class Projects {
       if (project === null || project.frames === subject.frames) return project;
       this.#store.say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
     } catch (error) {
-      const [sentence, code] = error instanceof PageError ? [error.message, error.code] : [strings.projects.refused, 'storage-refused'];
-      this.#store.say(sentence, code);
+      const code = codeOf(error);
+      // What has no code comes from the browser.
+      if (code === 'unexpected') this.#store.say(strings.projects.refused, 'storage-refused');
+      else this.#store.say(sentenceOf(error), code);
     }
     return null;
   }
