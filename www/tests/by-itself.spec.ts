@@ -31,11 +31,11 @@ test('what is selected is named beside the pointer, and painting with the backgr
   await upload(page, await smallFrames(4));
   await clipDone(page);
   const [cursor, help] = [page.locator('#cursor'), page.locator('#tool-help')];
-  await page.locator('.layers').hover({ position: { x: 40, y: 40 } });
+  // It rests there from now on.
+  await page.locator('.layers').hover();
   await expect(cursor).toBeHidden();
   await page.keyboard.press('1');
   await page.keyboard.press('b');
-  await page.locator('.layers').hover({ position: { x: 60, y: 60 } });
   await expect(cursor).toHaveText('Object 1');
   await expect(cursor).toBeVisible();
   const colour = await page.locator('#objects > li').nth(1).evaluate((row) => row.style.getPropertyValue('--colour'));
@@ -49,6 +49,6 @@ test('what is selected is named beside the pointer, and painting with the backgr
   await expect(help).toContainText('Background is selected: what you paint is taken away from objects.');
   await page.keyboard.press('e');
   await expect(help).toContainText('Background is selected, and cannot be erased: select an object first.');
-  await page.locator('.layers').hover({ position: { x: 80, y: 60 } });
+  await page.locator('.layers').hover();
   await expect(cursor).toHaveText('Background');
 });

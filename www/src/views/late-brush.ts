@@ -4,6 +4,7 @@ import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import type { Brush } from './brush.js';
+import { find } from './markup.js';
 
 export class LateBrush {
   /** `null` until it is loaded. */
@@ -14,9 +15,16 @@ export class LateBrush {
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
+    const layers = find(stage, '.layers', HTMLElement);
+    let over: PointerEvent | null = null;
+    layers.addEventListener('pointermove', (event) => (over = event));
+    layers.addEventListener('pointerleave', () => (over = null));
     this.#load = async () => {
       const { Brush } = await import('./brush.js');
-      return (this.now = new Brush(stage, store, session));
+      this.now = new Brush(stage, store, session);
+      // A pointer that rests does not say again where it is.
+      if (over !== null) layers.dispatchEvent(new PointerEvent('pointerenter', over));
+      return this.now;
     };
     const loading = (): Promise<Brush> => {
       if (this.#loading !== null) return this.#loading;
