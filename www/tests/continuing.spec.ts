@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, axe, clipDone, clipFrames, done, expect, goTo, hide, kept, leaves, open, openClip, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, saved, test, upload, withoutStorage } from './support.js';
+import { type Upload, axe, clipDone, clipFrames, done, expect, goTo, hide, holdBack, kept, leaves, open, openClip, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, saved, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -248,14 +248,17 @@ test('a clip is kept when it is opened, and one whose run a reload ended goes on
   await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
 
   await page.getByLabel('Segment a clip when it is opened').check();
+  await holdBack(page, 'f12.png');
   await upload(page, await clipFrames(16, 160, 112));
-  await expect(page.locator('#clip-detail')).toHaveText(/^[2-9] of 16/);
+  await expect(page.locator('#clip-detail')).toHaveText(/^([2-9]|1\d) of 16/);
   await hide(page); // as before a reload
   await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f15') && /"pairs":\[\[0/.test(project))).toBe(true);
   await page.goto('./#sample=parallax&quality=fast');
   await page.reload();
+  const release = await holdBack(page, 'f12.png');
   await work.filter({ hasText: 'f00-f15' }).click();
   await expect(page.locator('#clip-detail')).toHaveText(/^([2-9]|1\d) of 16/); // not from the first one on
+  await release();
   await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText(/^2 objects in 16 frames/);
 });

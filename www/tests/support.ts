@@ -240,18 +240,29 @@ export async function cancelWhen(page: Page, said = /./): Promise<void> {
   }, said.source);
 }
 
-/** Keeps the page from reading a frame until what this gives is called. */
+/** Keeps the open page from reading a frame until what this gives is called. */
 export async function holdBack(page: Page, name: string): Promise<() => Promise<void>> {
-  await page.evaluate((frame) => {
-    const make = createImageBitmap as (...given: unknown[]) => Promise<ImageBitmap>;
-    const released = new Promise<void>((resolve) => Object.assign(window, { release: resolve }));
-    const held = async (...given: unknown[]): Promise<ImageBitmap> => {
-      if (given[0] instanceof File && given[0].name === frame) await released;
-      return make(...given);
-    };
-    Object.assign(window, { createImageBitmap: held });
-  }, name);
-  return () => page.evaluate(() => (window as unknown as { release: () => void }).release());
+  await page.evaluate(holdReading, name);
+  return () => release(page);
+}
+
+/** {@link holdBack} of a page that is opened next. */
+export async function held(page: Page, name: string): Promise<() => Promise<void>> {
+  await page.addInitScript(holdReading, name);
+  return () => release(page);
+}
+
+function holdReading(name: string): void {
+  const decode = window.createImageBitmap;
+  const released = new Promise<void>((release) => Object.assign(window, { release }));
+  window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
+    if (source instanceof File && source.name === name) await released;
+    return decode(source, ...rest);
+  };
+}
+
+function release(page: Page): Promise<void> {
+  return page.evaluate(() => (window as unknown as { release(): void }).release());
 }
 
 /** Waits until the clip is segmented. */
@@ -417,19 +428,6 @@ export async function mergeWith(row: Locator, other: number): Promise<void> {
 /** Opens the settings that are folded away. */
 export async function openAdvanced(page: Page): Promise<void> {
   await page.locator('#settings details').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
-}
-
-/** Decoding files with this name waits until `release` is called. Called before the page is opened. */
-export async function held(page: Page, file: string): Promise<() => Promise<void>> {
-  await page.addInitScript((file) => {
-    const decode = window.createImageBitmap;
-    const released = new Promise<void>((release) => Object.assign(window, { release }));
-    window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
-      if (source instanceof File && source.name === file) await released;
-      return decode(source, ...rest);
-    };
-  }, file);
-  return () => page.evaluate(() => (window as unknown as { release(): void }).release());
 }
 
 /** Opens files through the picker. */

@@ -212,7 +212,6 @@ export class Brush {
   /** The circle has the colour of the selected mask; the style sheet dashes the eraser's. */
   #dress(now: State): void {
     const { tool, look } = now;
-    this.#picture.dataset.tool = tool.name;
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
     else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(now)));

@@ -23,7 +23,7 @@ export class LateBrush {
       const { Brush } = await import('./brush.js');
       this.now = new Brush(stage, store, session);
       // A pointer that rests does not say again where it is.
-      if (over !== null) layers.dispatchEvent(new PointerEvent('pointerenter', over));
+      if (over !== null) layers.dispatchEvent(new PointerEvent('pointermove', over));
       return this.now;
     };
     const loading = (): Promise<Brush> => {
@@ -36,7 +36,10 @@ export class LateBrush {
       return this.#loading;
     };
     session.objects.drawing = () => loading().then(({ drawing }) => drawing, () => null);
+    const picture = find(stage, '#strokes', SVGSVGElement);
     store.subscribe(({ tool }) => {
+      // Styles go by it: from now on a finger draws, and scrolls nothing.
+      picture.dataset.tool = tool.name;
       if (tool.name !== 'look') void loading();
     });
   }
