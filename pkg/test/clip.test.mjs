@@ -60,7 +60,8 @@ describe('segmentClip', () => {
     const clip = segmentClip({ length: COUNT, read: (index) => frames()[index] }, { quality: 'fast' });
     const given = await all(clip);
     assert.deepEqual(given.map(({ index }) => index), Array.from({ length: COUNT }, (_, k) => k));
-    for (const { index, labels, objects, background } of given) {
+    for (const { index, labels, width, height, objects, background } of given) {
+      assert.deepEqual({ width, height }, SIZE);
       assert.ok(labels instanceof Uint8Array);
       assert.equal(labels.length, SIZE.width * SIZE.height);
       assert.deepEqual(new Set(labels), new Set([0, ...objects.map(({ id }) => id)]));

@@ -84,7 +84,8 @@ const CALLS = {
     const asked = corrections.length > 0 ? { ...options, corrections } : options;
     const source = options.lookAhead === 'all' ? { length: frames.length, read: (index) => frames[index] } : frames;
     const done = [];
-    for await (const frame of segmentClip(source, asked)) done.push(answered(frame));
+    // The size is the package's own.
+    for await (const { width, height, ...frame } of segmentClip(source, asked)) done.push(answered(frame));
     return { bytes: done.flatMap(({ bytes }) => bytes), rest: done.map(({ rest }) => rest) };
   },
   fitMotions: async ({ of, options }) => answered(await fitMotions(measurementsOf(golden.measurements[of]), options)),

@@ -436,6 +436,8 @@ export interface ClipFrame {
   index: number;
   /** One label per pixel, row by row: 0 for the background, 255 for a pixel marked as unknown, otherwise the number of an object. */
   labels: Uint8Array;
+  width: number;
+  height: number;
   /** The visible objects by number. */
   objects: ClipObject[];
   /** Motion of the background to the next frame; null if there is none. In a stream, its motion from the frame before, continued. */

@@ -44,9 +44,12 @@ export type Task = CallTask | { call: 'warmUp' };
 /** The parts of a segmentation that `relabel` changes. */
 export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
 
+/** A frame as the module gives it, which does not say the size again. */
+export type LabelledFrame = Omit<ClipFrame, 'width' | 'height'>;
+
 /** The frames that were still waiting at the end of a clip, and the number of objects beyond the last number. */
 export interface ClipEnd {
-  frames: ClipFrame[];
+  frames: LabelledFrame[];
   dropped: number;
 }
 
@@ -97,7 +100,7 @@ export interface Annotating {
 }
 
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
+export type Result = Segmentation | Corrected | MotionFit | LabelledFrame | ClipEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };

@@ -3,7 +3,7 @@
 
 import type { ClipFrames, FrameSource, VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
-import { type FoundFrame, Tracks } from '../calls/clip/tracks.js';
+import { Tracks } from '../calls/clip/tracks.js';
 import { VeroneseError } from '../common/errors.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import { type Place, pixelsOf } from './sources.js';
@@ -22,6 +22,9 @@ interface Source {
   size: { width: number; height: number };
   close?: () => void;
 }
+
+/** A frame without its labels, which are kept packed. */
+type FoundFrame = Omit<ClipFrame, 'labels'>;
 
 export interface ShownFrame {
   index: number;

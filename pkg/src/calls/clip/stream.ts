@@ -2,7 +2,7 @@
 
 import type { ClipFrame, Pixels } from '../../../types/index.js';
 import { cancelled } from '../../common/errors.js';
-import type { ClipEnd } from '../messages.js';
+import type { ClipEnd, LabelledFrame } from '../messages.js';
 import type { CheckedOptions, Stream } from './options.js';
 import type { Frames } from './frames.js';
 import type { PlacedClip } from './place.js';
@@ -29,7 +29,7 @@ export async function* streamed(
       first = isFirst ? copy : undefined;
     }
     index += 1;
-    const step = clip.step<ClipFrame | undefined>({ call: 'pushClip', frame });
+    const step = clip.step<LabelledFrame | undefined>({ call: 'pushClip', frame });
     frames.ahead();
     const done = await step;
     if (done) yield tracks.see(done, frame);

@@ -1,6 +1,7 @@
 // The tracks of a clip's objects, collected frame by frame.
 
 import type { ClipChange, ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
+import type { LabelledFrame } from '../messages.js';
 import type { PlacedClip } from './place.js';
 
 /** The results of a clip besides its frames, and where they are kept until it ends. */
@@ -28,7 +29,7 @@ export interface Ground {
 }
 
 /** The objects of a frame. */
-export type FoundFrame = Omit<ClipFrame, 'labels'>;
+type FoundFrame = Omit<LabelledFrame, 'labels'>;
 
 interface Size {
   width: number;
@@ -52,12 +53,12 @@ export class Tracks {
     return this.#objects.size === 0;
   }
 
-  /** Adds a frame with its labels and returns it. */
-  see(frame: ClipFrame, size: Size): ClipFrame {
+  /** Adds a frame with its labels and returns it with its size. */
+  see(frame: LabelledFrame, size: Size): ClipFrame {
     for (const { id, pixels } of frame.objects) {
       if (pixels > MOST * size.width * size.height || shareOfBorder(frame.labels, id, size) > MOST_OF_BORDER) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
     }
-    return this.add(frame);
+    return sized(this.add(frame), size);
   }
 
   /** The objects that are likely to be the ground. */
@@ -98,6 +99,10 @@ export class Tracks {
     const name = this.names.get(id);
     return { id, ...(name !== undefined && { name }), ...rest };
   }
+}
+
+export function sized(frame: LabelledFrame, { width, height }: Size): ClipFrame {
+  return Object.assign(frame, { width, height });
 }
 
 function shareOfBorder(labels: Uint8Array, id: number, { width, height }: Size): number {

@@ -3,7 +3,7 @@
 import type { ClipChange, ClipFrame } from '../../../types/index.js';
 import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import type { Annotating, Annotations, ClipSummary } from '../messages.js';
+import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { CheckedOptions, Whole } from './options.js';
@@ -11,7 +11,7 @@ import { type Frames, reads, upTo } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
-import type { ClipResults } from './tracks.js';
+import { type ClipResults, sized } from './tracks.js';
 
 /** The options, with masks that are checked as well. */
 type Task = Omit<CheckedOptions, 'masks'> & { masks: readonly LabelledFrame[] };
@@ -33,7 +33,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
   for await (const frame of frames.each(reads(read, indices), { indices, transfer })) {
     const index = indices[done++] as number;
     onProgress?.({ frame: index, of, stage: 'labels' });
-    const step = clip.step<ClipFrame>({ call: 'clipFrame', index, frame });
+    const step = clip.step<Found>({ call: 'clipFrame', index, frame });
     frames.ahead();
     yield results.tracks.see(await step, frame);
   }
@@ -61,11 +61,11 @@ async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<Cli
   for await (const { index, frame, pairs: known } of shared ? shared.solved(all, inOrder, { signal, onPairs }) : all) {
     task.onProgress?.({ frame: index, of: task.source.length, stage: 'pairs' });
     const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(known && { known }) });
-    const seen = task.onPreview ? clip.step<ClipFrame | undefined>({ call: 'previewClip' }) : undefined;
+    const seen = task.onPreview ? clip.step<Found | undefined>({ call: 'previewClip' }) : undefined;
     (shared ?? frames).ahead();
     const [pairs, preview] = await Promise.all([step, seen]);
     if (pairs) await onPairs(index, pairs);
-    if (preview) await clip.wait(task.onPreview?.(preview));
+    if (preview) await clip.wait(task.onPreview?.(sized(preview, frame)));
     shared?.taken();
   }
   return clip.step({ call: 'concludeClip' });
@@ -110,7 +110,8 @@ async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: n
       let isCalled = true;
       const segmented = async () => {
         if (!isCalled) throw invalidInput(`frame ${index} was asked for when 'onChange' had ended`);
-        return clip.step<ClipFrame>({ call: 'clipFrame', index, frame: await frames.one(read, index) });
+        const frame = await frames.one(read, index);
+        return sized(await clip.step<Found>({ call: 'clipFrame', index, frame }), frame);
       };
       await clip.wait(onChange(index, segmented));
       isCalled = false;
