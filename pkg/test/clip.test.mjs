@@ -172,11 +172,16 @@ describe('segmentClip', () => {
     assert.deepEqual(progress, [...told(undefined), ...told(2), ...told(2), ...told(2, 'labels')]);
   });
 
-  test('no frames and one frame', async () => {
-    assert.deepEqual(await all(segmentClip([])), []);
-    const [only, ...others] = await all(segmentClip(frames(1)));
-    assert.deepEqual([others, only.objects, only.background], [[], [], null]);
-    assert.ok(only.labels.every((label) => label === 0));
+  test('no frames and one frame are no clip, but of a live stream, whose frames are answered as they come', async () => {
+    for (const [count, found] of [[0, 'none'], [1, 'one']]) {
+      const whole = { length: count, read: (index) => frames(count)[index] };
+      for (const given of [segmentClip(frames(count)), segmentClip(whole), segmentClip(whole, { lookAhead: 2 })]) {
+        const { given: seen, error } = await until(given);
+        assert.deepEqual([seen, error.code, error.message], [[], 'too-few-frames', `a clip needs two frames, found ${found}`]);
+      }
+      const live = await all(segmentClip(frames(count), { lookAhead: 0 }));
+      assert.deepEqual(live.map(({ objects, background }) => [objects, background]), Array(count).fill([[], null]));
+    }
   });
 
   test('several clips in one thread do not disturb each other', async () => {

@@ -587,7 +587,8 @@ export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFil
  * A stream returns a frame when the frames it waits for have come (`lookAhead`), the rest at the end. A whole clip, with
  * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. Frames are taken from the source
  * only when the reader waits for one, and one more while the last is worked on, so that decoding and segmenting overlap. If the source
- * throws or a frame is unusable, the frames before it come first, then the error.
+ * throws or a frame is unusable, the frames before it come first, then the error. Fewer than two frames are the error `too-few-frames`, but for
+ * a look-ahead of 0: a camera may be turned off at any time.
  *
  * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
  * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps

@@ -88,7 +88,7 @@ pub(crate) fn segment_clip(
         mark_unknown,
         options: Some(Options { said, state }),
         size: None,
-        place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false } },
+        place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false, live: look_ahead == Some(0) } },
         changes: Vec::new(),
         tracks: Tracks::default(),
         failure: None,
@@ -108,6 +108,8 @@ enum Place {
         /// The frame that is read next.
         next: usize,
         ended: bool,
+        /// Whether frames are answered as they come, so that the clip may end at any time.
+        live: bool,
     },
     Unsegmented,
     Segmented {
@@ -315,26 +317,39 @@ impl Clip {
 
     fn next_of_stream(&mut self, py: Python<'_>) -> PyResult<Option<ClipFrame>> {
         loop {
-            let Place::Stream { ready, next, ended } = &mut self.place else { return Ok(None) };
+            let Place::Stream { ready, next, ended, live } = &mut self.place else { return Ok(None) };
             if let Some(frame) = ready.pop_front() {
                 return Ok(Some(frame));
             }
             if *ended {
                 return Ok(None);
             }
-            let index = *next;
+            let (index, live) = (*next, *live);
             *next += 1;
             let done = match self.read_or_fail(py, index)? {
                 Some(frame) => {
                     self.report(py, "pairs", index)?;
                     self.call(py, move |kept| kept.push(frame))?.into_iter().collect()
                 }
-                None => self.finished(py)?,
+                None if live => self.finished(py)?,
+                None => {
+                    self.check_count(index)?;
+                    self.finished(py)?
+                }
             };
             if let Place::Stream { ready, .. } = &mut self.place {
                 ready.extend(done);
             }
         }
+    }
+
+    /// Refuses a source that ended, and did not fail, before its second frame.
+    fn check_count(&self, frames: usize) -> Result<(), Failure> {
+        if frames >= 2 || self.failure.is_some() {
+            return Ok(());
+        }
+        let message = format!("a clip needs two frames, found {}", if frames == 0 { "none" } else { "one" });
+        Err(Failure { code: "too-few-frames", message })
     }
 
     /// The frames of a stream that still wait.
@@ -414,6 +429,7 @@ impl Clip {
             self.call(py, move |kept| kept.push(frame))?;
             index += 1;
         }
+        self.check_count(index)?;
         self.call(py, Kept::conclude)
     }
 

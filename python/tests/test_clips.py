@@ -98,6 +98,15 @@ def test_a_stream_takes_frames_when_they_are_wanted() -> None:
         stream.state()
 
 
+def test_fewer_than_two_frames_are_no_clip() -> None:
+    for count, found in ((0, "none"), (1, "one")):
+        for given in (FRAMES[:count], iter(FRAMES[:count])):
+            with pytest.raises(VeroneseError, match=f"a clip needs two frames, found {found}") as raised:
+                list(segment_clip(given, **FAST))
+            assert raised.value.code == "too-few-frames"
+        assert len(list(segment_clip(iter(FRAMES[:count]), **FAST, look_ahead=0))) == count, "it may end at any time"
+
+
 def test_a_number_to_look_ahead_makes_a_stream_of_a_sequence() -> None:
     steps: List[Any] = []
     found = labels_of(FRAMES, look_ahead=2, progress=lambda *step: steps.append(step))

@@ -4,7 +4,6 @@
 import type { ClipFrames, FrameSource, VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
 import { Tracks } from '../calls/clip/tracks.js';
-import { VeroneseError } from '../common/errors.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import { type Place, pixelsOf } from './sources.js';
 import { Video } from './video.js';
@@ -95,9 +94,7 @@ export class ElementClip {
   async poster(): Promise<Pixels | undefined> {
     const { length, picture } = this.#source as Source;
     if (length === undefined) return undefined;
-    const first = length > 0 ? await picture(0) : undefined;
-    checkCount(length);
-    return first;
+    return length > 0 ? picture(0) : undefined;
   }
 
   /** Yields each frame when it can be shown. `begin` begins to segment frames. */
@@ -112,7 +109,6 @@ export class ElementClip {
       this.#mark();
       yield frame;
     }
-    checkCount(this.length);
     this.#state = await clip.state();
   }
 
@@ -202,10 +198,6 @@ export class ElementClip {
     this.progress.remove();
     this.#source?.close?.();
   }
-}
-
-function checkCount(frames: number): void {
-  if (frames < 2) throw new VeroneseError('too-few-frames', `a clip needs two frames, found ${frames === 0 ? 'none' : 'one'}`);
 }
 
 async function sourceOf(given: ClipFrames | string, place: Place): Promise<Source> {

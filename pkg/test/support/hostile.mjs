@@ -172,12 +172,12 @@ const NOTHING = new Uint8Array(256).fill(255);
 
 /** The arguments of a clip, as those of the other calls. */
 export const CLIPS = {
-  frames: [(v) => [iterated(v)], ['empty text', 'empty list']],
+  frames: [(v) => [iterated(v)], []],
   'a frame': [(v) => [[first, awaited(v)]], []],
   data: [(v) => [[first, { ...second, data: v }]], []],
   width: [(v) => [[first, { ...second, width: v }]], []],
   read: [(v) => [{ length: 2, read: v }], []],
-  length: [(v) => [{ length: v, read: (index) => [first, second][index] }], ['zero', 'one']],
+  length: [(v) => [{ length: v, read: (index) => [first, second][index] }], []],
   'what is read': [(v) => [{ length: 2, read: (index) => (index === 0 ? first : awaited(v)) }], []],
   options: [(v) => [[first, second], v], OPTIONS],
   motions: [(v) => [[first, second], { motions: v }], ['undefined', 'one']],

@@ -81,6 +81,11 @@ export class Frames {
   }
 }
 
+/** Throws `too-few-frames`. */
+export function checkCount(frames: number): void {
+  if (frames < 2) throw new VeroneseError('too-few-frames', `a clip needs two frames, found ${frames === 0 ? 'none' : 'one'}`);
+}
+
 export function* reads(read: (index: number) => unknown, indices: Iterable<number>): Generator<unknown, void, undefined> {
   for (const index of indices) yield read(index);
 }

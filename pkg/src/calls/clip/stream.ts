@@ -4,7 +4,7 @@ import type { ClipFrame, Pixels } from '../../../types/index.js';
 import { cancelled } from '../../common/errors.js';
 import type { ClipEnd, LabelledFrame } from '../messages.js';
 import type { CheckedOptions, Stream } from './options.js';
-import type { Frames } from './frames.js';
+import { checkCount, type Frames } from './frames.js';
 import type { PlacedClip } from './place.js';
 import type { ClipResults } from './tracks.js';
 
@@ -12,7 +12,7 @@ import type { ClipResults } from './tracks.js';
 export async function* streamed(
   clip: PlacedClip,
   frames: Frames,
-  { source, signal, transfer, onProgress }: CheckedOptions,
+  { source, signal, transfer, onProgress, settings }: CheckedOptions,
   results: ClipResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const { each, length: of, again } = source as Stream;
@@ -34,6 +34,8 @@ export async function* streamed(
     const done = await step;
     if (done) yield tracks.see(done, frame);
   }
+  // A live stream may end at any time: its frames were answered as they came.
+  if (!frames.failure && settings['lookAhead'] !== 0) checkCount(index);
   const { frames: rest, dropped } = await clip.step<ClipEnd>({ call: 'finishClip' });
   for (const frame of rest) {
     if (signal?.aborted) throw cancelled(signal);

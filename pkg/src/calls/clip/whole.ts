@@ -7,7 +7,7 @@ import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } fro
 import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { CheckedOptions, Whole } from './options.js';
-import { type Frames, reads, upTo } from './frames.js';
+import { checkCount, type Frames, reads, upTo } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import type { Looked, SharedPairs } from './shared-pairs.js';
@@ -21,6 +21,8 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
   const { transfer, onProgress } = asked;
   const task = { ...asked, masks: asked.masks === undefined ? [] : await masksOf(asked) };
   const { read, length: of } = task.source as Whole;
+  // A state may be of the frames before one that failed.
+  if (!task.state) checkCount(of);
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
   const { changed, changes } = await annotated(clip, frames, task, length);
