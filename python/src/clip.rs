@@ -88,7 +88,11 @@ pub(crate) fn segment_clip(
         mark_unknown,
         options: Some(Options { said, state }),
         size: None,
-        place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false, live: look_ahead == Some(0) } },
+        place: if whole {
+            Place::Unsegmented
+        } else {
+            Place::Stream { ready: VecDeque::new(), next: 0, ended: false, live: look_ahead == Some(0) }
+        },
         changes: Vec::new(),
         tracks: Tracks::default(),
         failure: None,
@@ -142,6 +146,15 @@ pub(crate) struct Clip {
 impl Clip {
     fn __iter__(clip: PyRef<'_, Self>) -> PyRef<'_, Self> {
         clip
+    }
+
+    fn __repr__(&self) -> String {
+        match (&self.worker, self.source.length()) {
+            (None, _) => "Clip(closed)".into(),
+            (_, None) => "Clip(a stream)".into(),
+            (_, Some(1)) => "Clip(1 frame)".into(),
+            (_, Some(length)) => format!("Clip({length} frames)"),
+        }
     }
 
     fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {

@@ -1,4 +1,4 @@
-//! Frames as they are given, arrays or files, and label images.
+//! Frames as they are given, arrays, what NumPy makes an array of, or files, and label images.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyMemoryView;
 use veronese::codecs::decode_image;
 use veronese::{Error, Frame, MAX_SIDE, MIN_SIDE};
 
@@ -16,18 +17,76 @@ const LARGEST: u64 = 512 * 1024 * 1024;
 
 /// A frame that needs the interpreter no longer.
 pub(crate) enum Given {
-    Pixels { width: usize, height: usize, rgba: Vec<u8> },
+    Pixels {
+        width: usize,
+        height: usize,
+        rgba: Vec<u8>,
+    },
     File(PathBuf),
+    /// The content of a file.
+    Bytes(Vec<u8>),
 }
 
-/// A frame from an array or a path. Pixels are copied; the size is checked before.
+/// Modes of Pillow whose arrays are grey, RGB or RGBA, and others that Pillow converts without a loss of what is seen.
+const MODES: [&str; 3] = ["L", "RGB", "RGBA"];
+const OPAQUE: [&str; 7] = ["1", "P", "RGBX", "CMYK", "YCbCr", "LAB", "HSV"];
+const WITH_ALPHA: [&str; 4] = ["LA", "La", "PA", "RGBa"];
+
+/// A frame from an array, what has the protocols of one, a path, or the bytes of a file. Pixels are copied; the size is checked before.
 pub(crate) fn given(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Failure> {
     if !frame.is_instance_of::<PyUntypedArray>() {
-        let path = frame.extract::<PathBuf>();
-        return path
-            .map(Given::File)
-            .map_err(|_| Failure::input(format!("{which} must be an array of pixels or a path")));
+        if let Ok(path) = frame.extract::<PathBuf>() {
+            return Ok(Given::File(path));
+        }
+        let failed = |error: PyErr| Failure::input(format!("{which} cannot be taken as an array: {error}"));
+        let bytes = PyMemoryView::from(frame).ok();
+        if let Some(bytes) = bytes.as_ref().and_then(|bytes| content_of(bytes).transpose()) {
+            return bytes.map(Given::Bytes).map_err(failed);
+        }
+        let has = |name| frame.hasattr(name).unwrap_or(false);
+        if bytes.is_none() && !has("__array__") && !has("__array_interface__") {
+            let sentence =
+                format!("{which} must be an array of pixels, a picture, a path, or the bytes of an image file");
+            return Err(Failure::input(sentence));
+        }
+        let colours = in_colours(which, frame)?;
+        let numpy = frame.py().import("numpy").map_err(failed)?;
+        return pixels(which, &numpy.call_method1("asarray", (colours,)).map_err(failed)?);
     }
+    pixels(which, frame)
+}
+
+/// The bytes of a buffer that is one row of them, as that of `bytes`.
+fn content_of(buffer: &Bound<'_, PyMemoryView>) -> PyResult<Option<Vec<u8>>> {
+    let (dimensions, size): (usize, usize) =
+        (buffer.getattr("ndim")?.extract()?, buffer.getattr("itemsize")?.extract()?);
+    if (dimensions, size) != (1, 1) { Ok(None) } else { buffer.call_method0("tobytes")?.extract().map(Some) }
+}
+
+/// A picture of Pillow as one whose array has its colours: a palette would be other numbers. Anything else as it is.
+fn in_colours<'py>(which: &str, frame: &Bound<'py, PyAny>) -> Result<Bound<'py, PyAny>, Failure> {
+    let mode = frame.getattr("mode").and_then(|mode| mode.extract::<String>());
+    let Ok(mode) = mode else { return Ok(frame.clone()) };
+    if !frame.hasattr("convert").unwrap_or(false) || MODES.contains(&mode.as_str()) {
+        return Ok(frame.clone());
+    }
+    let transparent = || frame.getattr("info").and_then(|info| info.contains("transparency")).unwrap_or(false);
+    let wanted = match mode.as_str() {
+        mode if WITH_ALPHA.contains(&mode) => "RGBA",
+        mode if OPAQUE.contains(&mode) => {
+            if transparent() {
+                "RGBA"
+            } else {
+                "RGB"
+            }
+        }
+        _ => return Err(Failure::input(format!("{which} is a picture of mode '{mode}': convert it to 'L' or 'RGB'"))),
+    };
+    let failed = |error: PyErr| Failure::input(format!("{which} cannot be converted to {wanted}: {error}"));
+    frame.call_method1("convert", (wanted,)).map_err(failed)
+}
+
+fn pixels(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Failure> {
     let pixels = || {
         let forms = "(height, width), (height, width, 3) or (height, width, 4)";
         Failure::input(format!("{which} must be an array of uint8 of shape {forms}: grey, RGB or RGBA"))
@@ -36,6 +95,11 @@ pub(crate) fn given(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Fail
     let (height, width, channels) = match *array.shape() {
         [height, width] => (height, width, 1),
         [height, width, channels @ (1 | 3 | 4)] => (height, width, channels),
+        [channels @ (1 | 3 | 4), _, width] if width > 4 => {
+            let sentence =
+                format!("{which} has its {channels} colours first: give it with them last, as permute(1, 2, 0) does");
+            return Err(Failure::input(sentence));
+        }
         _ => return Err(pixels()),
     };
     if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) {
@@ -77,12 +141,16 @@ impl Given {
         match self {
             Given::Pixels { width, height, rgba } => Ok(Frame::from_rgba(width, height, rgba)?),
             Given::File(path) => {
-                let decoded = decode_image(&content(&path)?);
-                let frame = decoded.and_then(|picture| Frame::from_rgba(picture.width, picture.height, picture.rgba));
-                frame.map_err(|error| Failure::from(error).about(&format!("'{}'", path.display())))
+                decoded(&content(&path)?).map_err(|error| error.about(&format!("'{}'", path.display())))
             }
+            Given::Bytes(bytes) => decoded(&bytes),
         }
     }
+}
+
+fn decoded(bytes: &[u8]) -> Result<Frame, Failure> {
+    let picture = decode_image(bytes)?;
+    Ok(Frame::from_rgba(picture.width, picture.height, picture.rgba)?)
 }
 
 /// The content of a file. A pipe is not waited for.

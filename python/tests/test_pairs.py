@@ -3,16 +3,50 @@
 from __future__ import annotations
 
 import pickle
+import struct
+import zlib
 from pathlib import Path
 from typing import Any, Dict
 
 import numpy as np
 import pytest
 import veronese
-from scenes import frame, write_image
-from veronese import VeroneseError, relabel, segment_pair
+from scenes import Pixels, frame, write_image
+from veronese import Correction, Mask, VeroneseError, relabel, segment_clip, segment_pair
 
 FIRST, SECOND = frame(0), frame(1)
+
+
+class Tensor:
+    """As torch has it: the protocol, and no base that NumPy knows."""
+
+    def __init__(self, pixels: Pixels) -> None:
+        self.pixels = pixels
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Pixels:
+        return self.pixels
+
+
+class Interface:
+    def __init__(self, pixels: Pixels) -> None:
+        self.__array_interface__ = pixels.__array_interface__
+        self.pixels = pixels
+
+
+class Picture:
+    """As Pillow has it: its array is that of its mode, which only `convert` changes."""
+
+    def __init__(self, mode: str, pixels: Pixels) -> None:
+        self.mode, self.info, self.pixels = mode, {"transparency": 0}, pixels
+
+    def convert(self, mode: str, /) -> Picture:
+        alpha = np.full((*self.pixels.shape[:2], 1), 255, np.uint8)
+        return Picture(mode, np.concatenate([self.pixels, alpha], axis=2) if mode == "RGBA" else self.pixels)
+
+    @property
+    def __array_interface__(self) -> Dict[str, Any]:
+        self.shown = self.pixels[..., 0].copy() if self.mode == "P" else self.pixels
+        return self.shown.__array_interface__
 
 
 def test_a_moving_square_is_found_with_its_motion() -> None:
@@ -52,6 +86,13 @@ def test_all_forms_of_a_frame_give_the_same(tmp_path: Path) -> None:
         "column by column": lambda pixels, _: np.asfortranarray(pixels),
         "a path": lambda pixels, k: write_image(tmp_path / f"{k}.png", pixels),
         "a text": lambda pixels, k: str(write_image(tmp_path / f"{k}.png", pixels)),
+        "bytes of a file": lambda pixels, k: write_image(tmp_path / f"{k}.png", pixels).read_bytes(),
+        "a buffer with the bytes of a file": lambda pixels, k: memoryview(write_image(tmp_path / f"{k}.png", pixels).read_bytes()),
+        "a buffer of pixels": lambda pixels, _: memoryview(pixels),
+        "a tensor": lambda pixels, _: Tensor(pixels),
+        "an array interface": lambda pixels, _: Interface(pixels),
+        "a picture": lambda pixels, _: Picture("RGB", pixels),
+        "a picture with a palette": lambda pixels, _: Picture("P", pixels),
     }
     for name, form in forms.items():
         assert labels(form) == expected, name
@@ -77,6 +118,9 @@ def test_the_caller_may_write_to_the_arrays_afterwards() -> None:
         ("invalid-input", FIRST[..., :2], {}),
         ("invalid-input", 3, {}),
         ("invalid-input", [[1, 2], [3, 4]], {}),
+        ("invalid-input", Tensor(FIRST.transpose(2, 0, 1)), {}),
+        ("invalid-input", Picture("I;16", FIRST), {}),
+        ("unreadable-image", b"text", {}),
         ("file-not-found", "nowhere.png", {}),
         ("unreadable-file", Path(__file__).parent, {}),
         ("unreadable-image", __file__, {}),
@@ -99,6 +143,37 @@ def test_what_cannot_be_processed_has_a_code(code: str, first: Any, options: Any
 def test_a_misspelt_option_is_refused() -> None:
     with pytest.raises(TypeError, match="motion"):
         segment_pair(FIRST, SECOND, motion=2)  # type: ignore[call-arg]
+
+
+def test_what_is_printed_is_short_and_a_notebook_shows_the_labels() -> None:
+    found = segment_pair(FIRST, SECOND, quality="fast")
+    assert repr(found) == "Segmentation(96×72, 2 motions)"
+    clip = segment_clip([FIRST, SECOND], quality="fast")
+    seen = next(clip)
+    assert repr(seen) == "ClipFrame(0, 96×72, objects=[1])"
+    assert repr(clip) == "Clip(2 frames)" and repr(segment_clip(iter([FIRST]))) == "Clip(a stream)"
+    assert repr(clip.tracks()) == "ClipTracks([ClipTrack(1, frames 0 to 0)])"
+    assert repr([Mask(0, found.labels), Correction(1, found.labels, object=3)]) == "[Mask(0, 96×72), Correction(1, 96×72, object=3)]"
+    for one in (found, seen):
+        assert one._repr_png_() == one.png()
+        np.testing.assert_array_equal(read_indexed(one.png()), one.labels)
+
+
+def read_indexed(file: bytes) -> Pixels:
+    """The indices of a PNG file with eight bits for each and no filters, as the package writes it."""
+    parts: Dict[bytes, bytes] = {}
+    at = 8
+    while at < len(file):
+        (length,) = struct.unpack(">I", file[at : at + 4])
+        kind, content = file[at + 4 : at + 8], file[at + 8 : at + 8 + length]
+        assert struct.unpack(">I", file[at + 8 + length : at + 12 + length]) == (zlib.crc32(kind + content),)
+        parts[kind] = content
+        at += 12 + length
+    width, height = struct.unpack(">II", parts[b"IHDR"][:8])
+    assert list(parts[b"PLTE"][:9]) == [0, 0, 0, 128, 0, 0, 0, 128, 0] and parts[b"PLTE"][-3:] == b"\xff" * 3
+    rows = np.frombuffer(zlib.decompress(parts[b"IDAT"]), np.uint8).reshape(height, 1 + width)
+    assert not rows[:, 0].any()
+    return rows[:, 1:]
 
 
 def test_errors_and_results_cross_processes() -> None:

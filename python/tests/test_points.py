@@ -25,6 +25,7 @@ def measurements(noise: float = 0.01) -> Tuple[Array, Array]:
 def test_two_motions_are_found() -> None:
     fit = fit_points(*measurements())
     assert fit.count == 2 and fit.stages is None
+    assert repr(fit) == "MotionFit(2 motions, 300 measurements)"
     np.testing.assert_allclose(fit.motions[0].matrix, [0, 0, 0.5, 0, 0, -0.25], atol=0.02)
     np.testing.assert_allclose(fit.motions[1].matrix, [0.2, -0.4, 0, 0.4, 0.2, 0.6], atol=0.02)
     assert fit.labels.shape == (300,) and (fit.labels == (np.arange(300) >= 200)).mean() > 0.9

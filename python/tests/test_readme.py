@@ -64,6 +64,39 @@ class VideoCapture:
 """
 
 
+def test_the_notebook_runs_and_shows_pictures(folder: Path) -> None:
+    """Its cells in order; of the last line of each, what a notebook shows."""
+    notebook = json.loads((HERE.parent / "examples" / "clip.ipynb").read_text(encoding="utf-8"))
+    assert all(cell["outputs"] == [] for cell in notebook["cells"] if cell["cell_type"] == "code"), "it is kept without outputs"
+    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    (folder / "notebook.py").write_text(SHOWN + f"for cell in {cells!r}:\n    show(cell)\n", encoding="utf-8")
+    shown = run(folder, folder / "notebook.py").splitlines()
+    assert shown[0].startswith("[ClipFrame(0, 96×72, objects=[1]), ")
+    assert shown[1] == "a picture"
+    assert shown[2].startswith("object 1 has ")
+    assert shown[3] == "ClipTracks([ClipTrack(1, frames 0 to 4)])"
+    assert sorted(path.name for path in (folder / "masks").iterdir()) == [f"{index:05}.png" for index in range(5)]
+
+
+SHOWN = """
+import ast
+
+names = {}
+
+
+def show(cell):
+    *before, last = ast.parse(cell).body
+    exec(compile(ast.Module(before, []), "cell", "exec"), names)
+    if not isinstance(last, ast.Expr):
+        return exec(compile(ast.Module([last], []), "cell", "exec"), names)
+    value = eval(compile(ast.Expression(last.value), "cell", "eval"), names)
+    if value is not None:
+        print("a picture" if hasattr(value, "_repr_png_") and value._repr_png_() else repr(value))
+
+
+"""
+
+
 def test_the_program_writes_masks_and_boxes(folder: Path) -> None:
     printed = run(folder, HERE.parent / "examples" / "clip_to_masks.py", "frames", "out")
     assert printed.startswith("object 1: frames 0 to 4")

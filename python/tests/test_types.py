@@ -35,6 +35,8 @@ segment_pair(frame, frame, quality="good")
 segment_pair(frame, frame, motions="two")
 segment_pair(frame, frame, seed=1)
 segment_clip([frame], corrections=[frame])
+fractions = np.zeros((48, 64, 3), np.float32)
+segment_pair(frame, fractions)
 reveal_type(segment_pair(frame, frame).motions[0].matrix)
 """
 
@@ -46,7 +48,7 @@ def test_mistakes_are_found(tmp_path: Path) -> None:
         [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), str(program)], capture_output=True, text=True, cwd=tmp_path
     )
     wrong = [line for line in ended.stdout.splitlines() if ": error:" in line]
-    assert len(wrong) == 4, ended.stdout
+    assert len(wrong) == 5, ended.stdout
     assert "float64" in ended.stdout
 
 

@@ -2,8 +2,9 @@
 
 How many motions there are, what each motion is, and which pixels follow it. There is no trained model, and nothing leaves the machine.
 
-A frame is an array of ``uint8`` of shape ``(height, width, 3)``, ``(height, width, 4)`` or ``(height, width)`` (RGB, RGBA or grey), or the
-path of a PNG, JPEG, WebP, BMP or PNM file. Sides are 16 to 4096 pixels. Arrays are copied when a call takes them.
+A frame is an array of ``uint8`` of shape ``(height, width, 3)``, ``(height, width, 4)`` or ``(height, width)`` (RGB, RGBA or grey), what NumPy
+makes such an array of (a tensor, a buffer), a picture of Pillow, or the path or the bytes of a PNG, JPEG, WebP, BMP or PNM file. Sides are 16
+to 4096 pixels. Pixels are copied when a call takes them.
 
 Calls release the interpreter's lock: other threads go on, and Ctrl-C ends a call at once. A mistake in a frame, an option or a file
 is a :class:`VeroneseError` with a stable ``code``, the same as on the command line.
@@ -34,12 +35,14 @@ from ._types import (
     Mask,
     MotionFit,
     PaperStages,
+    Picture,
     Prompt,
     RankCandidate,
     Refinement,
     SegmentedMotion,
     Segmentation,
     Sighting,
+    SupportsArray,
     VeroneseError,
 )
 from ._veronese import Clip, __version__
@@ -77,8 +80,8 @@ __all__ = [
     "segment_pair",
 ]
 
-Frame = Union[NDArray[np.uint8], str, "os.PathLike[str]"]
-"""An array of pixels, or the path of an image file."""
+Frame = Union[NDArray[np.uint8], SupportsArray, Picture, bytes, bytearray, memoryview, str, "os.PathLike[str]"]
+"""An array of pixels or what has one, a picture of Pillow, or the bytes or the path of an image file."""
 
 Progress = Callable[[str, int, int], object]
 """Called when a stage begins, with its name, its index and the number of stages. An exception that it raises ends the call."""

@@ -1,12 +1,14 @@
-"""Arguments and results of the calls besides arrays: plain classes without methods."""
+"""Arguments and results of the calls besides arrays."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Literal, Optional, Sequence, Tuple
+from typing import Any, List, Literal, Optional, Protocol, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ._png import indexed_png
 
 Matrix = NDArray[np.float64]
 """``[a11, a12, a13, a21, a22, a23]``, shape ``(6,)``: the pixel (x, y) of the first frame is displaced by u = a11·x + a12·y + a13,
@@ -20,6 +22,20 @@ Box = Tuple[int, int, int, int]
 
 Click = Tuple[int, int, Literal[1, -1]]
 """Column and row of a pixel, and 1 if it belongs to an object, -1 if it does not."""
+
+class SupportsArray(Protocol):
+    """What NumPy makes an array of, such as a tensor."""
+
+    def __array__(self) -> NDArray[np.uint8]: ...
+
+
+class Picture(Protocol):
+    """A picture as Pillow has it."""
+
+    @property
+    def mode(self) -> str: ...
+    def convert(self, mode: str, /) -> Any: ...
+
 
 Propagation = Literal["both", "forward", "backward", "none"]
 """Where the annotations of a frame spread: to the frames before and after it, to one side alone, or nowhere."""
@@ -76,7 +92,7 @@ class Junction:
     """Length of the border in pixels of the frame, measured at the working size."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Segmentation:
     """The result of :func:`segment_pair`."""
 
@@ -97,6 +113,17 @@ class Segmentation:
     confidence: Optional[NDArray[np.uint8]]
     """255 times the probability that the label of a pixel is right, if it was asked for."""
     quality: Literal["best", "fast"]
+
+    def __repr__(self) -> str:
+        return f"Segmentation({self.width}×{self.height}, {_counted(self.count, 'motion')})"
+
+    def png(self) -> bytes:
+        """The labels as a PNG file: palette indices in the colours of the DAVIS benchmark."""
+        return indexed_png(self.labels)
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows."""
+        return self.png()
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +175,7 @@ class PaperStages:
     refinement: Refinement
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionFit:
     """The result of :func:`fit_points`."""
 
@@ -163,6 +190,9 @@ class MotionFit:
     """Of the embedded data, decreasing; empty with the method ``"best"``."""
     stages: Optional[PaperStages]
     """Only with the method ``"paper"``."""
+
+    def __repr__(self) -> str:
+        return f"MotionFit({_counted(self.count, 'motion')}, {_counted(len(self.labels), 'measurement')})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +211,7 @@ class ClipObject:
     """Motion of its largest part to the next frame; ``None`` if there is none. In a stream, its motion from the frame before, continued."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClipFrame:
     """One frame of a clip, segmented."""
 
@@ -192,6 +222,17 @@ class ClipFrame:
     """The visible objects by number."""
     background: Optional[Matrix]
     """Motion of the background, as :attr:`ClipObject.matrix`."""
+
+    def __repr__(self) -> str:
+        return f"ClipFrame({self.index}, {_size(self.labels)}, objects={[thing.id for thing in self.objects]})"
+
+    def png(self) -> bytes:
+        """The labels as a PNG file: palette indices in the colours of the DAVIS benchmark."""
+        return indexed_png(self.labels)
+
+    def _repr_png_(self) -> bytes:
+        """What a notebook shows."""
+        return self.png()
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +246,7 @@ class Sighting:
     matrix: Optional[Matrix]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClipTrack:
     """One object through a clip."""
 
@@ -217,6 +258,9 @@ class ClipTrack:
     frames: List[Sighting]
     """One entry for each frame that shows it."""
 
+    def __repr__(self) -> str:
+        return f"ClipTrack({self.id}, frames {self.first} to {self.last})"
+
 
 @dataclass(frozen=True, eq=False)
 class BackgroundMotion:
@@ -226,7 +270,7 @@ class BackgroundMotion:
     matrix: Matrix
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClipTracks:
     """The result of :meth:`Clip.tracks`."""
 
@@ -237,8 +281,11 @@ class ClipTracks:
     dropped: int
     """Number of objects beyond 254, which count as background."""
 
+    def __repr__(self) -> str:
+        return f"ClipTracks({self.objects})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Mask:
     """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled."""
 
@@ -247,8 +294,11 @@ class Mask:
     propagate: Optional[Propagation] = None
     """Default: ``"both"``."""
 
+    def __repr__(self) -> str:
+        return f"Mask({self.frame}, {_size(self.labels)})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Correction:
     """Labels of one frame of a clip that are certain.
 
@@ -263,6 +313,9 @@ class Correction:
     """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
     object: Optional[int] = None
     """The object that it is about, 1 to 254: the labels are its number, 0 where it is not, and 255. It is about no other object."""
+
+    def __repr__(self) -> str:
+        return f"Correction({self.frame}, {_size(self.labels)}{f', object={self.object}' if self.object else ''})"
 
 
 @dataclass(frozen=True)
@@ -285,12 +338,15 @@ class Prompt:
     """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Accepted:
     """A frame of a clip that is right with these labels, of all its pixels."""
 
     frame: int
     labels: Labels
+
+    def __repr__(self) -> str:
+        return f"Accepted({self.frame}, {_size(self.labels)})"
 
 
 @dataclass(frozen=True)
@@ -304,3 +360,11 @@ class ClipChange:
     """Number of pixels that it has now and had not."""
     lost: int
     """Number of pixels that it had and has no more."""
+
+
+def _size(labels: Labels) -> str:
+    return "×".join(map(str, reversed(np.shape(labels))))
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'' if count == 1 else 's'}"
