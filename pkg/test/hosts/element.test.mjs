@@ -3,20 +3,10 @@
 import assert from 'node:assert/strict';
 import { cpSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, test } from 'node:test';
+import { test } from 'node:test';
 import { build } from 'esbuild';
-import { launch, outcomeOf, serve } from '../packed/browser.mjs';
-import { install } from '../packed/packed.mjs';
-
-let [app, remove, browser] = [];
-before(async () => {
-  ({ app, remove } = install());
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  remove?.();
-});
+import { outcomeOf, serve } from '../packed/browser.mjs';
+import { app, browser } from '../packed/installed.mjs';
 
 /** The outcome of a page with this script, and what the page asked for besides. */
 async function page(t, name, script) {

@@ -3,27 +3,18 @@
 import assert from 'node:assert/strict';
 import { cpSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { segmentClip, segmentPair } from 'veronese';
 import { frame, pair, png } from '../support/frames.mjs';
-import { launch, outcomeOf, serve } from '../packed/browser.mjs';
-import { install, run } from '../packed/packed.mjs';
+import { outcomeOf, serve } from '../packed/browser.mjs';
+import { app, browser } from '../packed/installed.mjs';
+import { run } from '../packed/packed.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 // The project's, which is much faster than the one beside this file.
 const tsc = fileURLToPath(new URL('../../../node_modules/.bin/tsc', import.meta.url));
 const clip = Array.from({ length: 4 }, (_, k) => frame(k / 2));
-
-let [app, remove, browser] = [];
-before(async () => {
-  ({ app, remove } = install());
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  remove?.();
-});
 
 /** A folder with the installed package, and others beside it as npm installs them. */
 function folderWith(name, packages) {

@@ -4,24 +4,15 @@
 import assert from 'node:assert/strict';
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { hashOf, launch, outcomeOf, serve } from '../packed/browser.mjs';
+import { hashOf, outcomeOf, serve } from '../packed/browser.mjs';
 import { checkOutcome, expected, isWhole } from '../packed/outcome.mjs';
-import { install, run } from '../packed/packed.mjs';
+import { app, browser, tarball } from '../packed/installed.mjs';
+import { run } from '../packed/packed.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const bin = (name) => join(here, 'node_modules', '.bin', name);
-
-let [app, tarball, remove, browser] = [];
-before(async () => {
-  ({ app, tarball, remove } = install());
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  remove?.();
-});
 
 describe('webpack 5', () => {
   async function build(options) {

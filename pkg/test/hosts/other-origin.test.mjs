@@ -4,28 +4,22 @@
 import assert from 'node:assert/strict';
 import { cpSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { before, describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { encodeDavis, encodeSupervisely } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
 import { policyFor as documented } from '../support/readme.mjs';
-import { outcomeOf, launch, serve } from '../packed/browser.mjs';
-import { install } from '../packed/packed.mjs';
+import { outcomeOf, serve } from '../packed/browser.mjs';
+import { app, browser } from '../packed/installed.mjs';
 import { report } from '../packed/app/report.js';
 
 const SHARED = { 'Access-Control-Allow-Origin': '*' };
 
-let [app, remove, browser, expected] = [];
+let expected;
 before(async () => {
-  ({ app, remove } = install());
-  browser = await launch();
   expected = await segmentPair(...pair());
   for (const [index, name] of ['first', 'second'].entries()) writeFileSync(join(app, `${name}.png`), png(pair()[index]));
-});
-after(async () => {
-  await browser?.close();
-  remove?.();
 });
 
 /** The policy of the README; everything else is forbidden, but for the page's icon. */

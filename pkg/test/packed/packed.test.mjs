@@ -4,21 +4,12 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { after, before, describe, test } from 'node:test';
+import { describe, test } from 'node:test';
 import { build, createServer } from 'vite';
-import { launch, outcomeOf, serve } from './browser.mjs';
+import { outcomeOf, serve } from './browser.mjs';
 import { checkOutcome, expected, isWhole } from './outcome.mjs';
-import { install, run } from './packed.mjs';
-
-let [app, remove, browser] = [];
-before(async () => {
-  ({ app, remove } = install());
-  browser = await launch();
-});
-after(async () => {
-  await browser?.close();
-  remove?.();
-});
+import { app, browser } from './installed.mjs';
+import { run } from './packed.mjs';
 
 describe('plain Node', () => {
   test('imports the installed package and runs it', () => {
