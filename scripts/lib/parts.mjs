@@ -55,7 +55,7 @@ export const DAILY = {
     title: 'the Python package',
     named: true,
     needs: { ownPython: true },
-    run: (setup) => ofPython('python', setup, buildTestWheel),
+    run: async (setup) => added(await ofPython('python', setup, buildTestWheel), await ofStart(setup, ['start-python'])),
   },
   builds: {
     lane: 'node',
@@ -71,7 +71,7 @@ export const DAILY = {
     title: 'the packed package, in Node and with Vite',
     named: true,
     needs: { browser: true },
-    run: (setup) => ofPackage('test:packed', inBrowser(setup), setup.word),
+    run: async (setup) => added(await ofPackage('test:packed', inBrowser(setup), setup.word), await ofStart(setup, ['start', 'start-typescript', 'start-page'])),
   },
   page: {
     lane: 'node',
@@ -143,7 +143,7 @@ export const RARE = {
       await buildPackage();
       if (setup.ownPython.problem) say(setup.ownPython.problem);
       else await installWheel(OWN, await buildTestWheel(OWN.python));
-      return tests(node, process.execPath, ['--test', '--test-reporter=tap', 'site/tests/guide.test.mjs'], env);
+      return ofGuide(env);
     },
   },
   release: {
@@ -192,6 +192,16 @@ async function ofPython(place, { ownPython: { problem }, word }, build, env = {}
   await installWheel(OWN, wheel);
   const own = word === undefined ? [] : ['-k', word];
   return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', ...own, place], { ...env, VERONESE_WHEEL: wheel }, word);
+}
+
+function ofGuide(env) {
+  return tests(node, process.execPath, ['--test', '--test-reporter=tap', 'site/tests/guide.test.mjs'], env);
+}
+
+/** The pages of the guide that are read first. */
+async function ofStart({ chromium, word }, pages) {
+  if (word !== undefined && !pages.some((page) => page.includes(word))) return NOTHING;
+  return ofGuide({ ...(chromium && inBrowser({ chromium })), VERONESE_GUIDE_PAGES: pages.join() });
 }
 
 function inBrowser({ chromium }) {

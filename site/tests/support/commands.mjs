@@ -13,7 +13,7 @@ const RUN = ['cat', 'cp', 'echo', 'find', 'head', 'ls', 'mkdir', 'node', 'npx', 
 
 /** Each pattern of a line that is not run, and what is checked of it. */
 const CHECKED = [
-  [/^npm install ([\w@/.-]+)$/, ([, name]) => isOneOf(name, [identity.npm, `${identity.npm}@${version}`])],
+  [/^npm install ([\w@/.-]+)(?: vite)?$/, ([, name]) => isOneOf(name, [identity.npm, `${identity.npm}@${version}`])],
   [/^pip install ([\w=.]+)$/, ([, name]) => isOneOf(name, [identity.python, `${identity.python}==${version}`])],
   [/^cargo add ([\w-]+)(?: --features ([\w,]+))?$/, ([, name, features]) => isOneOf(name, [identity.crate]) ?? haveFeatures(features)],
   [/^git clone (\S+)$/, ([, address]) => isOneOf(address, [identity.repository])],

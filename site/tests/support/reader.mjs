@@ -1,21 +1,26 @@
-// A reader's folder: the package as npm installs it, and the frames of which the guide speaks.
+// A reader's folder: the package packed and installed by npm, and the frames of which the guide speaks.
 
 import { cpSync, mkdirSync, mkdtempSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
+import { install } from '../../../pkg/test/packed/packed.mjs';
 import { root } from '../../../scripts/lib/project.mjs';
 
 const SAMPLES = join(root, 'www/public/samples');
 
-/** The files that npm installs, but for the README and the licences. */
-export const PACKAGE = ['bin', 'dist', 'types', 'wasm', 'package.json'];
+/** The package, installed once for all pages. */
+let installed;
 
 /** Makes it, and removes it after the test. */
 export function readersFolder(t) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-guide-'));
   t.after(() => rmSync(folder, { recursive: true, force: true }));
-  for (const name of PACKAGE) cpSync(join(root, 'pkg', name), join(folder, 'node_modules/veronese', name), { recursive: true });
+  if (!installed) {
+    installed = install();
+    process.once('exit', () => installed.remove());
+  }
+  cpSync(join(installed.app, 'node_modules/veronese'), join(folder, 'node_modules/veronese'), { recursive: true });
   symlinkSync(join(root, 'node_modules/@types'), join(folder, 'node_modules/@types'));
   for (const name of ['first.png', 'second.png']) cpSync(join(SAMPLES, 'intel-two-cars', name), join(folder, name));
   mkdirSync(join(folder, 'frames'));

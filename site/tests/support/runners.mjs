@@ -36,6 +36,7 @@ function runShell({ folder, block, note }) {
   const { run, recognised } = divide(block.code);
   for (const line of recognised) note(`checked, not run: ${line}`);
   if (run.length === 0) return '';
+  if (run.some((line) => /^node \S+\.mts$/.test(line)) && !process.features.typescript) return { skip: 'this Node runs no TypeScript' };
   const usesPython = run.some((line) => line.startsWith('python '));
   if (usesPython && !hasPython()) return { skip: WITHOUT_PYTHON };
   const bin = programs(folder, usesPython ? OWN.python : undefined);

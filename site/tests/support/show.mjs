@@ -1,10 +1,12 @@
-// Loads a page of the guide in Chromium. What it writes to the console is what it prints.
+// Loads a page of the guide in Chromium, by Vite where the page has the name of a file. A page that asks for files is given the frames. What
+// it writes to the console is what it prints.
 
-import { mkdirSync, writeFileSync } from 'node:fs';
+import { readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { setTimeout } from 'node:timers/promises';
 
 import { chromium } from '@playwright/test';
+import { createServer } from 'vite';
 import { prepareChromium } from '../../../scripts/lib/chromium.mjs';
 import { root } from '../../../scripts/lib/project.mjs';
 import { serve } from '../../../scripts/lib/static-server.mjs';
@@ -31,8 +33,8 @@ export async function showPage({ t, folder, block }) {
   const { browser: running, problem } = await browser();
   if (problem) return { skip: problem };
   const code = block.code.includes(CDN) ? await fromAnotherOrigin(t, block.code) : block.code;
-  mkdirSync(folder, { recursive: true });
-  writeFileSync(join(folder, 'example.html'), code);
+  const file = block.file ?? 'example.html';
+  writeFileSync(join(folder, file), code);
   const page = await running.newPage();
   t.after(() => page.close());
   const [lines, complaints] = [[], []];
@@ -42,7 +44,9 @@ export async function showPage({ t, folder, block }) {
     if (message.type() === 'log') lines.push(message.text());
     else if (message.type() === 'error' && !isIcon) complaints.push(message.text());
   });
-  await page.goto(`${await address(t, folder)}example.html`);
+  await page.goto(`${await (block.file ? byVite(t, folder) : address(t, folder))}${file}`);
+  const chooser = page.locator('input[type=file]');
+  if ((await chooser.count()) > 0) await chooser.setInputFiles(readdirSync(join(folder, 'frames')).sort().map((name) => join(folder, 'frames', name)));
   // Of a page whose output is not written yet, nobody knows how many lines there will be.
   const expected = block.output.code === '' ? Infinity : block.output.code.trimEnd().split('\n').length;
   const end = Date.now() + (expected === Infinity ? LONGEST_WAIT / 4 : LONGEST_WAIT);
@@ -56,6 +60,14 @@ export async function showPage({ t, folder, block }) {
 async function fromAnotherOrigin(t, code) {
   const far = await address(t, join(root, 'pkg'), { 'Access-Control-Allow-Origin': '*' });
   return code.replaceAll(/https:\/\/cdn\.jsdelivr\.net\/npm\/veronese@[\d.]+\//g, far).replaceAll(CDN, new URL(far).origin);
+}
+
+/** The address of Vite's development server, as `npx vite` starts it. */
+async function byVite(t, root) {
+  const server = await createServer({ root, configFile: false, logLevel: 'error', clearScreen: false, server: { host: '127.0.0.1', port: 0, hmr: false, watch: null } });
+  t.after(() => server.close());
+  await server.listen();
+  return `http://127.0.0.1:${server.httpServer.address().port}/`;
 }
 
 async function address(t, folder, headers = {}) {
