@@ -12,7 +12,7 @@ import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
 import { converted, entries, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
-const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'supervisely', 'web-annotation', 'veronese', 'masks'];
+const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'flo', 'npy', 'supervisely', 'web-annotation', 'veronese', 'masks'];
 const TRACKS = ['youtube-vis', 'cvat-video', 'cvat-mots', 'mots', 'mot', 'label-studio-video'];
 
 const read = (...path) => readFileSync(join(...path), 'utf8');

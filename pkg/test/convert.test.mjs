@@ -9,7 +9,7 @@ import { pair, png } from './support/frames.mjs';
 import { converted, entries, notConverted, temporaryFolder, veronese } from './support/program.mjs';
 
 const EVERY =
-  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-points,cvat-mots,label-studio,label-studio-polygon,labelme,labelme-polygon,yolo,davis,supervisely,web-annotation,veronese';
+  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-points,cvat-mots,label-studio,label-studio-polygon,labelme,labelme-polygon,yolo,davis,flo,npy,supervisely,web-annotation,veronese';
 
 /** A folder as `pair --out` leaves it. */
 async function segmented(t, ...options) {

@@ -26,7 +26,7 @@ export interface FormatMeta {
   classes?: readonly string[];
   /** The motions of the masks. */
   motions?: readonly FormatMotion[];
-  /** The labels to write; default all but 255, which never becomes a mask. `encodeDavis` and `encodeVeronese` write all labels. */
+  /** The labels to write; default all but 255, which never becomes a mask. `encodeDavis`, `encodeFlow` and `encodeVeronese` write all labels. */
   labels?: readonly number[];
 }
 
@@ -355,6 +355,12 @@ export function encodeYolo(
 
 /** An 8-bit indexed PNG whose index is the label, in the DAVIS palette. */
 export function encodeDavis(labels: Uint8Array, width: number, height: number): Uint8Array;
+
+/**
+ * The flow field of the labels' motions, 32-bit floats u and v of each pixel, row by row: `flo` as the Middlebury benchmark has it (the default),
+ * or `npy`, NumPy's, of shape (height, width, 2). Pixels whose label has no motion are unknown: 1e10 there, NaN here.
+ */
+export function encodeFlow(labels: Uint8Array, width: number, height: number, meta?: FormatMeta, options?: { shape?: 'flo' | 'npy' }): Uint8Array;
 
 /** A Supervisely annotation with bitmaps. */
 export function encodeSupervisely(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): SuperviselyAnnotation;

@@ -38,6 +38,8 @@ export const FORMATS = {
     return [text('yolo.txt', lines), text('yolo-names.txt', names.map((name) => `${name}\n`).join(''))];
   },
   davis: (m) => [{ name: 'davis.png', bytes: formats.encodeDavis(m.labels, m.width, m.height) }],
+  flo: (m) => [{ name: 'flow.flo', bytes: formats.encodeFlow(...all(m)) }],
+  npy: (m) => [{ name: 'flow.npy', bytes: formats.encodeFlow(...all(m), { shape: 'npy' }) }],
   supervisely: json('supervisely.json', (m) => formats.encodeSupervisely(...all(m))),
   'web-annotation': json('web-annotation.json', (m, tolerance) => formats.encodeWebAnnotation(...all(m), { tolerance })),
   veronese: json('veronese.json', (m) => formats.encodeVeronese(...all(m))),

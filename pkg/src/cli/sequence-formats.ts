@@ -76,6 +76,16 @@ function each(nameOf: (frame: SequenceFrame) => string, encode: Encode<Content |
   return { convert, files: [] };
 }
 
+/** A file for each frame that moves on to a next one. */
+function flow(shape: 'flo' | 'npy'): Files {
+  const convert: Convert = async (sequence, _, write) => {
+    for await (const frame of sequence) {
+      if ((frame.motions ?? []).length > 0) await write(`${shape}/${frame.stem}.${shape}`, formats.encodeFlow(...given(sequence, frame), { shape }));
+    }
+  };
+  return { convert, files: [] };
+}
+
 /** Options of the encoders of videos. */
 function videoMeta({ meta }: Sequence, { video }: SequenceSettings): ClipMeta {
   return { ...meta, clip: video ?? meta.clip };
@@ -164,6 +174,8 @@ export const SEQUENCE_FORMATS = {
   ),
   yolo: images({ convert: yolo, files: [YOLO_NAMES, YOLO_DATA] }),
   davis: images({ convert: davis, files: [DAVIS_CLIPS] }),
+  flo: images(flow('flo')),
+  npy: images(flow('npy')),
   supervisely: images(each(({ image }) => `supervisely/ann/${image}.json`, (all) => formats.encodeSupervisely(...all))),
   'web-annotation': images(
     list('web-annotation.json', (all, { tolerance }) =>

@@ -8,6 +8,7 @@ export { encodeCvatPoints } from './cvat-points.js';
 export { encodeCvatVideo } from './cvat-video.js';
 export { encodeCvatImages, encodeCvatXml } from './cvat-xml.js';
 export { encodeDavis } from './davis.js';
+export { encodeFlow } from './flow.js';
 export { encodeLabelMe } from './labelme.js';
 export { encodeLabelStudio } from './label-studio.js';
 export { encodeLabelStudioVideo } from './label-studio-video.js';
