@@ -14,7 +14,7 @@ const OPTIONS = {
   pair: OF_PAIRS,
   batch: [...OF_PAIRS, 'list', 'every', 'shard', 'jobs'],
   video: [...OF_PAIRS, 'every', 'shard', 'jobs'],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'allow-damaged', 'force'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
   convert: ['to', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'],
   points: ['motions', 'method', 'seed'],
   completion: [],

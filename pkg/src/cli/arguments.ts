@@ -7,6 +7,7 @@ import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
 import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf, SHELLS } from './commands.js';
 import type { Range } from './sequence.js';
+import { type Shown, SHOWN, shownOf } from './showing.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
 /** Largest look-ahead, as in the core. */
@@ -93,13 +94,13 @@ function convert(values: Values, files: string[], given: readonly string[]) {
     tolerance: decimal('tolerance', values.tolerance),
     range: range(values.from, values.until),
     shapes: shapes === undefined ? undefined : choice('shapes', shapes, 'polygon', 'box'),
-    frameRate: rate === undefined ? undefined : decimal('frame-rate', rate, FRAME_RATES.least, FRAME_RATES.most),
+    frameRate: frameRate(rate),
   };
   return { name: 'convert' as const, folder, to: formats(to), ...settings, grouped, background, image, video, out, force };
 }
 
 function clip(values: Values, files: string[]) {
-  const { list, out, overlay, masks, corrections, force, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
+  const { list, out, overlay, masks, corrections, force, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged, 'frame-rate': rate } = values;
   checkFrames('clip', files, list);
   if (out === undefined) throw usage("'clip' needs '--out DIR'");
   const options = {
@@ -108,7 +109,8 @@ function clip(values: Values, files: string[]) {
     lookAhead: lookAhead === undefined ? ('all' as const) : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
     markUnknown: values['mark-unknown'],
   };
-  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()) };
+  if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
+  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate) };
   return { name: 'clip' as const, frames: files, list, masks, corrections, ...shared, options, overlay, allowDamaged, out, force };
 }
 
@@ -199,6 +201,19 @@ function formats(text: string): SequenceFormatName[] {
     const known = Object.keys(SEQUENCE_FORMATS);
     throw new VeroneseError('invalid-option', `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`);
   });
+}
+
+function shown(text: string | undefined): Shown[] {
+  return [...new Set(text?.split(','))].map((name) => {
+    const known = shownOf(name);
+    if (known) return known;
+    const sentence = `option '--show': nothing is known as '${name}'${question(meant(name, SHOWN)) ?? `; known are ${SHOWN.join(', ')}`}`;
+    throw new VeroneseError('invalid-option', sentence);
+  });
+}
+
+function frameRate(text: string | undefined): number | undefined {
+  return text === undefined ? undefined : decimal('frame-rate', text, FRAME_RATES.least, FRAME_RATES.most);
 }
 
 function range(from: string, until?: string): Range {

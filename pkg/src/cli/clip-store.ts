@@ -5,8 +5,10 @@ import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipChange, ClipTracks } from '../../types/index.js';
 import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { lookAt, readWritten, sha256, writing } from './files.js';
+import { hashOf } from './manifest.js';
 import { idsOf, type Output, removeIfEmpty } from './output.js';
 import { jsonLine } from './pair.js';
+import { isShown, pathsOf } from './showing.js';
 
 /** The content of tracks.json. */
 export interface Record extends Omit<ClipTracks, 'notes'> {
@@ -24,7 +26,7 @@ export interface Record extends Omit<ClipTracks, 'notes'> {
   changes?: ClipChange[];
   /** What was assumed, where something was. */
   notes?: readonly AnnotationNote[];
-  settings: { overlay: boolean; [name: string]: unknown };
+  settings: { overlay: boolean; show?: readonly string[]; [name: string]: unknown };
   /** Hash of the settings and the frames. */
   job: string;
 }
@@ -84,13 +86,22 @@ export class ClipStore {
     });
   }
 
+  /** Puts films, which are complete in the folder of what is not, and others of that kind in their places. */
+  async show(films: readonly string[], sheet: Uint8Array | undefined): Promise<void> {
+    await writing(this.#output.folder, () => {
+      if (sheet) this.#output.write('sheet.png', sheet);
+      const part = this.#output.begin();
+      this.#output.place(part, new Map(films.map((name) => [name, hashOf(join(part, name))])), () => false);
+    });
+  }
+
   /** Removes images of frames that do not belong to the clip, and writes the record. */
   async end(frames: readonly FrameFile[], about: Pick<Record, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
     const record: Record = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };
     await writing(this.#output.folder, () => {
-      this.#output.removeOld((path) => /^(labels|overlay)\//.test(path), imagesOf(frames, settings));
+      this.#output.removeOld((path) => /^(labels|overlay)\//.test(path) || isShown(path), imagesOf(frames, settings));
       this.#output.write(TRACKS, jsonLine(record));
       removeIfEmpty(join(this.#output.folder, HIDDEN));
       this.#output.manifest.settle();
@@ -98,9 +109,10 @@ export class ClipStore {
   }
 }
 
-/** The paths of the images of all frames. */
-function imagesOf(frames: readonly FrameFile[], { overlay }: Record['settings']): string[] {
-  return (overlay ? [LABELS, OVERLAY] : [LABELS]).flatMap((folder) => frames.map(({ stem }) => `${folder}/${stem}.png`));
+/** The paths of the images of all frames, and of what is shown of them. */
+function imagesOf(frames: readonly FrameFile[], { overlay, show = [] }: Record['settings']): string[] {
+  const images = (overlay ? [LABELS, OVERLAY] : [LABELS]).flatMap((folder) => frames.map(({ stem }) => `${folder}/${stem}.png`));
+  return [...images, ...pathsOf(show, frames.map(({ stem }) => stem))];
 }
 
 /** Hash of the settings, names and contents. */

@@ -1,13 +1,14 @@
 // `clip`: writes the labels of each frame, prints a line of JSON for each, and writes the tracks at the end.
 
 import { join } from 'node:path';
-import type { Clip, ClipChange, ClipFrame, ClipProgress, Segmenter as SegmenterType } from '../../types/index.js';
+import type { Clip, ClipChange, ClipFrame, ClipProgress, Note, Segmenter as SegmenterType } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
 import { UNLABELLED } from '../common/checks.js';
 import { davisPalette } from '../common/palette.js';
 import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
 import { SegmenterPool } from '../entries/node.js';
+import { USUAL_RATE } from '../formats/frames.js';
 import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
@@ -18,6 +19,7 @@ import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
 import { jsonLine } from './pair.js';
+import { checkFilms, Showing } from './showing.js';
 import { note, print, ProgressBar, warn } from './terminal.js';
 import { oneForEach } from './threads.js';
 
@@ -25,16 +27,19 @@ const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
 
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand, io: Io): Promise<void> {
-  const { out, options, every, overlay: wanted, force } = command;
+  const { out, options, every, overlay: wanted, show, force } = command;
+  await checkFilms(show);
   const output = new Output(out, { force, signal: io.signal });
   const frames = await clipFrames(command, io);
   const segmenter = segmenters(command.jobs);
   const progress = new Passes(frames.length, io);
+  const rate = command.frameRate ?? frames.times.frameRate;
+  const showing = new Showing(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
   try {
     const said = await readCorrections(command, frames);
     for (const each of said?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
-    const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, software });
+    const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
     const record = store.finished(frames.files);
     if (record) {
       // Masks may be the same ones in other files by now: of those the note above is right.
@@ -55,23 +60,31 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
       : await corrected(segmenter, frames, command, said && { ...said, seen: accepted }, kept, onProgress);
     for await (const frame of segmented) {
       const { stem } = frames.files[frame.index] as { stem: string };
-      await store.write(stem, await images(frames, frame, wanted));
+      await store.write(stem, await images(frames, frame, wanted, show.length > 0 ? showing : undefined));
       progress.clear();
       await print(io, jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
+    const { films, sheet } = await showing.end();
+    if (films.length > 0 || sheet) await store.show(films, sheet);
     const { notes = [], ...tracks } = segmented.tracks();
     if (streams) await kept.clear();
     const changes = await segmented.changes();
+    if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
     const found = [...frames.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
     await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(said?.notes ?? []), ...found]);
     for (const each of found) note(io, each);
+    for (const { name, object } of show) {
+      const isThere = !name.startsWith('cutout') || object === 0 || tracks.objects.some(({ id }) => id === object);
+      if (!isThere) warn(io, `there is no object ${object}: '${name}' is transparent`);
+    }
     if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
     await print(io, lastLine(tracks.objects, changes));
   } catch (thrown) {
     segmenter.close();
     throw thrown;
   } finally {
+    showing.close();
     output.discard();
     progress.clear();
     await frames.close();
@@ -171,12 +184,19 @@ class Passes {
   }
 }
 
-async function images(frames: ClipFrames, { index, labels }: ClipFrame, withOverlay: boolean): Promise<{ [folder: string]: Uint8Array }> {
-  const { width, height } = frames.size as { width: number; height: number };
+/** The pictures of a frame by their folders. */
+async function images(frames: ClipFrames, frame: ClipFrame, withOverlay: boolean, showing: Showing | undefined): Promise<{ [folder: string]: Uint8Array }> {
+  const { index, labels, width, height } = frame;
   const files = { labels: await encodeIndexedPng(width, height, labels, davisPalette()) };
-  if (!withOverlay) return files;
-  const { data } = await frames.read(index);
-  return { ...files, overlay: await encodeColourPng(width, height, overlay(data, labels)) };
+  if (!withOverlay && !showing) return files;
+  const picture = await frames.read(index);
+  const painted = withOverlay && { overlay: await encodeColourPng(width, height, overlay(picture.data, labels)) };
+  return { ...files, ...painted, ...(await showing?.add(frame, picture)) };
+}
+
+function rateNote({ frames }: ClipCommand): Note {
+  const message = `the frame rate of '${frames.join(' ')}' is not known: films have ${USUAL_RATE} frames per second; '--frame-rate' says another`;
+  return { code: 'frame-rate-assumed', message };
 }
 
 /** Prints what the run that wrote the record printed. */

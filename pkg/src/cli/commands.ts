@@ -2,6 +2,7 @@
 
 import { isFormatName } from './formats.js';
 import { SEQUENCE_FORMATS } from './sequence-formats.js';
+import { SHOWN } from './showing.js';
 
 /** As parseArgs takes it, with the word for its value and what it is for. */
 export interface Option {
@@ -51,6 +52,13 @@ export const OPTIONS = {
   'mark-unknown': { type: 'boolean', default: false, text: 'use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous' },
   confidence: { type: 'boolean', default: false, text: "also write confidence.png: 255 times the probability that each pixel's label is right" },
   overlay: { type: 'boolean', default: false, text: 'also write overlay.png: the first frame with each motion in its colour' },
+  show: {
+    type: 'string',
+    value: 'FILES',
+    text:
+      'also write films and pictures, separated by commas: overlay, the frames with each object in its colour, or beside, the frames and next to them the same, as .mp4, .webm or .gif; ' +
+      'sheet.png, some frames at a glance; cutout-N, object N alone and the rest transparent, as PNG files, or as .webm or .mov; films need the program ffmpeg',
+  },
   jobs: { type: 'string', short: 'j', value: 'N', text: 'number of pairs processed at once (default: the number of processors)' },
   shard: { type: 'string', default: '1/1', value: 'I/N', text: 'process only part I of N, to share the pairs between N machines' },
   to: {
@@ -133,16 +141,18 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'overlay', 'jobs', ...AT_THE_END],
+    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',
       overlay: 'also write overlay/NAME.png: the frames with each object in its colour',
+      'frame-rate': "frames per second of what '--show' writes (default: the video's, else 25)",
       jobs: 'number of frames compared at once (default: the number of processors); the files are the same',
     },
     examples: [
       ['Masks of a folder of frames', 'veronese clip frames -o masks'],
-      ['Masks of a video, with pictures of them', 'veronese clip film.mp4 -o masks --overlay'],
+      ['Masks of a video, and a film of them to show', 'veronese clip film.mp4 -o masks --show overlay.mp4'],
+      ['Object 1 alone, on transparent ground', 'veronese clip film.mp4 -o masks --show cutout-1.mov'],
       ['The same again, after painting over some labels', 'veronese clip film.mp4 -o masks --corrections painted'],
     ],
   },
@@ -189,6 +199,7 @@ export function optionsOf(command: CommandName): (Option & { name: OptionName })
 
 /** The words that an option's value can be, if they can be listed. */
 export function valuesOf({ value = '' }: Option): readonly string[] {
+  if (value === 'FILES') return SHOWN.filter((name) => !name.includes('N'));
   if (value === 'FORMATS') return [...Object.keys(SEQUENCE_FORMATS), BACK];
   return value.includes('|') ? value.split('|').filter((word) => !word.includes('..')) : [];
 }

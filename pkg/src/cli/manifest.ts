@@ -118,7 +118,7 @@ function isBelow(path: string): boolean {
 }
 
 /** Piece by piece: a file may be larger than what can be read at once. */
-function hashOf(path: string): string {
+export function hashOf(path: string): string {
   const [hash, chunk, file] = [createHash('sha256'), Buffer.allocUnsafe(CHUNK), openSync(path, 'r')];
   try {
     for (let length = -1; length !== 0; ) hash.update(chunk.subarray(0, (length = readSync(file, chunk))));

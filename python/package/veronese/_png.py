@@ -16,7 +16,7 @@ def indexed_png(labels: NDArray[np.uint8]) -> bytes:
     height, width = labels.shape
     rows = np.zeros((height, 1 + width), np.uint8)  # each row begins with its filter: none
     rows[:, 1:] = labels
-    parts = (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)), (b"PLTE", palette()), (b"IDAT", zlib.compress(rows.tobytes())), (b"IEND", b"")
+    parts = (b"IHDR", struct.pack(">II", width, height) + bytes([8, 3, 0, 0, 0])), (b"PLTE", palette()), (b"IDAT", zlib.compress(rows.tobytes())), (b"IEND", b"")
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, content) for kind, content in parts)
 
 

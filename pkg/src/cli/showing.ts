@@ -1,0 +1,238 @@
+// What `clip --show` makes of a result besides masks: films, a sheet of some frames, and objects cut out of the frames.
+
+import { type ChildProcess, spawn } from 'node:child_process';
+import { once } from 'node:events';
+import { join } from 'node:path';
+import { deflateSync } from 'node:zlib';
+import type { ClipFrame, Pixels } from '../../types/index.js';
+import { overlay } from '../calls/labels.js';
+import { isWhole, UNLABELLED } from '../common/checks.js';
+import { VeroneseError } from '../common/errors.js';
+import { encodeColourPng } from '../entries/codecs.js';
+import { pngFile } from '../formats/png-file.js';
+
+/** For help and completion; N is the number of an object. */
+export const SHOWN = ['overlay.mp4', 'overlay.webm', 'overlay.gif', 'beside.mp4', 'beside.webm', 'beside.gif', 'sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'];
+
+/** A file, or a folder of a picture for each frame. */
+export interface Shown {
+  name: string;
+  kind: 'overlay' | 'beside' | 'sheet' | 'cutout';
+  /** That is cut out. */
+  object: number;
+  /** Of a film. */
+  format: keyof typeof ENCODERS | undefined;
+}
+
+/** Sides of films with half the resolution in colours must be even: one more row or column is black. */
+const EVEN = 'pad=ceil(iw/2)*2:ceil(ih/2)*2';
+const VP9 = ['-c:v', 'libvpx-vp9', '-crf', '24', '-b:v', '0', '-row-mt', '1', '-cpu-used', '4'];
+
+/** How ffmpeg encodes a film by the end of its name, without and with transparency. */
+const ENCODERS = {
+  mp4: { opaque: ['-vf', EVEN, '-c:v', 'libx264', '-crf', '18', '-pix_fmt', 'yuv420p', '-movflags', '+faststart'] },
+  webm: {
+    opaque: ['-vf', EVEN, ...VP9, '-pix_fmt', 'yuv420p'],
+    // Frames that are not shown cannot be transparent.
+    transparent: ['-vf', EVEN, ...VP9, '-pix_fmt', 'yuva420p', '-auto-alt-ref', '0'],
+  },
+  gif: { opaque: ['-vf', 'split[a][b];[a]palettegen[p];[b][p]paletteuse', '-loop', '0'] },
+  mov: { transparent: ['-c:v', 'prores_ks', '-profile:v', '4444', '-pix_fmt', 'yuva444p10le', '-vendor', 'apl0'] },
+} satisfies Record<string, { opaque?: readonly string[]; transparent?: readonly string[] }>;
+
+/** Of a sheet: frames in all and in a row, the largest width of one and the space between them, pixels. */
+const SHEET = { most: 12, columns: 4, width: 480, space: 4 };
+
+/** What a name stands for; undefined where it stands for nothing. */
+export function shownOf(name: string): Shown | undefined {
+  const [, kind, number, end] = /^(overlay|beside|sheet|cutout)(?:-(\d+))?(?:\.(\w+))?$/.exec(name) ?? [];
+  const object = Number(number);
+  const known = kind === 'cutout' ? isWhole(object, 0, UNLABELLED - 1) && String(object) === number : number === undefined;
+  const pattern = kind === 'cutout' ? name.replace(/\d+/, 'N') : name;
+  if (!known || !SHOWN.includes(pattern)) return undefined;
+  return { name, kind: kind as Shown['kind'], object, format: end === undefined || end === 'png' ? undefined : (end as keyof typeof ENCODERS) };
+}
+
+/** The paths of what is shown of frames with these names. */
+export function pathsOf(shown: readonly string[], stems: readonly string[]): string[] {
+  return shown.flatMap((name) => (/^cutout-\d+$/.test(name) ? stems.map((stem) => `${name}/${stem}.png`) : [name]));
+}
+
+/** Whether a path may be one of something shown. */
+export function isShown(path: string): boolean {
+  return shownOf(path.replace(/\/[^/]*$/, '')) !== undefined;
+}
+
+/** Throws `ffmpeg-missing` where films are wanted that nothing can write. */
+export async function checkFilms(shown: readonly Shown[]): Promise<void> {
+  const film = shown.find(({ format }) => format !== undefined);
+  if (!film) return;
+  const ffmpeg = spawn('ffmpeg', ['-version'], { stdio: 'ignore' });
+  await once(ffmpeg, 'close').catch((error: Error) => {
+    const sentence = `'${film.name}' is written by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or ask for pictures: '--overlay', '--show sheet.png,cutout-1'`;
+    throw new VeroneseError('ffmpeg-missing', sentence, { cause: error });
+  });
+}
+
+export class Showing {
+  readonly #shown: readonly Shown[];
+  readonly #folder: () => string;
+  readonly #count: number;
+  readonly #rate: number;
+  readonly #films = new Map<string, Film>();
+  readonly #tiles: Pixels[] = [];
+
+  /** `folder` is that of what is not complete; `count` is the number of frames, `rate` that of the films. */
+  constructor(shown: readonly Shown[], { folder, count, rate }: { folder: () => string; count: number; rate: number }) {
+    this.#shown = shown;
+    this.#folder = folder;
+    this.#count = count;
+    this.#rate = rate;
+  }
+
+  /** Takes the next frame; returns its pictures by the folders that they belong to. */
+  async add({ index, labels }: ClipFrame, { data, width, height }: Pixels): Promise<{ [folder: string]: Uint8Array }> {
+    const pictures: { [folder: string]: Uint8Array } = {};
+    let painted: Uint8Array | undefined;
+    for (const shown of this.#shown) {
+      const { name, kind, object, format } = shown;
+      if (kind === 'cutout') {
+        const cut = cutOut(data, labels, object);
+        if (format) await this.#film(shown, width, height).take(cut);
+        else pictures[name] = pngFile(width, height, deflateSync(rowsOf(cut, 4 * width)), { channels: 4 });
+        continue;
+      }
+      painted ??= overlay(data as Uint8Array, labels);
+      if (kind === 'sheet') {
+        if (this.#isOnSheet(index)) this.#tiles.push(smaller(painted, width, height));
+      } else if (kind === 'beside') {
+        await this.#film(shown, 2 * width, height).take(beside(data, painted, width));
+      } else {
+        await this.#film(shown, width, height).take(painted);
+      }
+    }
+    return pictures;
+  }
+
+  /** Ends the films, which are in the folder then; returns the sheet, if one is wanted. */
+  async end(): Promise<{ films: string[]; sheet: Uint8Array | undefined }> {
+    for (const film of this.#films.values()) await film.end();
+    return { films: [...this.#films.keys()], sheet: this.#tiles.length > 0 ? await sheetOf(this.#tiles) : undefined };
+  }
+
+  close(): void {
+    for (const film of this.#films.values()) film.close();
+  }
+
+  #isOnSheet(index: number): boolean {
+    const tiles = Math.min(SHEET.most, this.#count);
+    const at = Math.round((index * (tiles - 1)) / (this.#count - 1));
+    return index === Math.round((at * (this.#count - 1)) / (tiles - 1));
+  }
+
+  #film(shown: Shown, width: number, height: number): Film {
+    const known = this.#films.get(shown.name);
+    if (known) return known;
+    const film = new Film(shown, join(this.#folder(), shown.name), { width, height, rate: this.#rate });
+    this.#films.set(shown.name, film);
+    return film;
+  }
+}
+
+/** A film that ffmpeg encodes from RGB, or from RGBA where it has transparency. */
+class Film {
+  readonly #name: string;
+  readonly #ffmpeg: ChildProcess;
+  readonly #ended: Promise<unknown>;
+  #said = '';
+
+  constructor({ name, kind, format }: Shown, path: string, { width, height, rate }: { width: number; height: number; rate: number }) {
+    this.#name = name;
+    const { opaque = [], transparent = [] }: { opaque?: readonly string[]; transparent?: readonly string[] } = ENCODERS[format as keyof typeof ENCODERS];
+    const cut = kind === 'cutout';
+    const input = ['-f', 'rawvideo', '-pix_fmt', cut ? 'rgba' : 'rgb24', '-s', `${width}x${height}`, '-framerate', String(rate), '-i', 'pipe:0'];
+    const args = ['-v', 'error', '-y', ...input, ...(cut ? transparent : opaque), `file:${path}`];
+    this.#ffmpeg = spawn('ffmpeg', args, { stdio: ['pipe', 'ignore', 'pipe'] });
+    this.#ffmpeg.stderr?.on('data', (piece) => (this.#said += String(piece)));
+    // Why it takes no more shows when it ends.
+    this.#ffmpeg.stdin?.on('error', () => undefined);
+    this.#ended = once(this.#ffmpeg, 'close').catch(() => undefined);
+  }
+
+  /** Resolves when it takes more. */
+  async take(bytes: Uint8Array): Promise<void> {
+    const { stdin } = this.#ffmpeg;
+    if (stdin && !stdin.write(bytes)) await Promise.race([once(stdin, 'drain').catch(() => undefined), this.#ended]);
+    if (this.#ffmpeg.exitCode !== null) await this.end();
+  }
+
+  async end(): Promise<void> {
+    this.#ffmpeg.stdin?.end();
+    await this.#ended;
+    if (this.#ffmpeg.exitCode === 0) return;
+    const reason = this.#said.trim().split('\n')[0] || `it ended with ${this.#ffmpeg.signalCode ?? `code ${this.#ffmpeg.exitCode}`}`;
+    throw new VeroneseError('write-failed', `'${this.#name}' cannot be written by this ffmpeg: ${reason}`);
+  }
+
+  close(): void {
+    this.#ffmpeg.kill('SIGKILL');
+  }
+}
+
+/** RGBA of one object on a ground that is transparent. */
+function cutOut(rgba: Pixels['data'], labels: Uint8Array, object: number): Uint8Array {
+  const cut = new Uint8Array(rgba.length);
+  labels.forEach((label, pixel) => {
+    if (label === object) cut.set(rgba.subarray(4 * pixel, 4 * pixel + 4), 4 * pixel);
+  });
+  return cut;
+}
+
+/** RGB of a frame, and right of it what is painted over it. */
+function beside(rgba: Pixels['data'], painted: Uint8Array, width: number): Uint8Array {
+  const both = new Uint8Array(2 * painted.length);
+  for (let pixel = 0; pixel < painted.length / 3; pixel++) {
+    const at = 3 * (pixel + Math.floor(pixel / width) * width);
+    for (let channel = 0; channel < 3; channel++) {
+      both[at + channel] = rgba[4 * pixel + channel] as number;
+      both[at + 3 * width + channel] = painted[3 * pixel + channel] as number;
+    }
+  }
+  return both;
+}
+
+/** The rows of a PNG, each after the number of its filter: none. */
+function rowsOf(samples: Uint8Array, stride: number): Uint8Array {
+  const rows = new Uint8Array(samples.length + samples.length / stride);
+  for (let y = 0; y * stride < samples.length; y++) rows.set(samples.subarray(y * stride, (y + 1) * stride), y * (stride + 1) + 1);
+  return rows;
+}
+
+/** RGB for a sheet: each pixel is the mean of those that it stands for. */
+function smaller(rgb: Uint8Array, width: number, height: number): Pixels {
+  const factor = Math.max(1, Math.ceil(width / SHEET.width));
+  const [w, h] = [Math.max(1, Math.floor(width / factor)), Math.max(1, Math.floor(height / factor))];
+  const data = new Uint8Array(3 * w * h);
+  data.forEach((_, at) => {
+    const [channel, x, y] = [at % 3, Math.floor(at / 3) % w, Math.floor(at / 3 / w)];
+    let sum = 0;
+    for (let k = 0; k < factor * factor; k++) {
+      sum += rgb[3 * ((y * factor + Math.floor(k / factor)) * width + x * factor + (k % factor)) + channel] as number;
+    }
+    data[at] = Math.round(sum / (factor * factor));
+  });
+  return { data, width: w, height: h };
+}
+
+async function sheetOf(tiles: readonly Pixels[]): Promise<Uint8Array> {
+  const { width, height } = tiles[0] as Pixels;
+  const columns = Math.min(SHEET.columns, tiles.length);
+  const rows = Math.ceil(tiles.length / columns);
+  const [w, h] = [columns * (width + SHEET.space) - SHEET.space, rows * (height + SHEET.space) - SHEET.space];
+  const sheet = new Uint8Array(3 * w * h).fill(255);
+  for (const [k, { data }] of tiles.entries()) {
+    const [left, top] = [(k % columns) * (width + SHEET.space), Math.floor(k / columns) * (height + SHEET.space)];
+    for (let y = 0; y < height; y++) sheet.set(data.subarray(3 * y * width, 3 * (y + 1) * width), 3 * ((top + y) * w + left));
+  }
+  return encodeColourPng(w, h, sheet);
+}
