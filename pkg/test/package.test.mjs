@@ -47,7 +47,7 @@ describe('npm pack', () => {
   });
 
   test('holds nothing else', () => {
-    for (const name of names) assert.match(name, /^(package\.json|custom-elements\.json|README\.md|LICENSE-(MIT|APACHE)|THIRD-PARTY-NOTICES|(bin|dist(\/formats)?)\/[\w-]+\.js|types\/[\w.-]+\.d\.ts|wasm\/.*_bg\.wasm)$/);
+    for (const name of names) assert.match(name, /^(package\.json|custom-elements\.json|README\.md|LICENSE-(MIT|APACHE)|THIRD-PARTY-NOTICES|(bin|dist(\/formats)?)\/[\w-]+\.js|types\/[\w.-]+\.d\.ts|schemas\/\w+\.schema\.json|wasm\/.*_bg\.wasm)$/);
   });
 });
 
