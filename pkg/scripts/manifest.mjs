@@ -14,13 +14,20 @@ const CSS_PROPERTIES = {
 };
 const CSS_PARTS = {
   stage: 'The picture, the objects and the line of status.',
+  view: 'The picture and the objects, which zoom.',
   picture: 'The frame and its masks.',
   frame: 'The canvas with the frame.',
   masks: 'The canvas with the masks.',
   objects: 'The list box over the picture.',
   object: 'An object in the list box.',
   status: 'The line of status.',
+  legend: 'The list of objects and their colours.',
+  entry: 'An object in the legend.',
+  swatch: 'Its colour.',
   timeline: 'The slider for the frames of a clip.',
+  controls: 'The button and the number of the frame of a clip.',
+  play: 'The button that plays a clip.',
+  number: 'The number of the frame that is shown.',
   progress: 'The progress of a clip.',
 };
 const CLASS = { name: 'VeroneseSegmenterElement', module: 'dist/element-class.js' };

@@ -54,6 +54,9 @@ export interface VeroneseSegmenterMessages {
   time: (number: number, of: number) => string;
   /** The progress of a clip. */
   progress: string;
+  /** The button that plays a clip, and stops it. */
+  play: string;
+  pause: string;
   /** Why a form cannot be submitted. */
   busy: string;
   missing: string;
@@ -71,14 +74,15 @@ export type ElementPrompt =
  * Segments two frames or a clip, and shows the masks over the frames.
  *
  * Attributes: `first` and `second` (image URLs), or `src` (URL of a video, which takes precedence); `motions` (`auto` or 1 to 10),
- * `quality` (`fast` or `best`), `grouped` (masks of two frames are groups of motions); `name`, `disabled` and `required`. The element
+ * `quality` (`fast` or `best`), `grouped` (masks of two frames are groups of motions); `controls` (any of `play`, `legend` and `zoom`); `name`, `disabled` and `required`. The element
  * segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
  *
  * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
  * `detail`. They do not bubble. Where nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
  *
  * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
- * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer.
+ * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer. With `zoom`, the wheel and the keys
+ * + and - magnify the picture; 0 and a double click show all of it.
  *
  * Forms: under its `name`, the element submits indexed PNG files with the DAVIS palette, whose indices are {@link labels}: `labels.png`
  * of two frames, or one file for each frame of a clip that is done, `00000.png` and on, once the clip has ended or was aborted. It is
@@ -86,8 +90,8 @@ export type ElementPrompt =
  * A disabled element still segments, but takes no input and submits nothing.
  *
  * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`, `--veronese-status-background`,
- * `--veronese-focus-colour`, and `--veronese-colour-K` for mask K. Parts: `stage`, `picture`, `frame`, `masks`, `objects`, `object`,
- * `status`, and of a clip `timeline` and `progress`.
+ * `--veronese-focus-colour`, and `--veronese-colour-K` for mask K. Parts: `stage`, `view`, `picture`, `frame`, `masks`, `objects`, `object`,
+ * `status`, `legend`, `entry`, `swatch`, and of a clip `timeline`, `progress`, `controls`, `play` and `number`.
  */
 export class VeroneseSegmenterElement extends HTMLElement {
   /**

@@ -16,6 +16,8 @@ export interface VeroneseSegmenterAttributes {
   quality?: 'fast' | 'best' | undefined;
   /** Whether masks of two frames are groups of motions. */
   grouped?: boolean | undefined;
+  /** What else a person may do, any of `play`, `legend` and `zoom`, with spaces between. */
+  controls?: string | undefined;
   /** The name under which a form gets the masks. */
   name?: string | undefined;
   /** Whether it takes no input and submits nothing; it still segments. */

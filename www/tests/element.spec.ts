@@ -552,6 +552,58 @@ test('the keyboard steps through frames and chooses objects', async ({ page }) =
   expect(await state()).toMatchObject({ selected: null });
 });
 
+test('with controls it plays, has a legend and zooms; without it has none of them', async ({ page }) => {
+  await openEmpty(page);
+  await page.evaluate(async () => {
+    document.body.innerHTML = '<main><h1>Test</h1></main>';
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    element.messages = { pause: 'Halt' };
+    const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve));
+    element.frames = clip(5);
+    document.querySelector('main')!.append(element);
+    await tracks;
+  });
+  const element = page.locator('veronese-segmenter');
+  const play = element.locator('[part=play]');
+  await expect(play).toBeHidden();
+  await expect(element.locator('[part=legend]')).toBeHidden();
+  const width = (): Promise<number> => element.locator('[part=frame]').evaluate((frame) => Math.round(frame.getBoundingClientRect().width));
+  const whole = await width();
+  const list = element.getByRole('listbox');
+  await list.hover();
+  await page.mouse.wheel(0, -240);
+  expect(await width()).toBe(whole);
+
+  await element.evaluate((one) => one.setAttribute('controls', 'play legend zoom'));
+  const number = element.locator('[part=number]');
+  await expect(number).toHaveText('frame 1 of 5');
+  await play.click();
+  await expect(play).toHaveText('Halt');
+  await expect(number).toHaveText('frame 5 of 5');
+  await expect(play).toHaveText('Play');
+  await play.click();
+  await expect(number).toHaveText('frame 5 of 5');
+  // The colour is that of the page's style sheet.
+  await element.locator('[part=entry]', { hasText: 'Object 1' }).click();
+  await expect(element.getByRole('option', { name: 'Object 1', selected: true })).toBeAttached();
+  expect(await element.locator('[part=swatch]').evaluate((swatch) => getComputedStyle(swatch).backgroundColor)).toBe('rgb(255, 92, 147)');
+
+  // Twice as large; what is under the pointer stays there, and is chosen as before.
+  await list.press('Escape');
+  const stage = (await element.locator('[part=stage]').boundingBox())!;
+  const at = { x: stage.x + (50 / 96) * stage.width, y: stage.y + (32 / 64) * stage.height };
+  await page.mouse.move(at.x, at.y);
+  await page.mouse.wheel(0, -240);
+  await expect.poll(width).toBe(2 * whole);
+  await page.mouse.click(at.x, at.y);
+  await expect(element.getByRole('option', { name: 'Object 1', selected: true })).toBeAttached();
+  await list.press('+');
+  await expect.poll(width).toBe(4 * whole);
+  await list.press('0');
+  await expect.poll(width).toBe(whole);
+});
+
 test('every frame of a video, 30 and 12.5 a second', async ({ page }) => {
   await openEmpty(page);
   for (const [count, fps] of [[9, 30], [5, 12.5]] as const) {

@@ -9,6 +9,9 @@ import { type Place, pixelsOf } from './sources.js';
 import { Video } from './video.js';
 import { part } from './view.js';
 
+/** Of a clip that plays, milliseconds. */
+const FRAME_TIME = 40;
+
 /** The source of a clip's frames. */
 interface Source {
   /** For `segmentClip`. */
@@ -42,6 +45,11 @@ interface Listeners {
 export class ElementClip {
   readonly timeline = part('input', 'timeline');
   readonly progress = part('progress', 'progress');
+  /** A button that plays the frames, and the number of the one that is shown. */
+  readonly controls = part('div', 'controls');
+  readonly #play = part('button', 'play');
+  readonly #number = part('span', 'number');
+  #plays = false;
   readonly #done: Packed[] = [];
   readonly #found: FoundFrame[] = [];
   readonly #texts: () => VeroneseSegmenterMessages;
@@ -66,7 +74,33 @@ export class ElementClip {
       event.stopPropagation();
       this.show(this.timeline.valueAsNumber);
     });
+    this.#play.type = 'button';
+    this.#play.addEventListener('click', () => (this.#plays ? this.#pause() : void this.#run()));
+    // The slider says the same.
+    this.#number.ariaHidden = 'true';
+    this.controls.append(this.#play, this.#number);
     this.name();
+  }
+
+  /** Shows frame after frame, from the first one where the last one is shown, until a person stops it or there are no more. */
+  async #run(): Promise<void> {
+    this.#plays = true;
+    this.#mark();
+    if (this.#current === this.length - 1) this.show(0);
+    while (this.#plays && !this.#closed) {
+      await Promise.all([this.shown(), new Promise((resolve) => setTimeout(resolve, FRAME_TIME))]);
+      if (this.#current >= this.length - 1) this.#pause();
+      else if (this.#plays) this.show(this.#current + 1);
+    }
+  }
+
+  #pause(): void {
+    this.#plays = false;
+    this.#mark();
+  }
+
+  set disabled(disabled: boolean) {
+    this.timeline.disabled = this.#play.disabled = disabled;
   }
 
   /** Names the slider and the progress. */
@@ -184,7 +218,9 @@ export class ElementClip {
   #mark(): void {
     this.timeline.max = String(Math.max(0, this.length - 1));
     this.timeline.value = String(this.#current);
-    this.timeline.setAttribute('aria-valuetext', this.#texts().time(this.#current + 1, this.length));
+    this.#number.textContent = this.#texts().time(this.#current + 1, this.length);
+    this.timeline.setAttribute('aria-valuetext', this.#number.textContent);
+    this.#play.textContent = this.#plays ? this.#texts().pause : this.#texts().play;
   }
 
   /** The masks that are done, as `veronese clip` names those of a video. */
@@ -195,6 +231,7 @@ export class ElementClip {
   close(): void {
     this.#closed = true;
     this.timeline.remove();
+    this.controls.remove();
     this.progress.remove();
     this.#source?.close?.();
   }

@@ -54,6 +54,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#view = new View(this.attachShadow({ mode: 'open', delegatesFocus: true }), () => this.#texts, {
       select: (object) => this.#tell('select', object),
       step: (frames) => (this.currentFrame += frames),
+      zoom: async (...parts) => new (await import('./later.js')).Zoom(...parts),
     });
     for (const name of PROPERTIES) {
       // Set when this was not yet an element of ours.
@@ -276,7 +277,7 @@ export class VeroneseSegmenterElement extends Base {
   /** By the attribute, or by a fieldset around the element. */
   formDisabledCallback(disabled: boolean): void {
     this.#view.disabled = disabled;
-    if (this.#clip) this.#clip.timeline.disabled = disabled;
+    if (this.#clip) this.#clip.disabled = disabled;
   }
 
   /** Several attributes that change together are one request. */
@@ -353,8 +354,8 @@ export class VeroneseSegmenterElement extends Base {
     const clip = new ElementClip(() => this.#texts, { show: (frame) => this.#paintFrame(frame), fail: (thrown) => this.#fail(veroneseError(thrown)) });
     this.#clip = clip;
     this.#view.stage.append(clip.progress);
-    this.#view.stage.after(clip.timeline);
-    clip.timeline.disabled = this.matches(':disabled');
+    this.#view.stage.after(clip.timeline, clip.controls);
+    clip.disabled = this.matches(':disabled');
     try {
       await clip.open(this.#given.frames ?? this.src, this.#place(signal));
       const poster = await clip.poster();

@@ -2,3 +2,4 @@
 
 export { ElementClip } from './clip.js';
 export { fileOf, packed } from './masks.js';
+export { Zoom } from './zoom.js';

@@ -11,6 +11,8 @@ export const ENGLISH: VeroneseSegmenterMessages = {
   timeline: 'Frame',
   time: (number, of) => `frame ${number} of ${of}`,
   progress: 'Progress',
+  play: 'Play',
+  pause: 'Pause',
   busy: 'The masks are not ready yet.',
   missing: 'Frames are missing.',
   error: ({ message }) => message,

@@ -4,21 +4,28 @@ import type { VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Pixels } from '../../types/index.js';
 import { UNLABELLED } from '../common/checks.js';
 import { coloursOf } from './colours.js';
+import type { Zoom } from './zoom.js';
 
 const STYLE = `
   :host { display: inline-block; position: relative; overflow: hidden; background: var(--veronese-background, #0d0e10); }
   :host([hidden]) { display: none; }
   .stage, .picture { position: relative; }
+  .stage { overflow: hidden; }
+  .view { position: relative; transform-origin: 0 0; }
   canvas { display: block; width: 100%; height: auto; }
   .masks { position: absolute; inset: 0; height: 100%; opacity: var(--veronese-opacity, 0.55); }
   .objects { position: absolute; inset: 0; --focus: var(--veronese-focus-colour, #fff); }
   .objects:focus-visible { outline: 3px solid var(--focus); outline-offset: -3px; box-shadow: inset 0 0 0 5px #000; }
   .object { position: absolute; pointer-events: none; }
   .object[aria-selected=true] { outline: 2px solid var(--focus); outline-offset: -2px; box-shadow: 0 0 0 1px #000, inset 0 0 0 3px #000; }
-  .status { position: absolute; inset: auto 0 0; margin: 0; padding: 0.3em 0.8em; font: var(--veronese-font, 0.8125rem/1.5 system-ui, sans-serif);
-    color: var(--veronese-status-colour, #fff); background: var(--veronese-status-background, rgb(0 0 0 / 65%)); }
+  .status, .controls, .legend { font: var(--veronese-font, 0.8125rem/1.5 system-ui, sans-serif); color: var(--veronese-status-colour, #fff); margin: 0; padding: 0.3em 0.8em; }
+  .status { position: absolute; inset: auto 0 0; background: var(--veronese-status-background, rgb(0 0 0 / 65%)); }
   .status:empty { display: none; }
   .timeline { display: block; box-sizing: border-box; inline-size: 100%; block-size: 2.75rem; margin: 0; padding-inline: 0.5rem; }
+  .controls, .legend { display: flex; flex-wrap: wrap; gap: 0.3em 1em; list-style: none; }
+  :host(:not([controls~=play])) .controls, :host(:not([controls~=legend])) .legend { display: none; }
+  .entry[data-selected] { text-decoration: underline; }
+  .swatch { display: inline-block; inline-size: 0.8em; block-size: 0.8em; margin-inline-end: 0.3em; }
   .progress { position: absolute; inset: auto 0 0; inline-size: 100%; block-size: 0.375rem; }
 `;
 
@@ -27,17 +34,26 @@ interface Listeners {
   select: (object: number | null) => void;
   /** Frames forward, negative for back. */
   step: (frames: number) => void;
+  /** The first time that the picture is magnified. */
+  zoom: (stage: HTMLElement, view: HTMLElement) => Promise<Zoom>;
 }
+
+/** By keys, factors of the picture's size; 0 shows all of it. */
+const zooming = (by: (factor: number) => void) => ({ '+': () => by(2), '-': () => by(0.5), 0: () => by(0) });
 
 export class View {
   readonly stage = part('div', 'stage');
   readonly objects = part('div', 'objects');
   readonly status = part('p', 'status');
+  readonly #legend = part('ul', 'legend');
+  readonly #view = part('div', 'view');
   readonly #picture = part('div', 'picture');
   readonly #frame = part('canvas', 'frame');
   readonly #masks = part('canvas', 'masks');
   readonly #texts: () => VeroneseSegmenterMessages;
   readonly #listeners: Listeners;
+  #zooming: Promise<Zoom> | undefined;
+  #colours: Uint32Array | undefined;
   #labels: { labels: Uint8Array; width: number; height: number } | undefined;
   #selected: number | null = null;
   #disabled = false;
@@ -58,8 +74,17 @@ export class View {
     this.#frame.width = this.#masks.width = 16;
     this.#frame.height = this.#masks.height = 9;
     this.#picture.append(this.#frame, this.#masks);
-    this.stage.append(this.#picture, this.objects, this.status);
-    root.append(this.stage);
+    this.stage.addEventListener('wheel', (event) => {
+      if (!this.#zooms()) return;
+      event.preventDefault();
+      this.#zoom((zoom) => zoom.wheel(event));
+    });
+    this.stage.addEventListener('dblclick', () => this.#zooming && this.#zoom((zoom) => zoom.by(0)));
+    // The list box has the same for those who do not see it.
+    this.#legend.ariaHidden = 'true';
+    this.#view.append(this.#picture, this.objects);
+    this.stage.append(this.#view, this.status);
+    root.append(this.stage, this.#legend);
   }
 
   /** Names what has a name whatever is shown. */
@@ -81,6 +106,7 @@ export class View {
       option.setAttribute('aria-selected', String(chosen));
       if (chosen) this.objects.setAttribute('aria-activedescendant', option.id);
     }
+    for (const entry of this.#legend.children as Iterable<HTMLElement> & HTMLCollection) entry.toggleAttribute('data-selected', entry.dataset.object === String(object));
   }
 
   set disabled(disabled: boolean) {
@@ -105,6 +131,7 @@ export class View {
     this.#masks.width = width;
     this.#masks.height = height;
     const colours = coloursOf(host);
+    this.#colours = colours;
     const pixels = new Uint32Array(labels.length);
     labels.forEach((label, p) => (pixels[p] = colours[label] ?? 0));
     context.putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), width), 0, 0);
@@ -130,7 +157,28 @@ export class View {
       return option;
     });
     this.objects.replaceChildren(...options);
+    this.#legend.replaceChildren(...options.map(({ dataset }) => this.#entry(Number(dataset.object))));
     this.selected = this.#selected;
+  }
+
+  #entry(object: number): HTMLElement {
+    const [entry, swatch] = [part('li', 'entry'), part('span', 'swatch')];
+    const [red, green, blue] = [0, 8, 16].map((bits) => ((this.#colours?.[object] ?? 0) >>> bits) & 255);
+    swatch.style.background = `rgb(${red} ${green} ${blue})`;
+    entry.dataset.object = String(object);
+    entry.append(swatch, this.#texts().object(object));
+    entry.addEventListener('click', () => this.#disabled || this.#choose(object));
+    return entry;
+  }
+
+  #zooms(): boolean {
+    return (this.stage.getRootNode() as ShadowRoot).host.matches('[controls~=zoom]');
+  }
+
+  /** Loads what zooms. */
+  #zoom(work: (zoom: Zoom) => void): void {
+    this.#zooming ??= this.#listeners.zoom(this.stage, this.#view);
+    void this.#zooming.then(work);
   }
 
   #options(): HTMLElement[] {
@@ -156,6 +204,7 @@ export class View {
       Home: () => choose(0),
       End: () => choose(objects.length - 1),
       Escape: () => this.#choose(null),
+      ...(this.#zooms() && zooming((factor) => this.#zoom((zoom) => zoom.by(factor)))),
     };
     const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
     if (action === undefined) return;
