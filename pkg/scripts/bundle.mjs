@@ -15,7 +15,6 @@ const ENTRIES = sources({
   slim: 'entries/slim',
   inline: 'entries/inline',
   codecs: 'entries/codecs',
-  worker: 'worker/worker',
   'worker-node': 'worker/worker-node',
   element: 'element/element',
   'element-class': 'element/element-class',
@@ -39,8 +38,10 @@ const CALLS = ['module/', 'calls/(?!(?:clip/(?:given-masks|notes|shared-pairs)|n
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const worker = await rolldown({ input: resolve(folder('build'), 'worker/worker.js'), platform: 'browser' });
 const { output } = await worker.generate({ format: 'iife', minify: true, comments: false, codeSplitting: false });
-const code = `${output[0].code}\nURL.revokeObjectURL(location);`;
-writeFileSync(resolve(folder('build'), 'element/inline-worker.js'), `export const code = ${JSON.stringify(code)};\n`);
+// One file: bundlers that copy the files that code points to copy it alone.
+const [{ code }] = output;
+const once = `${code}\nURL.revokeObjectURL(location);`;
+writeFileSync(resolve(folder('build'), 'element/inline-worker.js'), `export const code = ${JSON.stringify(once)};\n`);
 
 const bundle = await rolldown({
   input: { ...ENTRIES, ...PROGRAM },
@@ -93,6 +94,7 @@ await bundle.write({
   },
 });
 await bundle.close();
+writeFileSync(resolve(folder('dist'), 'worker.js'), code);
 
 // The package has the project's licences.
 for (const name of ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES']) copyFileSync(`${folder('..')}${name}`, `${folder('.')}${name}`);

@@ -65,6 +65,10 @@ test('sizes stay within their budgets', () => {
   }
 });
 
+test('the worker of browsers is one file: bundlers that copy files copy it alone', () => {
+  assert.ok(!/\bimport *[({"'`]|\bfrom *["'`]/.test(read('dist/worker.js').toString()));
+});
+
 test('the element loads the code for clips when there is one', () => {
   const scripts = loadedBy('dist/element.js');
   assert.ok(!scripts.has('dist/element-later.js') && !scripts.has('dist/png-file.js'));
