@@ -30,6 +30,9 @@ mod jpeg;
 /// Maximum allocation of a decoder in bytes: three times the largest frame in 16-bit RGBA.
 const MAX_ALLOCATION: usize = 3 * 8 * MAX_SIDE * MAX_SIDE;
 
+/// That for a large picture: the largest one in 8-bit RGBA.
+const LARGE_ALLOCATION: usize = 4 * header::LARGE_SIDE * header::LARGE_SIDE;
+
 /// A decoded image: RGBA bytes, row by row, like `ImageData`. See the [module example](self).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
@@ -51,6 +54,15 @@ pub struct Decoding {
     pub allow_damaged: bool,
     /// Of samples of 16 bits: those that become 0 and 255. Otherwise 0 and 65535, of which cameras and scanners may use a small part.
     pub range: Option<(u16, u16)>,
+    /// Takes pictures with sides up to 16384 pixels, which have to be scaled down to become frames.
+    pub large: bool,
+}
+
+impl Decoding {
+    /// The longest side, pixels, and the maximum allocation of a decoder, bytes.
+    fn limits(&self) -> (usize, usize) {
+        if self.large { (header::LARGE_SIDE, LARGE_ALLOCATION) } else { (MAX_SIDE, MAX_ALLOCATION) }
+    }
 }
 
 impl Picture {
@@ -94,6 +106,11 @@ pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
 /// let mut decoding = Decoding::default();
 /// decoding.range = dark.range;
 /// assert_eq!(decode_image_with(file, &decoding)?.rgba, [0, 0, 0, 255, 255, 255, 255, 255]);
+///
+/// decoding.large = true;
+/// let wide = [b"P5 9999 1 255 ", &[7; 9999][..]].concat();
+/// assert_eq!(decode_image_with(&wide, &decoding)?.width, 9999);
+/// assert_eq!(decode_image_with(b"P5 16385 1 255 ", &decoding).unwrap_err().code(), "frame-size-unsupported");
 /// # Ok::<(), veronese::Error>(())
 /// ```
 ///
@@ -107,11 +124,12 @@ pub fn decode_image_with(bytes: &[u8], decoding: &Decoding) -> Result<Picture> {
         .ok()
         .filter(|format| *format == ImageFormat::Png || format.reading_enabled())
         .ok_or_else(|| unreadable("it is neither PNG, JPEG, WebP, BMP nor PNM"))?;
-    header::check(format, bytes)?;
+    let limits = decoding.limits();
+    header::check(format, bytes, limits.0)?;
     let (mut image, orientation) = match format {
-        ImageFormat::Png => png_image(bytes),
-        ImageFormat::Jpeg => other_image(jpeg::image(bytes, decoding.allow_damaged)?, format),
-        _ => other_image(bytes, format),
+        ImageFormat::Png => png_image(bytes, limits),
+        ImageFormat::Jpeg => other_image(jpeg::image(bytes, decoding.allow_damaged)?, format, limits),
+        _ => other_image(bytes, format, limits),
     }?;
     image.apply_orientation(orientation);
     let range = range_of(&image);
@@ -154,8 +172,8 @@ fn stretch(image: ImageBuffer<Rgba<u16>, Vec<u16>>, (low, high): (u16, u16)) -> 
 
 /// Decodes PNG with the crate `png` directly. The crate `image` unpacks the colour profile when it opens a file, which is not needed and
 /// may be a thousand times as large as the file.
-fn png_image(bytes: &[u8]) -> Result<(DynamicImage, Orientation)> {
-    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: MAX_ALLOCATION });
+fn png_image(bytes: &[u8], (_, allocation): (usize, usize)) -> Result<(DynamicImage, Orientation)> {
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: allocation });
     decoder.set_ignore_iccp_chunk(true);
     decoder.set_ignore_text_chunk(true);
     decoder.set_transformations(png::Transformations::EXPAND);
@@ -185,14 +203,18 @@ fn filled<P: Pixel>(width: u32, height: u32, samples: Vec<P::Subpixel>) -> Resul
     ImageBuffer::from_raw(width, height, samples).ok_or_else(|| unreadable("it has too few pixels"))
 }
 
-fn other_image(bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orientation)> {
+fn other_image(
+    bytes: &[u8],
+    format: ImageFormat,
+    (longest, allocation): (usize, usize),
+) -> Result<(DynamicImage, Orientation)> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(MAX_ALLOCATION as u64);
+    limits.max_alloc = Some(allocation as u64);
     reader.limits(limits);
     let mut decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
-    header::supported((width as usize, height as usize))?;
+    header::supported((width as usize, height as usize), longest)?;
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     Ok((DynamicImage::from_decoder(decoder).map_err(unreadable)?, orientation))
 }

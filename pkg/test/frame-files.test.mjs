@@ -1,6 +1,7 @@
 // Frames as files: in Node, a path or an address stands for the pixels.
 
 import assert from 'node:assert/strict';
+import { createReadStream, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
@@ -55,6 +56,42 @@ test('clips: lists of paths, streams, and frames that are read again', async (t)
   const pool = new SegmenterPool({ jobs: 2 });
   t.after(() => pool.close());
   assert.deepEqual(await labelsOf(pool.segmentClip({ length: 2, read: async (index) => paths[index] }, { quality: 'fast' })), whole);
+});
+
+test('streams of bytes: of a file, of a response, in pairs and in streams of frames', async (t) => {
+  const { paths } = files(t);
+  const expected = timeless(await segmentPair(...pair()));
+  const stream = (k) => createReadStream(paths[k], { highWaterMark: 500 });
+  const segmenter = new Segmenter();
+  t.after(() => segmenter.close());
+  assert.deepEqual(timeless(await segmentPair(stream(0), stream(1))), expected);
+  assert.deepEqual(timeless(await segmenter.segmentPair(new Blob([png(pair()[0])]).stream(), paths[1])), expected);
+  const labels = await labelsOf(segmentClip(pair(), { quality: 'fast' }));
+  assert.deepEqual(await labelsOf(segmentClip([stream(0), stream(1)], { quality: 'fast' })), labels);
+  assert.deepEqual(await labelsOf(segmentClip({ length: 2, read: stream }, { quality: 'fast', lookAhead: 8 })), labels);
+  async function* of(...pieces) {
+    yield* pieces;
+  }
+  const failures = [
+    [of('text'), 'invalid-input', 'a stream of a frame must give bytes, as Uint8Array'],
+    [of(), 'unreadable-image', 'the stream: the image cannot be read: it is empty'],
+    [createReadStream('nowhere.png'), 'unreadable-file', /^the stream cannot be read: ENOENT/],
+  ];
+  for (const [given, code, message] of failures) {
+    const error = await failure(segmentPair(paths[0], given));
+    assert.equal(error.code, code);
+    if (typeof message === 'string') assert.equal(error.message, message);
+    else assert.match(error.message, message);
+  }
+});
+
+test('where nothing reads files, the error says so', async () => {
+  const { segmentPair: slim, init } = await import('veronese/slim');
+  await init(readFileSync(new URL(import.meta.resolve('veronese/veronese_bg.wasm'))));
+  for (const given of ['0.png', new URL('http://127.0.0.1/0.png'), new Blob([]).stream()]) {
+    const error = await failure(slim(pair()[0], given));
+    assert.deepEqual([error.code, error.message], ['invalid-input', "the second frame is a path, an address or a stream: only 'veronese' in Node reads these, decode it first"]);
+  }
 });
 
 test('what cannot be read is named', async (t) => {

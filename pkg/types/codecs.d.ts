@@ -15,12 +15,17 @@ export interface DecodeOptions {
   allowDamaged?: boolean;
   /** Of samples of 16 bits: those that become 0 and 255. Default: `[0, 65535]`, of which cameras may use a small part. */
   range?: readonly [number, number];
+  /**
+   * Scales a larger picture down so that its longest side has so many pixels, 1 to 4096; files may then have sides up to 16384. Each pixel is
+   * the mean of the area that it covers.
+   */
+  maxSize?: number | undefined;
 }
 
 /**
  * Decodes a PNG, JPEG, WebP, BMP or PNM file; an Exif orientation is applied. What is appended to a JPEG file is not read.
  *
- * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side of 0 or above 4096 pixels.
+ * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side of 0, or above 4096 pixels without `maxSize`.
  */
 export function decodeImage(file: Uint8Array, options?: DecodeOptions): Promise<Picture>;
 

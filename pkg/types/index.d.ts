@@ -12,8 +12,11 @@ export interface Pixels {
   height: number;
 }
 
-/** In Node, the path or address of an image file, in place of its pixels; read as `veronese/codecs` does. Elsewhere code `invalid-input`. */
-export type FrameFile = string | URL;
+/**
+ * In Node, an image file in place of its pixels: its path, its address, or a stream of its bytes, such as a `Readable` or the body of a response.
+ * Read as `veronese/codecs` does. Elsewhere code `invalid-input`.
+ */
+export type FrameFile = string | URL | AsyncIterable<Uint8Array>;
 
 /** Progress of a call: a stage has just begun. */
 export interface Progress {
@@ -55,6 +58,12 @@ export interface SegmentOptions extends CallOptions {
   markUnknown?: boolean | undefined;
   /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
+  /**
+   * Scales larger frames down so that their longest side has so many pixels, 16 to 4096. They may then have sides up to 16384; without it,
+   * sides above 4096 are the error `frame-size-unsupported`. All that goes in and comes out besides (labels, boxes, motions, masks, corrections) is
+   * in pixels of the scaled frames, whose size the result says.
+   */
+  maxSize?: number | undefined;
 }
 
 export type RelabelOptions = CallOptions;

@@ -6,32 +6,36 @@ use image::ImageFormat;
 use crate::error::{Error, Result};
 use crate::frame::MAX_SIDE;
 
+/// The longest side of a picture that is to be scaled down, pixels: four times that of a frame, so that RGBA fits into WebAssembly's memory
+/// twice.
+pub(super) const LARGE_SIDE: usize = 4 * MAX_SIDE;
+
 /// Checks the size. A file without a complete header passes; the decoder rejects it.
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096; [`Error::UnreadableImage`] for a WebP file with a metadata chunk that is
+/// [`Error::FrameSizeUnsupported`] for a side of 0 or above `longest`; [`Error::UnreadableImage`] for a WebP file with a metadata chunk that is
 /// longer than the file.
-pub(super) fn check(format: ImageFormat, bytes: &[u8]) -> Result<()> {
+pub(super) fn check(format: ImageFormat, bytes: &[u8], longest: usize) -> Result<()> {
     let sides = match format {
         ImageFormat::Png => png(bytes),
         ImageFormat::Jpeg => jpeg(bytes),
         ImageFormat::Bmp => bmp(bytes),
         ImageFormat::Pnm => pnm(bytes),
-        ImageFormat::WebP => return webp(bytes),
+        ImageFormat::WebP => return webp(bytes, longest),
         _ => None,
     };
-    sides.map_or(Ok(()), supported)
+    sides.map_or(Ok(()), |sides| supported(sides, longest))
 }
 
 /// Checks a width and a height.
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096.
-pub(super) fn supported((width, height): (usize, usize)) -> Result<()> {
-    if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) {
+/// [`Error::FrameSizeUnsupported`] for a side of 0 or above `longest`.
+pub(super) fn supported((width, height): (usize, usize), longest: usize) -> Result<()> {
+    if (1..=longest).contains(&width) && (1..=longest).contains(&height) {
         return Ok(());
     }
-    Err(Error::FrameSizeUnsupported { width, height, min: crate::MIN_SIDE, max: MAX_SIDE })
+    Err(Error::FrameSizeUnsupported { width, height, min: crate::MIN_SIDE, max: longest })
 }
 
 fn png(bytes: &[u8]) -> Option<(usize, usize)> {
@@ -101,14 +105,14 @@ fn number(digits: &[u8]) -> Option<usize> {
 }
 
 /// Checks the size in the header of the file and in each frame, because the decoder allocates memory for the latter.
-fn webp(bytes: &[u8]) -> Result<()> {
+fn webp(bytes: &[u8], longest: usize) -> Result<()> {
     for chunk in webp_chunks(bytes.get(12..).unwrap_or_default()) {
         if chunk.kind == *b"ANMF" {
             // Only the first frame is decoded.
             let parts = webp_chunks(chunk.content.get(16..).unwrap_or_default());
-            return parts.map(|part| part.check()).chain([chunk.check()]).collect();
+            return parts.map(|part| part.check(longest)).chain([chunk.check(longest)]).collect();
         }
-        chunk.check()?;
+        chunk.check(longest)?;
     }
     Ok(())
 }
@@ -122,12 +126,12 @@ struct WebpChunk<'a> {
 }
 
 impl WebpChunk<'_> {
-    fn check(&self) -> Result<()> {
+    fn check(&self, longest: usize) -> Result<()> {
         // The decoder allocates this length before it reads.
         if self.kind == *b"EXIF" && self.length > self.content.len() {
             return Err(Error::UnreadableImage { reason: "its Exif data end after the file".into() });
         }
-        self.sides().map_or(Ok(()), supported)
+        self.sides().map_or(Ok(()), |sides| supported(sides, longest))
     }
 
     fn sides(&self) -> Option<(usize, usize)> {

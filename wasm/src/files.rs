@@ -7,14 +7,16 @@ use crate::Failure;
 use veronese::codecs::{self, Decoding};
 
 /// Decodes a PNG, JPEG, WebP, BMP or PNM file to `{ data: Uint8Array, width, height }`, RGBA; with `range`, `[smallest, largest]`, if its samples
-/// have 16 bits. `allow_damaged` takes a JPEG file as far as it goes; `range` holds the samples of 16 bits that become 0 and 255, if any.
+/// have 16 bits. `allow_damaged` takes a JPEG file as far as it goes; `range` holds the samples of 16 bits that become 0 and 255, if any;
+/// `large` takes sides up to 16384 pixels.
 ///
 /// # Errors
 /// A `VeroneseError` of code `unreadable-image` or `frame-size-unsupported`.
 #[wasm_bindgen(js_name = decodeImage)]
-pub fn decode_image(bytes: &[u8], allow_damaged: bool, range: &[u16]) -> Result<JsValue, JsValue> {
+pub fn decode_image(bytes: &[u8], allow_damaged: bool, range: &[u16], large: bool) -> Result<JsValue, JsValue> {
     let mut decoding = Decoding::default();
     decoding.allow_damaged = allow_damaged;
+    decoding.large = large;
     decoding.range = if let [low, high] = *range { Some((low, high)) } else { None };
     let picture = codecs::decode_image_with(bytes, &decoding).map_err(Failure::from)?;
     let pixels = Object::new();

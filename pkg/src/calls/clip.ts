@@ -39,7 +39,7 @@ async function* segmented(
   try {
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
-    const taken = new Frames(signal, places);
+    const taken = new Frames(task, places);
     for await (const frame of whole ? segmentedTwice(clip, taken, task, results) : streamed(clip, taken, task, results)) {
       place.pause?.(true);
       yield frame;

@@ -10,7 +10,8 @@ import type { Range } from './sequence.js';
 import { type Shown, SHOWN, shownOf } from './showing.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
-/** Largest look-ahead, as in the core. */
+/** Shortest side of a frame, and largest look-ahead, as in the core. */
+const SHORTEST_SIDE = 16;
 const LONGEST_LOOK_AHEAD = 8;
 
 /** By command who reads what is asked. */
@@ -110,7 +111,7 @@ function clip(values: Values, files: string[]) {
     markUnknown: values['mark-unknown'],
   };
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
-  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate) };
+  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
   return { name: 'clip' as const, frames: files, list, masks, corrections, ...shared, options, overlay, allowDamaged, out, force };
 }
 
@@ -138,7 +139,7 @@ function ofPairs(values: Values) {
     if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
   const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], confidence };
-  return { options, grouped, overlay, allowDamaged: values['allow-damaged'], out, force };
+  return { options, grouped, overlay, allowDamaged: values['allow-damaged'], maxSize: maxSize(values['max-size']), out, force };
 }
 
 /** The part of all pairs to process is counted from 0. */
@@ -210,6 +211,10 @@ function shown(text: string | undefined): Shown[] {
     const sentence = `option '--show': nothing is known as '${name}'${question(meant(name, SHOWN)) ?? `; known are ${SHOWN.join(', ')}`}`;
     throw new VeroneseError('invalid-option', sentence);
   });
+}
+
+function maxSize(text: string | undefined): number | undefined {
+  return text === undefined ? undefined : whole('max-size', text, SHORTEST_SIDE, LONGEST_SIDE);
 }
 
 function frameRate(text: string | undefined): number | undefined {

@@ -79,9 +79,9 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
 
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
 async function perform(pair: Pair, command: SequenceCommand, out: Output | undefined): Promise<Outcome> {
-  const { options, grouped, overlay, allowDamaged, jobs, force } = command;
+  const { options, grouped, overlay, allowDamaged, maxSize, jobs, force } = command;
   try {
-    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay, allowDamaged }, withImages: out !== undefined };
+    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay, allowDamaged, maxSize }, withImages: out !== undefined };
     const result = await threads(jobs).run({ ...task, ...(out && { folder: join(out.folder, pair.name) }) });
     if (out && result.done) await writePair(out, pair.name, result.files, force);
     return { pair, result: { ...result, files: [] } };

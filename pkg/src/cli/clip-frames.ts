@@ -34,6 +34,7 @@ interface Source {
   content: (index: number) => Promise<Uint8Array | undefined>;
   close?: () => Promise<void>;
   allowDamaged?: boolean;
+  maxSize: number | undefined;
   range?: Range | undefined;
   times?: Times;
   notes?: Note[];
@@ -97,7 +98,7 @@ export class ClipFrames {
     const bytes = await this.#source.content(index);
     if (!bytes) throw new VeroneseError('unreadable-video', `${name} is missing: the video had ${this.length} frames when it was read before`);
     if (sha256(bytes) !== known) throw new VeroneseError('invalid-input', `${name} has changed since it was read before`);
-    const picture = await decoded({ name, bytes }, { allowDamaged: this.#source.allowDamaged, range: this.range, onNote: (note) => this.#add(note) });
+    const picture = await decoded({ name, bytes }, { allowDamaged: this.#source.allowDamaged, maxSize: this.#source.maxSize, range: this.range, onNote: (note) => this.#add(note) });
     const { width, height } = picture;
     if (!this.size) [this.size, this.#first] = [{ width, height }, name];
     if (width !== this.size.width || height !== this.size.height) {
@@ -109,9 +110,9 @@ export class ClipFrames {
 }
 
 /** Throws where there are too few frames, or two of one name. */
-export async function clipFrames({ frames: names, list, every, allowDamaged }: ClipCommand, io: Io): Promise<ClipFrames> {
+export async function clipFrames({ frames: names, list, every, allowDamaged, maxSize }: ClipCommand, io: Io): Promise<ClipFrames> {
   const [name = ''] = names;
-  if (names.length === 1 && list === undefined && (isVideo(name) || (await isAnimation(name)))) return framesOfVideo({ file: name, every, allowDamaged }, io);
+  if (names.length === 1 && list === undefined && (isVideo(name) || (await isAnimation(name)))) return framesOfVideo({ file: name, every, allowDamaged }, maxSize, io);
   const paths = findFrames(names, await readList(list, io.stdin)).filter((_, index) => index % every === 0);
   checkStems(paths);
   const files: Seen[] = [];
@@ -121,12 +122,12 @@ export async function clipFrames({ frames: names, list, every, allowDamaged }: C
     try {
       const bytes = await readInput(path);
       files.push({ ...frame, sha256: sha256(bytes) });
-      ranges.push(await rangeOf(bytes));
+      ranges.push(await rangeOf(bytes, maxSize));
     } catch (thrown) {
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, range: narrowRange(ranges) });
+  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, maxSize, range: narrowRange(ranges) });
 }
 
 /** Whether an image has several frames: a PNG with the control of an animation, a WebP with its flag. */
@@ -140,11 +141,11 @@ async function isAnimation(name: string): Promise<boolean> {
 }
 
 /** The range of the samples in a file that has 16 bits of each. What cannot be read is an error when it is. */
-async function rangeOf(bytes: Uint8Array): Promise<Range | undefined> {
+async function rangeOf(bytes: Uint8Array, maxSize: number | undefined): Promise<Range | undefined> {
   const isDeepPng = bytes[0] === 0x89 && bytes[24] === 16;
   const isPnm = bytes[0] === 0x50 && bytes[1] !== undefined && bytes[1] >= 0x32 && bytes[1] <= 0x37;
   if (!isDeepPng && !isPnm) return undefined;
-  return (await decodeImage(bytes).catch(() => undefined))?.range;
+  return (await decodeImage(bytes, { maxSize }).catch(() => undefined))?.range;
 }
 
 function checkStems(paths: readonly string[]): void {
@@ -162,7 +163,7 @@ function stemOf(path: string): string {
 }
 
 /** A video that breaks off has a last frame that cannot be read. */
-async function framesOfVideo(video: Video, io: Io): Promise<ClipFrames> {
+async function framesOfVideo(video: Video, maxSize: number | undefined, io: Io): Promise<ClipFrames> {
   const { file, every } = video;
   const files: Seen[] = [];
   const about: VideoInfo = { times: [] };
@@ -174,6 +175,6 @@ async function framesOfVideo(video: Video, io: Io): Promise<ClipFrames> {
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
   const reader = new VideoReader({ ...video, quiet: true }, io);
-  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), times: timesOf(about, files.length, every), notes: notesOnVideo(file, about) };
+  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), maxSize, times: timesOf(about, files.length, every), notes: notesOnVideo(file, about) };
   return new ClipFrames(files, [file], source);
 }

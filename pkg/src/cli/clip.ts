@@ -27,7 +27,7 @@ const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
 
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand, io: Io): Promise<void> {
-  const { out, options, every, overlay: wanted, show, force } = command;
+  const { out, options, every, overlay: wanted, show, maxSize, force } = command;
   await checkFilms(show);
   const output = new Output(out, { force, signal: io.signal });
   const frames = await clipFrames(command, io);
@@ -39,7 +39,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const said = await readCorrections(command, frames);
     for (const each of said?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
-    const store = new ClipStore(output, { ...options, every, ...said?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
+    const store = new ClipStore(output, { ...options, every, maxSize, ...said?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
     const record = store.finished(frames.files);
     if (record) {
       // Masks may be the same ones in other files by now: of those the note above is right.
@@ -47,7 +47,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
       return await report(record, io);
     }
 
-    const kept = new KeptClip(output, { ...options, markUnknown: undefined, software, range: frames.range }, frames.files);
+    const kept = new KeptClip(output, { ...options, markUnknown: undefined, maxSize, software, range: frames.range }, frames.files);
     await kept.check();
     const accepted = await acceptedAsSeen(out, said, frames, { store, kept });
     // If this run is interrupted, the next one has them.

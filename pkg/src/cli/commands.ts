@@ -59,6 +59,7 @@ export const OPTIONS = {
       'also write films and pictures, separated by commas: overlay, the frames with each object in its colour, or beside, the frames and next to them the same, as .mp4, .webm or .gif; ' +
       'sheet.png, some frames at a glance; cutout-N, object N alone and the rest transparent, as PNG files, or as .webm or .mov; films need the program ffmpeg',
   },
+  'max-size': { type: 'string', value: 'N', text: 'scale frames down whose longest side has more than N pixels, 16 to 4096; results are of that size (default: larger than 4096 is an error)' },
   jobs: { type: 'string', short: 'j', value: 'N', text: 'number of pairs processed at once (default: the number of processors)' },
   shard: { type: 'string', default: '1/1', value: 'I/N', text: 'process only part I of N, to share the pairs between N machines' },
   to: {
@@ -101,7 +102,7 @@ export interface CommandText {
 /** Options of all commands. */
 export const ALWAYS: readonly OptionName[] = ['quiet', 'help', 'version'];
 
-const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'overlay'];
+const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'overlay', 'max-size'];
 const OF_SEQUENCES: readonly OptionName[] = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 const AT_THE_END: readonly OptionName[] = ['allow-damaged', 'force'];
 const FOLDERS = { out: 'write a folder for each pair to DIR, with the files of pair; skip finished pairs' };
@@ -141,7 +142,7 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
+    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',

@@ -3,9 +3,10 @@
 import type { Picture } from '../../types/codecs.js';
 import type { Note, Segmentation } from '../../types/index.js';
 import { groupLabels, maskOf, overlay } from '../calls/labels.js';
+import { LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
-import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from '../entries/codecs.js';
+import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng, isTooLarge } from '../entries/codecs.js';
 import type { OutputFile } from './files.js';
 
 export interface PairSettings {
@@ -15,6 +16,8 @@ export interface PairSettings {
   overlay: boolean;
   /** Whether pictures count of which a part is missing. */
   allowDamaged: boolean;
+  /** Longest side to which pictures are scaled down. */
+  maxSize: number | undefined;
 }
 
 export interface InputFile {
@@ -30,7 +33,7 @@ export async function segmentFiles(
   settings: PairSettings,
   withImages: boolean,
 ): Promise<{ report: Report; images: OutputFile[] }> {
-  const { pictures, notes } = await decodedAlike(inputs, settings.allowDamaged);
+  const { pictures, notes } = await decodedAlike(inputs, settings);
   const [first, second] = pictures as [Picture, Picture];
   const segmentation = await api.segmentPair(first, second, settings.options);
   const { labels: _, confidence: __, ...rest } = segmentation;
@@ -58,12 +61,12 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
 }
 
 /** The pictures in files, with samples of 16 bits on one scale. */
-async function decodedAlike(inputs: readonly InputFile[], allowDamaged: boolean): Promise<{ pictures: Picture[]; notes: Note[] }> {
+async function decodedAlike(inputs: readonly InputFile[], { allowDamaged, maxSize }: PairSettings): Promise<{ pictures: Picture[]; notes: Note[] }> {
   const notes: Note[] = [];
   const read = async (range?: Range) => {
     const pictures: Picture[] = [];
     notes.length = 0;
-    for (const input of inputs) pictures.push(await decoded(input, { allowDamaged, range, onNote: (note) => notes.push(note) }));
+    for (const input of inputs) pictures.push(await decoded(input, { allowDamaged, maxSize, range, onNote: (note) => notes.push(note) }));
     return pictures;
   };
   const pictures = await read();
@@ -92,21 +95,23 @@ export function rangeNote([low, high]: Range): Note {
 
 export interface Decoding {
   allowDamaged?: boolean | undefined;
+  maxSize?: number | undefined;
   range?: Range | undefined;
   /** Hears what was assumed of the file. */
   onNote?: (note: Note) => void;
 }
 
 /** The picture in a file; the error of one that is none names it. */
-export async function decoded({ name, bytes }: InputFile, { allowDamaged = false, range, onNote }: Decoding = {}): Promise<Picture> {
-  const stretched = range && { range };
+export async function decoded({ name, bytes }: InputFile, { allowDamaged = false, maxSize, range, onNote }: Decoding = {}): Promise<Picture> {
+  const options = { maxSize, ...(range && { range }) };
   try {
-    return await decodeImage(bytes, stretched);
+    return await decodeImage(bytes, options);
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);
-    const damage = new VeroneseError(code, `${name}: ${message}`);
+    const remedy = maxSize === undefined && isTooLarge(code, message) ? `; '--max-size ${LONGEST_SIDE}' scales it down` : '';
+    const damage = new VeroneseError(code, `${name}: ${message}${remedy}`);
     if (code !== 'unreadable-image') throw damage;
-    const picture = await decodeImage(bytes, { ...stretched, allowDamaged: true }).catch(() => undefined);
+    const picture = await decodeImage(bytes, { ...options, allowDamaged: true }).catch(() => undefined);
     if (!picture) throw damage;
     if (!allowDamaged) throw new VeroneseError(code, `${damage.message}; '--allow-damaged' takes it as it is`);
     onNote?.({ code: 'damaged-image', message: `${damage.message}; what is missing is grey` });

@@ -3,13 +3,11 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { join } from 'node:path';
-import { deflateSync } from 'node:zlib';
 import type { ClipFrame, Pixels } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { encodeColourPng } from '../entries/codecs.js';
-import { pngFile } from '../formats/png-file.js';
 
 /** For help and completion; N is the number of an object. */
 export const SHOWN = ['overlay.mp4', 'overlay.webm', 'overlay.gif', 'beside.mp4', 'beside.webm', 'beside.gif', 'sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'];
@@ -99,7 +97,7 @@ export class Showing {
       if (kind === 'cutout') {
         const cut = cutOut(data, labels, object);
         if (format) await this.#film(shown, width, height).take(cut);
-        else pictures[name] = pngFile(width, height, deflateSync(rowsOf(cut, 4 * width)), { channels: 4 });
+        else pictures[name] = await encodeColourPng(width, height, cut);
         continue;
       }
       painted ??= overlay(data as Uint8Array, labels);
@@ -199,13 +197,6 @@ function beside(rgba: Pixels['data'], painted: Uint8Array, width: number): Uint8
     }
   }
   return both;
-}
-
-/** The rows of a PNG, each after the number of its filter: none. */
-function rowsOf(samples: Uint8Array, stride: number): Uint8Array {
-  const rows = new Uint8Array(samples.length + samples.length / stride);
-  for (let y = 0; y * stride < samples.length; y++) rows.set(samples.subarray(y * stride, (y + 1) * stride), y * (stride + 1) + 1);
-  return rows;
 }
 
 /** RGB for a sheet: each pixel is the mean of those that it stands for. */

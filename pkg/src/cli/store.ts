@@ -17,9 +17,9 @@ export interface Record extends Omit<Report, 'milliseconds'> {
 }
 
 /** The hash of contents and settings that a result is recognised by. */
-export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay }: PairSettings): string {
+export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay, maxSize }: PairSettings): string {
   const contents = inputs.map(({ bytes }) => sha256(bytes));
-  return sha256(JSON.stringify({ software: `veronese ${version}`, options, grouped, overlay, contents }));
+  return sha256(JSON.stringify({ software: `veronese ${version}`, options, grouped, overlay, maxSize, contents }));
 }
 
 /** The record in a pair's folder if it is of this job, and it and its images are as they were written. */

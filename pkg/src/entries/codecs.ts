@@ -3,8 +3,9 @@
 import type { DecodeOptions, Picture } from '../../types/codecs.js';
 import { Api } from '../calls/api.js';
 import { taken } from '../calls/taking.js';
-import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole, reading } from '../common/checks.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
 import { colourBytes } from '../common/palette.js';
+import { scaled } from '../common/scaling.js';
 import { Core } from '../module/core.js';
 import { glue } from './glue-codecs.js';
 import { read } from './reading.js';
@@ -20,16 +21,23 @@ export const api = new Api(core, core);
 
 export async function decodeImage(file: Uint8Array, options?: DecodeOptions): Promise<Picture> {
   const bytes = takenBytes('the file', file);
-  const { allowDamaged, range } = reading(() => decoding(options));
-  return (await core.call((glue) => glue.decodeImage(bytes, allowDamaged, range))) as Picture;
+  const { allowDamaged, range, maxSize } = reading(() => decoding(options));
+  const picture = (await core.call((glue) => glue.decodeImage(bytes, allowDamaged, range, maxSize !== undefined))) as Picture;
+  return { ...picture, ...scaled(picture, maxSize) } as Picture;
 }
 
-function decoding(options: unknown): { allowDamaged: boolean; range: Uint16Array } {
-  const { allowDamaged = false, range = [] } = entriesOf(options, ['allowDamaged', 'range']);
+/** Whether an error is of a picture that could be scaled down. */
+export function isTooLarge(code: string, message: string): boolean {
+  return code === 'frame-size-unsupported' && (message.match(/\d+/g) ?? []).slice(0, 2).some((side) => Number(side) > LONGEST_SIDE);
+}
+
+function decoding(options: unknown): { allowDamaged: boolean; range: Uint16Array; maxSize: number | undefined } {
+  const { allowDamaged = false, range = [], maxSize } = entriesOf(options, ['allowDamaged', 'range', 'maxSize']);
   if (typeof allowDamaged !== 'boolean') throw invalidOption('allowDamaged', 'true or false', allowDamaged);
   const isSample = (value: unknown): value is number => isWhole(value, 0, 65_535);
   if (!isListOf(range, isSample) || ![0, 2].includes(range.length)) throw invalidOption('range', 'two whole numbers from 0 to 65535', range);
-  return { allowDamaged, range: Uint16Array.from(range) };
+  if (maxSize !== undefined && !isWhole(maxSize, 1, LONGEST_SIDE)) throw invalidOption('maxSize', `a whole number of pixels from 1 to ${LONGEST_SIDE}`, maxSize);
+  return { allowDamaged, range: Uint16Array.from(range), maxSize };
 }
 
 export async function encodeIndexedPng(

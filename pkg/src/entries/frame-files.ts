@@ -1,20 +1,40 @@
-// Node: the pixels of an image file, named by a path or an address.
+// Node: the pixels of an image file, named by a path or an address, or given as a stream of bytes.
 
-import type { Pixels } from '../../types/index.js';
+import type { FrameFile, Pixels } from '../../types/index.js';
+import { invalidInput } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
-import { decodeImage } from './codecs.js';
+import { decodeImage, isTooLarge } from './codecs.js';
 import { read } from './reading.js';
 
 /** Throws `file-not-found`, `unreadable-file` or `unreadable-image`, the file named. */
-export async function decodeFile(place: string | URL): Promise<Pixels> {
-  const bytes = await bytesOf(place);
+export async function decodeFile(place: FrameFile, maxSize: number | undefined): Promise<Pixels> {
+  const bytes = isStream(place) ? await bytesFrom(place) : await bytesOf(place);
   try {
-    const { data, width, height } = await decodeImage(bytes);
+    const { data, width, height } = await decodeImage(bytes, { maxSize });
     return { data, width, height };
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);
-    throw new VeroneseError(code, `'${String(place)}': ${message}`);
+    const remedy = maxSize === undefined && isTooLarge(code, message) ? "; option 'maxSize' scales larger ones down" : '';
+    throw new VeroneseError(code, `${isStream(place) ? 'the stream' : `'${String(place)}'`}: ${message}${remedy}`);
   }
+}
+
+function isStream(place: FrameFile): place is AsyncIterable<Uint8Array> {
+  return typeof place === 'object' && Symbol.asyncIterator in place;
+}
+
+async function bytesFrom(stream: AsyncIterable<unknown>): Promise<Uint8Array> {
+  const pieces: Uint8Array[] = [];
+  try {
+    for await (const piece of stream) {
+      if (!(piece instanceof Uint8Array)) throw invalidInput('a stream of a frame must give bytes, as Uint8Array');
+      pieces.push(piece);
+    }
+  } catch (thrown) {
+    if (thrown instanceof VeroneseError) throw thrown;
+    throw new VeroneseError('unreadable-file', `the stream cannot be read: ${(thrown as Error).message}`, { cause: thrown });
+  }
+  return Buffer.concat(pieces);
 }
 
 async function bytesOf(place: string | URL): Promise<Uint8Array> {

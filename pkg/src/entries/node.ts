@@ -15,5 +15,5 @@ export const { init, initPoints, segmentPair, segmentClip, relabel, fitMotions, 
   worker: () => new Worker(new URL('./worker-node.js', import.meta.url), { name: 'veronese' }),
   jobs: availableParallelism,
   // With a module of its own, which only files need.
-  places: placesBy(async (place) => (await import('./frame-files.js')).decodeFile(place)),
+  places: placesBy(async (place, maxSize) => (await import('./frame-files.js')).decodeFile(place, maxSize)),
 });

@@ -1,13 +1,11 @@
 // The container of a PNG around rows that are filtered and compressed already.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
-const COLOUR_TYPE = { grey: 0, indexed: 3, rgba: 6 } as const;
+const COLOUR_TYPE = { grey: 0, indexed: 3 } as const;
 
 export interface PngOptions {
   /** Bits of a sample: 16 is most significant byte first. */
   depth?: 8 | 16;
-  /** Four for red, green, blue and alpha of each pixel; default one. */
-  channels?: 1 | 4;
   /** Red, green, blue of every index; without a palette the samples are grey. */
   palette?: Uint8Array;
   /** Alpha of the first indices. */
@@ -15,12 +13,12 @@ export interface PngOptions {
 }
 
 /** `rows`: a zlib stream of all rows, each after the number of its filter. */
-export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, channels = 1, palette, alpha }: PngOptions): Uint8Array<ArrayBuffer> {
+export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, palette, alpha }: PngOptions): Uint8Array<ArrayBuffer> {
   const header = new Uint8Array(13);
   const view = new DataView(header.buffer);
   view.setUint32(0, width);
   view.setUint32(4, height);
-  header.set([depth, COLOUR_TYPE[palette ? 'indexed' : channels === 4 ? 'rgba' : 'grey'], 0, 0, 0], 8);
+  header.set([depth, palette ? COLOUR_TYPE.indexed : COLOUR_TYPE.grey, 0, 0, 0], 8);
   return joined([
     Uint8Array.from(SIGNATURE),
     chunk('IHDR', header),

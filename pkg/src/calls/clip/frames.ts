@@ -3,6 +3,7 @@
 import type { Pixels } from '../../../types/index.js';
 import { reading } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
+import { scaled, scaledSize } from '../../common/scaling.js';
 import { inOrder } from '../ordered.js';
 import type { Places } from '../places.js';
 import { taken } from '../taking.js';
@@ -21,11 +22,13 @@ export class Frames {
   size: Pick<Pixels, 'width' | 'height'> | undefined;
   readonly #signal: AbortSignal | undefined;
   readonly #places: Places | undefined;
+  readonly #maxSize: number | undefined;
   #ask = () => {};
 
-  constructor(signal: AbortSignal | undefined, places: Places | undefined) {
+  constructor({ signal, maxSize }: { signal?: AbortSignal | undefined; maxSize: number | undefined }, places: Places | undefined) {
     this.#signal = signal;
     this.#places = places;
+    this.#maxSize = maxSize;
   }
 
   /**
@@ -43,7 +46,7 @@ export class Frames {
   ): AsyncGenerator<Pixels, void, undefined> {
     const take = async (given: unknown, position: number) => {
       try {
-        const input = this.#places ? await this.#places.frame(given) : given;
+        const input = this.#places ? await this.#places.frame(given, this.#maxSize) : given;
         return { frame: reading(() => this.#taken(input, indices?.[position] ?? position, transfer)) };
       } catch (thrown) {
         return { failure: { thrown } };
@@ -71,13 +74,14 @@ export class Frames {
 
   /** A copy, checked against the size of the others. */
   #taken(input: unknown, index: number, transfer: boolean): Pixels {
-    const { data, width, height } = checkedPixels(`frame ${index}`, input);
+    const given = checkedPixels(`frame ${index}`, input, this.#maxSize);
+    const { width, height } = scaledSize(given, this.#maxSize);
     this.size ??= { width, height };
     if (width !== this.size.width || height !== this.size.height) {
       const sizes = `${width}×${height} pixels, the others have ${this.size.width}×${this.size.height}`;
       throw new VeroneseError('frame-size-mismatch', `frame ${index} has ${sizes}`);
     }
-    return { data: taken([data], transfer)[0] as Uint8Array, width, height };
+    return scaled({ ...given, data: taken([given.data], transfer)[0] as Uint8Array }, this.#maxSize);
   }
 }
 

@@ -13,7 +13,7 @@ import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './anno
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
-const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead'];
+const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead', 'maxSize'];
 /** Options that need frames which can be read again. */
 const OF_WHOLE = ['masks', 'corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
 
@@ -36,6 +36,7 @@ export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'sig
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
+  maxSize: number | undefined;
   settings: Settings;
   /** Not looked at yet, but the call's own. */
   masks: unknown;
@@ -49,7 +50,7 @@ export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'sig
 export function checkedOptions(frames: unknown, options: unknown): CheckedOptions {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
   const { masks, corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
-  const { call, transfer, settings } = parted(rest, OF_ALL);
+  const { call, transfer, maxSize, settings } = parted(rest, OF_ALL);
   const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
   const source = sourceOf(frames, settings['lookAhead'], name);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
@@ -66,6 +67,7 @@ export function checkedOptions(frames: unknown, options: unknown): CheckedOption
     signal: call.signal,
     onProgress: call.onProgress as CheckedOptions['onProgress'],
     transfer,
+    maxSize,
     settings: { lookAhead: 'read' in source ? 'all' : LOOK_AHEAD_OF_STREAMS, ...settings },
     masks: structuredClone(masks),
     ...annotations,

@@ -1,0 +1,39 @@
+// Frames scaled down so that their longest side has a given number of pixels. Each pixel is the mean of the area that it covers.
+
+import type { Pixels } from '../../types/index.js';
+
+/** The frame itself where it is not larger. */
+export function scaled(frame: Pixels, longest: number | undefined): Pixels {
+  const { data, width: w, height: h } = frame;
+  const { width, height } = scaledSize(frame, longest);
+  if (width === w && height === h) return frame;
+  const [out, row, sums] = [new Uint8Array(4 * width * height), new Float64Array(4 * width), new Float64Array(4 * width)];
+  const area = (w / width) * (h / height);
+  for (let y = 0, to = 0; y < h; y++) {
+    row.fill(0);
+    for (let x = 0; x < width; x++) {
+      const [begin, end] = [(x * w) / width, ((x + 1) * w) / width];
+      for (let from = Math.floor(begin); from < end; from++) {
+        const part = Math.min(from + 1, end) - Math.max(from, begin);
+        for (let channel = 0; channel < 4; channel++) (row[4 * x + channel] as number) += part * (data[4 * (y * w + from) + channel] as number);
+      }
+    }
+    // Scaled down, a row of the frame belongs to two rows at most.
+    for (let top = y; top < y + 1; ) {
+      const end = ((to + 1) * h) / height;
+      const bottom = Math.min(y + 1, end);
+      for (let at = 0; at < row.length; at++) (sums[at] as number) += (bottom - top) * (row[at] as number);
+      top = bottom;
+      if (bottom < end) continue;
+      for (let at = 0; at < sums.length; at++) out[to * sums.length + at] = Math.round((sums[at] as number) / area);
+      sums.fill(0);
+      to++;
+    }
+  }
+  return { data: out, width, height };
+}
+
+export function scaledSize({ width, height }: Pick<Pixels, 'width' | 'height'>, longest = Infinity): { width: number; height: number } {
+  const factor = Math.min(1, longest / Math.max(width, height));
+  return { width: Math.max(1, Math.round(factor * width)), height: Math.max(1, Math.round(factor * height)) };
+}
