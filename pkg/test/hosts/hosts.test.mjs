@@ -2,7 +2,7 @@
 // has Node and Vite.
 
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
@@ -74,6 +74,41 @@ describe('esbuild', () => {
     const folder = await build({ entryPoints: { main: 'copied.js' }, loader: { '.wasm': 'file' } }, 'copied-by-esbuild');
     const { address, missing } = await serve(t, folder);
     checkOutcome(await outcomeOf(t, browser, address), ['direct']);
+    assert.deepEqual(missing, []);
+  });
+});
+
+describe('Rollup and Parcel, which copy the worker as it is', () => {
+  test('Rollup, with the plugin that copies files', async (t) => {
+    const { rollup } = await import('rollup');
+    const { default: resolve } = await import('@rollup/plugin-node-resolve');
+    const { importMetaAssets } = await import('@web/rollup-plugin-import-meta-assets');
+    const bundle = await rollup({ input: join(app, 'main.js'), plugins: [resolve({ browser: true }), importMetaAssets()], onwarn: (warning) => assert.fail(warning.message) });
+    t.after(() => bundle.close());
+    const dir = join(app, 'built-by-rollup');
+    await bundle.write({ dir, format: 'es' });
+    copyFileSync(join(app, 'index.html'), join(dir, 'index.html'));
+    const { address, missing } = await serve(t, dir);
+    const found = await outcomeOf(t, browser, address);
+    checkOutcome(found);
+    isWhole(found);
+    assert.deepEqual(missing, []);
+  });
+
+  test('Parcel, told to look at the exports of packages', async (t) => {
+    const folder = join(app, 'for-parcel');
+    mkdirSync(folder);
+    for (const name of ['main.js', 'frames.js', 'measurements.js', 'report.js']) copyFileSync(join(app, name), join(folder, name));
+    cpSync(join(app, 'node_modules'), join(folder, 'node_modules'), { recursive: true });
+    writeFileSync(join(folder, 'package.json'), '{ "private": true, "type": "module", "@parcel/resolver-default": { "packageExports": true } }\n');
+    // Parcel takes the folder with a lock file for the project.
+    writeFileSync(join(folder, 'package-lock.json'), '{}\n');
+    writeFileSync(join(folder, 'index.html'), readFileSync(join(app, 'index.html'), 'utf8').replace('/main.js', 'main.js'));
+    run(bin('parcel'), ['build', 'index.html', '--no-cache'], { cwd: folder });
+    const { address, missing } = await serve(t, join(folder, 'dist'));
+    const found = await outcomeOf(t, browser, address);
+    checkOutcome(found);
+    isWhole(found);
     assert.deepEqual(missing, []);
   });
 });
