@@ -1,6 +1,7 @@
 // The servers of examples/hosts, asked over HTTP as the annotation tools ask.
 
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
@@ -15,6 +16,18 @@ describe('the Label Studio backend', () => {
     assert.match((await post(`${address}/setup`, { project: '1.2', schema: CONFIG, hostname: 'http://localhost:1', access_token: 'x' })).body.model_version, /^veronese-\d/);
     assert.equal((await (await fetch(`${address}/versions?project=1.2`)).json()).versions.length, 1);
     assert.equal((await post(`${address}/webhook`, { action: 'START_TRAINING' })).status, 200);
+  });
+
+  test('the configuration and the task of its page', async (t) => {
+    const { origin } = await files(t);
+    const address = await backend(t, { allow: [origin] });
+    const page = readFileSync(new URL('../../../examples/hosts/label-studio.md', import.meta.url), 'utf8');
+    const [, label_config] = /```xml\n([^]*?)```/.exec(page);
+    const data = JSON.parse(/`(\{"first": [^`]*\})`/.exec(page)[1].replaceAll('https://…/', `${origin}/`).replace('/1.png', '/0.png').replace('/2.png', '/1.png'));
+    assert.equal((await post(`${address}/setup`, { project: '1.2', schema: label_config, hostname: 'http://localhost:1', access_token: 'x' })).status, 200);
+    const { status, body } = await post(`${address}/predict`, { tasks: [{ id: 1, data }], label_config, project: '1.2' });
+    assert.equal(status, 200);
+    assert.deepEqual(body.results[0].result.map(({ value }) => value.brushlabels), [['moving-1']]);
   });
 
   test('predictions are the masks of segmentPair, one answer for each task', async (t) => {
