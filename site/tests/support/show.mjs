@@ -10,6 +10,7 @@ import { createServer } from 'vite';
 import { prepareChromium } from '../../../scripts/lib/chromium.mjs';
 import { root } from '../../../scripts/lib/project.mjs';
 import { serve } from '../../../scripts/lib/static-server.mjs';
+import { matches } from './pages.mjs';
 
 const CDN = 'https://cdn.jsdelivr.net';
 const LONGEST_WAIT = 90_000;
@@ -47,10 +48,12 @@ export async function showPage({ t, folder, block }) {
   await page.goto(`${await (block.file ? byVite(t, folder) : address(t, folder))}${file}`);
   const chooser = page.locator('input[type=file]');
   if ((await chooser.count()) > 0) await chooser.setInputFiles(readdirSync(join(folder, 'frames')).sort().map((name) => join(folder, 'frames', name)));
-  // Of a page whose output is not written yet, nobody knows how many lines there will be.
-  const expected = block.output.code === '' ? Infinity : block.output.code.trimEnd().split('\n').length;
-  const end = Date.now() + (expected === Infinity ? LONGEST_WAIT / 4 : LONGEST_WAIT);
-  while (lines.length < expected && complaints.length === 0 && Date.now() < end) await setTimeout(50);
+  // Of a page whose output is not written yet, nobody knows how many lines there will be; with `…` it ends with the last one that is said.
+  const said = block.output.code.trimEnd().split('\n');
+  const isWhole = () => (said.includes('…') ? matches(lines.join('\n'), block.output.code) : lines.length >= said.length);
+  const isUnknown = block.output.code === '';
+  const end = Date.now() + (isUnknown ? LONGEST_WAIT / 4 : LONGEST_WAIT);
+  while ((isUnknown || !isWhole()) && complaints.length === 0 && Date.now() < end) await setTimeout(50);
   await setTimeout(200); // A line too many is an error too.
   if (complaints.length > 0) throw new Error(`the browser said:\n${complaints.join('\n')}`);
   return `${lines.join('\n')}\n`;
