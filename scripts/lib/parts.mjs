@@ -4,7 +4,8 @@
 // Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs. Parts with `named` can run
 // those tests alone whose file or name has `word`.
 
-import { readdirSync } from 'node:fs';
+import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 
 import { findBrowsers, testInBrowsers } from './browsers.mjs';
@@ -71,7 +72,11 @@ export const DAILY = {
     title: 'the packed package, in Node and with Vite',
     named: true,
     needs: { browser: true },
-    run: async (setup) => added(await ofPackage('test:packed', inBrowser(setup), setup.word), await ofStart(setup, ['start', 'start-typescript', 'start-page'])),
+    run: (setup) =>
+      withInstalled(async (env) => {
+        const packed = await ofPackage('test:packed', { ...inBrowser(setup), ...env }, setup.word);
+        return added(packed, await ofStart(setup, ['start', 'start-typescript', 'start-page'], env));
+      }),
   },
   page: {
     lane: 'node',
@@ -112,7 +117,7 @@ export const RARE = {
   hosts: {
     title: 'the packed package in its hosts',
     needs: { browser: true, python: true, hosts: true },
-    run: (setup) => ofPackage('test:hosts', inBrowser(setup)),
+    run: (setup) => withInstalled((env) => ofPackage('test:hosts', { ...inBrowser(setup), ...env })),
   },
   runtimes: { title: 'the packed package in Node 22 to 26, Deno, Bun and workerd', needs: { runtimes: true }, run: () => ofPackage('test:runtimes') },
   browsers: {
@@ -199,9 +204,19 @@ function ofGuide(env) {
 }
 
 /** The pages of the guide that are read first. */
-async function ofStart({ chromium, word }, pages) {
+async function ofStart({ chromium, word }, pages, env = {}) {
   if (word !== undefined && !pages.some((page) => page.includes(word))) return NOTHING;
-  return ofGuide({ ...(chromium && inBrowser({ chromium })), VERONESE_GUIDE_PAGES: pages.join() });
+  return ofGuide({ ...env, ...(chromium && inBrowser({ chromium })), VERONESE_GUIDE_PAGES: pages.join() });
+}
+
+/** Tests that share one installed package, whichever process comes first installs it. */
+async function withInstalled(run) {
+  const folder = mkdtempSync(join(tmpdir(), 'veronese-installed-'));
+  try {
+    return await run({ VERONESE_INSTALLED: folder });
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
 }
 
 function inBrowser({ chromium }) {

@@ -1,7 +1,7 @@
 // The package as a user gets it: packed, installed from the tarball into an empty project, with frames to segment.
 
 import { spawnSync } from 'node:child_process';
-import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -16,17 +16,32 @@ export function run(program, args, options = {}) {
   return stdout;
 }
 
+/** What the first process of a run has installed, for the others: a folder that `scripts/lib/parts.mjs` makes and removes. */
+const SHARED = process.env.VERONESE_INSTALLED;
+
 /** Makes the project and returns its folder and the tarball; `remove()` takes both away. */
 export function install() {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-hosts-'));
-  const [{ filename }] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', folder], { cwd: here('../..') }));
-  const tarball = join(folder, filename);
   const app = join(folder, 'app');
-  cpSync(here('./app'), app, { recursive: true });
-  writeFileSync(join(app, 'package.json'), '{ "name": "app", "private": true, "type": "module" }\n');
-  writeFileSync(join(app, 'frames.js'), framesModule());
-  run('npm', ['install', '--no-audit', '--no-fund', '--prefer-offline', '--omit=dev', tarball], { cwd: app });
-  return { app, tarball, remove: () => rmSync(folder, { recursive: true, force: true }) };
+  const isThere = SHARED !== undefined && readdirSync(SHARED).length > 0;
+  if (isThere) copy(SHARED, folder);
+  else {
+    run('npm', ['pack', '--ignore-scripts', '--pack-destination', folder], { cwd: here('../..') });
+    cpSync(here('./app'), app, { recursive: true });
+    writeFileSync(join(app, 'package.json'), '{ "name": "app", "private": true, "type": "module" }\n');
+    writeFileSync(join(app, 'frames.js'), framesModule());
+    run('npm', ['install', '--no-audit', '--no-fund', '--prefer-offline', '--omit=dev', tarballIn(folder)], { cwd: app });
+    if (SHARED !== undefined) copy(folder, SHARED);
+  }
+  return { app, tarball: tarballIn(folder), remove: () => rmSync(folder, { recursive: true, force: true }) };
+}
+
+function copy(from, to) {
+  cpSync(from, to, { recursive: true, verbatimSymlinks: true });
+}
+
+function tarballIn(folder) {
+  return join(folder, readdirSync(folder).find((name) => name.endsWith('.tgz')));
 }
 
 /** The frames as a module without a dependency, so that every host segments the same bytes. */
