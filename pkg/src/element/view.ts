@@ -22,7 +22,7 @@ const STYLE = `
   .status { position: absolute; inset: auto 0 0; background: var(--veronese-status-background, rgb(0 0 0 / 65%)); }
   .status:empty { display: none; }
   .timeline { display: block; box-sizing: border-box; inline-size: 100%; block-size: 2.75rem; margin: 0; padding-inline: 0.5rem; }
-  .controls, .legend { display: flex; flex-wrap: wrap; gap: 0.3em 1em; list-style: none; }
+  .controls, .legend { display: flex; flex-wrap: wrap; gap: 0.3em 1em; }
   :host(:not([controls~=play])) .controls, :host(:not([controls~=legend])) .legend { display: none; }
   .entry[data-selected] { text-decoration: underline; }
   .swatch { display: inline-block; inline-size: 0.8em; block-size: 0.8em; margin-inline-end: 0.3em; }
@@ -45,7 +45,7 @@ export class View {
   readonly stage = part('div', 'stage');
   readonly objects = part('div', 'objects');
   readonly status = part('p', 'status');
-  readonly #legend = part('ul', 'legend');
+  readonly #legend = part('div', 'legend');
   readonly #view = part('div', 'view');
   readonly #picture = part('div', 'picture');
   readonly #frame = part('canvas', 'frame');
@@ -162,7 +162,7 @@ export class View {
   }
 
   #entry(object: number): HTMLElement {
-    const [entry, swatch] = [part('li', 'entry'), part('span', 'swatch')];
+    const [entry, swatch] = [part('div', 'entry'), part('span', 'swatch')];
     const [red, green, blue] = [0, 8, 16].map((bits) => ((this.#colours?.[object] ?? 0) >>> bits) & 255);
     swatch.style.background = `rgb(${red} ${green} ${blue})`;
     entry.dataset.object = String(object);

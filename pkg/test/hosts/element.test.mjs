@@ -48,11 +48,11 @@ test('an error of loading names the address, the status and the remedy', async (
   const module = await page(t, 'no-module', script('/nowhere.wasm', '/worker.js'));
   const { error } = module.outcome;
   assert.ok(error.startsWith(`wasm-load-failed: the WebAssembly module cannot be loaded: ${module.address}nowhere.wasm answered 404 Not Found; `), error);
-  assert.match(error, /init\(\).*VeroneseSegmenterElement\.source.*veronese\/element\/inline/);
+  assert.match(error, /init\(\).*of the element: source, veronese\/element\/inline/);
   const elsewhere = await page(t, 'no-server', script('http://127.0.0.1:1/core.wasm', '/worker.js'));
   assert.match(elsewhere.outcome.error, /^wasm-load-failed: .*: http:\/\/127\.0\.0\.1:1\/core\.wasm cannot be reached .*; .*init\(\)/);
   const worker = await page(t, 'no-worker', script('/core.wasm', '/nowhere.js'));
-  assert.match(worker.outcome.error, /^worker-failed: .*file could not be loaded .*'worker'.*VeroneseSegmenterElement\.worker.*veronese\/element\/inline/);
+  assert.match(worker.outcome.error, /^worker-failed: .*file could not be loaded; .*'worker'.*of the element: worker, veronese\/element\/inline/);
   const unbundled = await page(t, 'unbundled', "import 'veronese/element';");
   assert.match(unbundled.outcome.error, /^(worker|wasm-load)-failed: .*veronese\/element\/inline/);
 });
