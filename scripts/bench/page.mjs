@@ -84,7 +84,7 @@ async function segmented(browser, address, { quality, workers }) {
   await reached(page, '#run', 'done');
   const session = await browser.newBrowserCDPSession();
   await page.locator('#open-pair').setInputFiles(VIDEO);
-  await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');
+  await page.waitForFunction(() => document.querySelector('#clip-name').textContent.startsWith('long-clip'));
   await reached(page, '#run', 'done');
   const opened = await browserMemory(session);
   await page.evaluate(watchTasks);
@@ -130,7 +130,7 @@ async function correctedFrames(browser, address, quality) {
   await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups&segment=asked`);
   await reached(page, '#run', 'done');
   await page.locator('#open-pair').setInputFiles(VIDEO);
-  await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');
+  await page.waitForFunction(() => document.querySelector('#clip-name').textContent.startsWith('long-clip'));
   await reached(page, '#run', 'done');
   await page.locator('#clip-segment').click();
   await reached(page, '#clip-run', 'working');

@@ -58,8 +58,9 @@ for (const found of BROWSERS) {
       const pair = [await square('one.png', 240, 160, 0, 0), await square('two.png', 240, 160, 5, 3)] as const;
       await upload(browser, folder, pair);
       await browser.untilText('[data-slot=second] .slot-name', 'two.png');
-      await done();
-      const own = (await segmentedInNode(...pair)).labels;
+      await browser.untilText('#clip-name', '2 frames');
+      await browser.untilAttribute('#clip-run', 'data-phase', 'done');
+      const [own] = (await clipInNode([...pair])) as [Uint8Array];
       expect(differences(await masks(browser), own)).toBe(0);
       expect(new Set(own).size).toBe(2);
 

@@ -36,7 +36,6 @@ import { mountSeveral } from './views/several.js';
 import { keysFor } from './views/shortcuts.js';
 import { mountShowing } from './views/showing.js';
 import { mountStage } from './views/stage.js';
-import { mountSuggestions } from './views/suggestions.js';
 import { mountTimeline } from './views/timeline.js';
 import { mountTimings } from './views/timings.js';
 import { mountTitle } from './views/title.js';
@@ -71,7 +70,6 @@ mountMotions(document, store, session);
 mountObjects(document, store, session);
 mountClasses(document, store, session);
 mountSeveral(document, store, session);
-mountSuggestions(document, store, session);
 mountOptions(find(document, '#settings', HTMLFormElement), store, session);
 mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
@@ -82,7 +80,7 @@ mountEvidence(find(document, '#evidence', HTMLElement), store, session);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
 
-// Once there is work, of a pair or of a clip.
+// Once there is work.
 let waiting = true;
 const mountWhenKept = (): void => {
   if (!waiting) return;
@@ -98,17 +96,17 @@ keepForOffline(store);
 
 const linked = settingsFromHash(location.hash);
 store.set({ settings: { ...store.get().settings, ...linked.settings } });
-if (linked.kind !== null) store.look({ kind: linked.kind });
+if (linked.kind !== null) session.shown.choose(linked.kind);
 if (linked.automatic !== null) store.set({ automatic: linked.automatic });
 window.addEventListener('hashchange', () => {
-  const { settings, kind, sample, swapped } = settingsFromHash(location.hash);
-  if (kind !== null) session.shown.kind(kind);
+  const { settings, kind, sample } = settingsFromHash(location.hash);
+  if (kind !== null) session.shown.choose(kind);
   session.pair.change(settings);
-  if (sample !== null) void session.open.sample(sample, swapped);
+  if (sample !== null) void session.open.sample(sample);
 });
 
 const opened = linked.sample ?? SAMPLES[0];
-if (location.hash === '' && 'frames' in opened) mountShowing(window, store, session, opened);
-void session.open.sample(opened, linked.swapped);
+if (location.hash === '') mountShowing(window, store, session, opened);
+void (location.hash === '' ? session.open.begin(opened) : session.open.sample(opened));
 // Later than the sample: what a person has chosen already is newer.
 mountPicker(document, store, session);

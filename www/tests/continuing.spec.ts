@@ -133,6 +133,22 @@ test('the next visit shows the work, and one click opens it with its frames', as
   await expect(page.locator('#continue')).toBeHidden();
 });
 
+test('the page opens again with the last work, unless another tab has it; the samples are still there', async ({ page, context }) => {
+  await keptWork(page);
+  await page.goto('about:blank');
+  await page.goto('./');
+  await expect(page.locator('#clip-name')).toContainText('4 frames');
+  await expect(page.locator('#clip-status')).toHaveText(/^Continued/);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  await expect(page.locator('#samples .sample')).toHaveCount(3);
+  await rename(page, '#objects', 1, 'Ball');
+  await kept(page);
+  const other = await context.newPage();
+  await other.goto('./');
+  await expect(other.locator('#clip-name')).toContainText('51 frames');
+  await expect(other.locator('#notice-code')).toHaveText('');
+});
+
 test('files that were not written before the page was closed count for nothing', async ({ page }) => {
   const files = await keptWork(page);
   await visit(page);
@@ -151,25 +167,25 @@ test('files that were not written before the page was closed count for nothing',
   await expect(page.locator('#projects li')).toHaveCount(1);
 });
 
-test('of several the newest comes first, and a sample needs no copy, also with its frames swapped', async ({ page }) => {
+test('of several the newest comes first, and a sample needs no copy', async ({ page }) => {
   await keptWork(page);
   await page.goto('about:blank');
-  await page.goto(`${PARALLAX}&swapped=true`);
-  await done(page);
-  await rename(page, '#motions', 1, 'Window');
-  await written(page, 'second.png, first.png');
+  await page.goto('./#sample=parallax&quality=fast');
+  await clipDone(page);
+  await rename(page, '#objects', 1, 'Window');
+  await written(page, 'parallax');
   await expect.poll(() => copies(page)).toBe(1);
 
   await page.goto('about:blank');
   await open(page, 'groups');
   const work = page.locator('#continue .work');
-  await expect(work.first()).toHaveAccessibleName(/^second\.png, first\.png 2 frames, \d\d:\d\d$/);
+  await expect(work.first()).toHaveAccessibleName(/^parallax 2 frames, \d\d:\d\d$/);
   await page.getByText('1 more').click();
   await expect(work.nth(1)).toHaveAccessibleName(/^f00-f03\.png/);
   await work.first().click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 400 × 300');
-  await expect(page.locator('#motions .motion-name').nth(1)).toHaveValue('Window');
-  await expect(page.getByRole('button', { name: 'Parallax' })).toHaveAttribute('aria-current', 'true');
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Window');
+  await expect(page.getByRole('button', { name: 'Parallax', exact: true })).toHaveAttribute('aria-current', 'true');
   // Now the clip is the newest that is not open.
   await expect(work.first()).toHaveAccessibleName(/^f00-f03\.png/);
 });
@@ -252,7 +268,7 @@ test('a clip is kept when it is opened, and one whose run a reload ended goes on
   await upload(page, await clipFrames(16, 160, 112));
   await expect(page.locator('#clip-detail')).toHaveText(/^([2-9]|1\d) of 16/);
   await hide(page); // as before a reload
-  await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f15') && /"pairs":\[\[0/.test(project))).toBe(true);
+  await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f15') && /"pairs":\{"map":\[\[0/.test(project))).toBe(true);
   await page.goto('./#sample=parallax&quality=fast');
   await page.reload();
   const release = await holdBack(page, 'f12.png');

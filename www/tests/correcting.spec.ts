@@ -3,30 +3,34 @@
 import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Place, differences, done, drag, expect, labelsOnCanvas, mergeWith, open, test, undoAll } from './support.js';
+import { type Place, PAIR, clipDone, differences, drag, expect, labelsOnCanvas, test } from './support.js';
+
+const row = (page: Page, id: number) => page.locator(`#objects > [data-mask="${id}"]`);
 
 /** Draws a stroke and waits for its masks. */
 async function stroke(page: Page, from: Place, to: Place): Promise<void> {
   await drag(page, from, to);
-  await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
-  await done(page);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of (one frame|2 frames) have changed\.$/);
 }
 
 test('masks of two cars, corrected with brush, eraser and the list', async ({ page }) => {
-  await open(page, 'groups');
+  await page.goto(`${PAIR}&quality=fast`);
+  await clipDone(page);
+  const status = page.locator('#clip-status');
+  const rows = page.locator('#objects > li');
+  await expect(rows).toHaveCount(3);
 
   await test.step('strokes of brush and eraser, with the pointer or the keyboard, change a mask, and undo removes them', async () => {
     const found = await labelsOnCanvas(page);
     // With the keyboard, from the centre.
-    await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+    await page.keyboard.press('1');
     await page.keyboard.press('p');
     await page.locator('.layers').focus();
     for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
     await page.keyboard.press('Space');
     for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
     await page.keyboard.press('Space');
-    await expect(page.locator('#status')).toHaveText(/^Masks updated/);
-    await done(page);
+    await expect(status).toHaveText(/^Corrected/);
     const drawn = await labelsOnCanvas(page);
     // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
     for (let x = 384 + 160; x <= 384 + 208; x++) expect(drawn[216 * 768 + x]).toBe(1);
@@ -42,7 +46,7 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
 
     await page.keyboard.press('p');
     await expect(page.locator('#tools [value=brush]')).toBeChecked();
-    await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+    await page.keyboard.press('1');
     await stroke(page, [0.7, 0.5], [0.8, 0.5]);
     const painted = await labelsOnCanvas(page);
     for (let x = 0.7; x <= 0.8; x += 0.01) expect(painted[at(x, 0.5)]).toBe(1);
@@ -50,10 +54,10 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
 
     await page.locator('#undo').click();
-    await expect(page.locator('#status')).toHaveText('Undone.');
+    await expect(status).toHaveText(/^Undone in/);
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
     await page.keyboard.press('Control+Shift+z');
-    await expect(page.locator('#status')).toHaveText('Redone.');
+    await expect(status).toHaveText(/^Redone in/);
     expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
     await page.keyboard.press('Control+z');
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
@@ -64,7 +68,7 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     const mask = found[inside]!;
     expect(mask).toBeGreaterThan(0);
     await page.locator('#tools [value=eraser]').check();
-    await page.locator(`#motions > li[data-mask="${mask}"] .motion-words`).click();
+    await page.keyboard.press(String(mask));
     await stroke(page, [0.2, 0.35], [0.25, 0.35]);
     const erased = await labelsOnCanvas(page);
     for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
@@ -72,53 +76,24 @@ test('masks of two cars, corrected with brush, eraser and the list', async ({ pa
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   });
 
-  await test.step('masks are merged and ungrouped, and a stroke with a merged mask allows all of its motions', async () => {
+  await test.step('choosing an object to merge with does not merge, and the merged object is selected', async () => {
     const found = await labelsOnCanvas(page);
-    const rows = page.locator('#motions > li');
-    const count = await rows.count();
-    await rows.nth(1).getByText('More', { exact: true }).click();
-    await mergeWith(rows.nth(1), 2);
-    await expect(page.locator('#status')).toHaveText('Merged.');
-    await expect(rows).toHaveCount(count - 1);
-    expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
-    await page.locator('#undo').click();
-    await expect(rows).toHaveCount(count);
-    expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-    await page.locator('#redo').click();
-    await rows.nth(1).getByText('More', { exact: true }).click();
-    await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
-    await expect(page.locator('#status')).toHaveText('Ungrouped.');
-    expect(await rows.count()).toBeGreaterThan(count - 1);
-
-    await page.locator('#undo').click();
-    await expect(rows).toHaveCount(count - 1);
-    const merged = await labelsOnCanvas(page);
-    await page.keyboard.press('p');
-    await rows.nth(1).locator('.motion-words').click();
-    // These pixels are in the mask already, so the stroke adds nothing.
-    await stroke(page, [0.2, 0.4], [0.24, 0.4]);
-    const painted = await labelsOnCanvas(page);
-    expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
-    await undoAll(page);
-  });
-
-  await test.step('choosing a mask to merge with does not merge, and a merged mask is selected', async () => {
-    const rows = page.locator('#motions > li');
-    const count = await rows.count();
-    expect(count).toBeGreaterThan(2);
     await page.locator('#tools [value=brush]').check();
-    await rows.nth(2).getByText('More', { exact: true }).click();
-    const choice = rows.nth(2).locator('[data-action=merge-with]');
-    await expect(rows.nth(2).getByRole('button', { name: 'Merge' })).toBeDisabled();
+    await page.keyboard.press('2');
+    await row(page, 2).getByText('More', { exact: true }).click();
+    const choice = row(page, 2).locator('[data-action=merge-with]');
+    await expect(row(page, 2).getByRole('button', { name: 'Merge' })).toBeDisabled();
     await choice.focus();
-    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowDown');
     await expect(choice).toHaveValue('1');
-    await expect(rows).toHaveCount(count);
+    await expect(rows).toHaveCount(3);
     await page.keyboard.press('Tab');
     await page.keyboard.press('Enter');
-    await expect(rows).toHaveCount(count - 1);
-    await expect(page.locator('#motions .selected')).toHaveAttribute('data-mask', '1');
-    await expect(page.locator('#motions .selected summary')).toBeFocused();
+    await expect(rows).toHaveCount(2);
+    await expect(page.locator('#objects .selected')).toHaveAttribute('data-mask', '1');
+    await expect(page.locator('#objects .selected summary')).toBeFocused();
     await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
+    await expect(status).toHaveText(/^Corrected/);
+    expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
   });
 });

@@ -3,7 +3,7 @@
 import { type Locator, type Page } from '@playwright/test';
 import { unzipSync } from 'fflate';
 
-import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOfDavis, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, reachPicture, savedClip, savedProject, shown, square, test, upload } from './support.js';
+import { type Place, axe, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOfDavis, labelsOnCanvas, masksOf, openExport, openSegmented, reachPicture, savedClip, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [200, 140];
 
@@ -270,50 +270,6 @@ test('the onion skin shows the frames beside; polygons are filled pixel for pixe
     await expect(status(page)).toHaveText(/^Corrected: the masks of \d+ frames have changed\.$/);
     expect((await labelsOnCanvas(page)).every((label, p) => !inside(p) || label === 1)).toBe(true);
   });
-});
-
-test('on the masks of a pair, too, what is drawn exactly is what is kept', async ({ page }) => {
-  const [width, height] = [160, 96];
-  const line = [[0.7, 0.2], [0.8, 0.25]] as const;
-  await openEmpty(page);
-  await upload(page, await Promise.all([0, 1].map((k) => square(`f${k}.png`, width, height, 3 * k, k))));
-  await shown(page, 'second', 'f1.png');
-  const found = await labelsOnCanvas(page);
-  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
-  await page.keyboard.press('p');
-  await exact(page).check();
-  await drag(page, ...line);
-  await expect(page.locator('#status')).toHaveText('Kept as drawn.');
-  const drawn = await labelsOnCanvas(page);
-  isDrawn(drawn, found, line, 8, () => 1, width, height);
-  const share = page.locator('#motions > li').nth(1).locator('.motion-share');
-  const pixels = drawn.filter((label) => label === 1).length;
-  await expect(share).toHaveText(`${((100 * pixels) / drawn.length).toFixed(1)} %`);
-
-  // Solving around it does not change it; a later annotation does.
-  await exact(page).uncheck();
-  await drag(page, [0.1, 0.7], [0.2, 0.75]);
-  await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke/);
-  const solved = await labelsOnCanvas(page);
-  expect(differences(solved, drawn)).toBeGreaterThan(0);
-  expect([...drawn.keys()].filter((p) => drawn[p] !== found[p] && solved[p] !== 1)).toEqual([]);
-  await page.keyboard.press('e');
-  await drag(page, ...line);
-  await expect(page.locator('#status')).toHaveText(/^Masks updated with your strokes/);
-  expect((await labelsOnCanvas(page))[Math.round(0.225 * height) * width + Math.round(0.75 * width)]).not.toBe(1);
-  for (const _ of [1, 2, 3]) await page.keyboard.press('Control+z');
-  await done(page);
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await page.keyboard.press('Control+y');
-  expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
-
-  // It belongs to the frames: it is there when they are opened again.
-  const project = await savedProject(page);
-  await page.keyboard.press('Control+z');
-  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
-  await upload(page, [project]);
-  await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
-  expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
 });
 
 /** The boxes around the outlines of a neighbouring frame, in pixels of the frame: left, top, right, bottom. */

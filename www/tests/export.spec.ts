@@ -12,7 +12,7 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { readAnnotations } from 'veronese/formats';
 
-import { chooseMotions, differences, done, enter, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, openSample, pixelsOf, sample, saved, segmentedInNode, square, test, upload } from './support.js';
+import { chooseMotions, clipInNode, differences, done, expect, motionsChosen, open, openAdvanced, openEmpty, openExport, openSample, pixelsOf, rename, sample, saved, segmentClip, segmentedInNode, square, test, upload } from './support.js';
 
 /** Clicks a button of the panel that saves a file. */
 async function savedBy(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
@@ -124,7 +124,7 @@ test('a copied link opens with the same settings and the current sample', async 
   await page.getByRole('button', { name: 'Copy link' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
   const first = await page.evaluate(() => navigator.clipboard.readText());
-  expect(new URL(first).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&masks=motions');
+  expect(new URL(first).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&segment=asked&masks=motions');
   await page.goto('about:blank');
   await page.goto(first);
   await done(page);
@@ -145,19 +145,12 @@ test('a copied link opens with the same settings and the current sample', async 
   await openSample(page, 'Parallax');
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
   await done(page);
-  await page.getByRole('button', { name: 'Swap the two frames' }).click();
-  await done(page);
-  const link = await copied();
-  expect(new URL(link).hash).toBe('#sample=parallax&swapped=true&quality=fast&masks=motions');
-  await page.goto('about:blank');
-  await page.goto(link);
-  await done(page);
-  await expect(page.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
+  expect(new URL(await copied()).hash).toBe('#sample=parallax&quality=fast&segment=asked&masks=motions');
 
   // With a replaced frame the pair is no longer a sample.
   await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
-  expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
+  expect(new URL(await copied()).hash).toBe('#quality=fast&segment=asked&masks=motions');
 
   // Also in a page that is open.
   await page.evaluate(() => (location.hash = '#sample=intel-two-cars&motions=2&masks=groups'));
@@ -193,10 +186,12 @@ test('masks are exported as files of their own and in the formats of annotation 
   expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
   await page.getByLabel('Outlines').check();
 
-  await test.step('formats of annotation tools have the masks under their names', async () => {
-    const row = page.locator('#motions > li').nth(1);
-    await enter(row.locator('.motion-name'), 'White car');
-    const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
+  await test.step('formats of annotation tools have the objects under their names, but those that are not ticked', async () => {
+    await page.keyboard.press('Escape');
+    await segmentClip(page);
+    const [found] = (await clipInNode([await sample('first'), await sample('second')])) as [Uint8Array];
+    await rename(page, '#objects', 1, 'White car');
+    const mask = (id: number): Uint8Array => found.map((object) => (object === id ? 255 : 0));
     const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
 
     // Read back by the package, whose own tests decode what it encodes.
@@ -211,7 +206,8 @@ test('masks are exported as files of their own and in the formats of annotation 
     // The background is an annotation only where it is asked for.
     const background = page.getByLabel('Also the background');
     const ids = async (): Promise<number[]> => ((await json('COCO, RLE')) as { categories: { id: number }[] }).categories.map(({ id }) => id - 1);
-    const objects = [...new Set(groups)].filter((group) => group > 0).sort((a, b) => a - b);
+    const objects = [...new Set(found)].filter((object) => object > 0).sort((a, b) => a - b);
+    expect(objects.length).toBeGreaterThan(1);
     expect(await ids()).toEqual(objects);
     await background.check();
     expect(await ids()).toEqual([0, ...objects]);
@@ -226,5 +222,11 @@ test('masks are exported as files of their own and in the formats of annotation 
     expect(lines.length).toBe(objects.length);
     for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
     expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
+
+    await page.keyboard.press('Escape');
+    await page.getByLabel('Show White car').uncheck();
+    expect(await ids()).toEqual(objects.slice(1));
+    const zip = unzipSync((await savedBy(page, 'All masks')).bytes);
+    expect(Object.keys(zip).sort()).toEqual(['labels.png', ...[0, ...objects.slice(1)].map((k) => `mask-${k}.png`)].sort());
   });
 });

@@ -114,19 +114,19 @@ test('whoever touches the page or opens something first is not shown the clip; n
   });
 });
 
-test('a link to a pair opens no clip, one to the clip is the page itself; another sample replaces it, and it comes back; cancelled, it is continued', async ({ page, context }) => {
+test('a link to a sample opens it, and one to the first is the page itself; another sample replaces it, and it comes back; cancelled, it is continued', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await withSmallSampleClip(page);
   await page.goto('./#sample=parallax&quality=fast');
   await done(page);
-  await expect(page.locator('#timeline')).toBeHidden();
+  await expect(page.locator('#clip-name')).toHaveText('parallax, 2 frames, 400 × 300');
   await page.evaluate(() => (location.hash = '#sample=passing-cars&quality=fast'));
   await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 64 × 36');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await openSample(page, 'Parallax');
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
   await done(page);
-  await expect(page.locator('#timeline')).toBeHidden();
+  await expect(page.locator('#clip-name')).toHaveText('parallax, 2 frames, 400 × 300');
   await openSample(page, 'Passing cars');
   await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
   await page.locator('#clip-cancel').click();

@@ -65,7 +65,7 @@ export const PAIR = './#sample=intel-two-cars';
 
 /** Opens the page with the sample pair and waits for its masks, with quality `fast` and by default one per motion. */
 export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): Promise<void> {
-  await page.goto(`${PAIR}&quality=fast&masks=${kind}`);
+  await page.goto(`${PAIR}&quality=fast&masks=${kind}&segment=asked`);
   await done(page);
 }
 

@@ -5,9 +5,8 @@ import type { Segmentation } from 'veronese';
 
 import type { Clip } from '../src/clips/clip.js';
 import { strings } from '../src/common/strings.js';
-import { labelsIn } from '../src/correction/parts.js';
 import { type Runs, differingPixels, packed, unpacked } from '../src/correction/runs.js';
-import { eachPixel, evidenceOf } from '../src/correction/strokes.js';
+import { eachPixel } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
 import { type Colour, PALETTE } from '../src/drawing/palette.js';
@@ -15,8 +14,6 @@ import { WHOLE, inPicture, panned, within, zoomedAt } from '../src/drawing/viewp
 import { linkFor, settingsFromHash } from '../src/export/link.js';
 import { commandFor, scriptFor } from '../src/export/reproduce.js';
 import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
-import { suggestionsOf } from '../src/result/junctions.js';
-import { merged, separated } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { TimeLeft } from '../src/session/clip/time-left.js';
@@ -48,45 +45,16 @@ function scene(): Segmentation {
   return { version: 1, width: 8, height: 4, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
 }
 
-test('suggestions are about groups, the surest first, until they are followed or dismissed', () => {
-  const junction = (a: number, b: number, likelihood: number): Segmentation['junctions'][number] => ({ labels: [a, b], likelihood, border: 20 });
-  const none = new Set<string>();
-  const about = (found: Segmentation, now = found, dismissed: ReadonlySet<string> = none): string[] =>
-    suggestionsOf(found, now, dismissed).map(({ advice, groups }) => `${advice} ${groups.join()}`);
-  // 1 and 2 are one group, which touches the background with both and 3 with one.
-  const found = { ...scene(), junctions: [junction(0, 1, 0.4), junction(0, 2, 0.5), junction(0, 3, 0.1), junction(1, 2, 0.9), junction(2, 3, 0.7)] };
-  expect(about(found)).toEqual(['join 1,2', 'join 0,1']);
-  expect(about(found, merged(found, 'groups', 1, 2))).toEqual(['join 0,1']);
-  expect(about(found, merged(found, 'groups', 0, 1))).toEqual(['join 0,2']);
-  const [first, second] = suggestionsOf(found, found, none);
-  expect(second!.junctions).toEqual(['0-2', '0-1']);
-  expect(about(found, found, new Set(first!.junctions))).toEqual(['join 0,1']);
-  expect(about(found, found, new Set(second!.junctions))).toEqual(['join 1,2']);
-
-  const apart = { ...found, junctions: [junction(0, 1, 0.1), junction(1, 2, 0.2), junction(2, 3, 0.9)] };
-  expect(about(apart)).toEqual(['join 1,2', 'separate 1,1']);
-  const { label } = suggestionsOf(apart, apart, none)[1]!;
-  expect(about(apart, separated(apart, label))).toEqual(['join 2,3']);
-  // At most two; and none where the likelihood agrees with the groups.
-  expect(about({ ...found, junctions: [junction(0, 1, 0.5), junction(0, 3, 0.6), junction(2, 3, 0.7)] })).toEqual(['join 1,2', 'join 0,2']);
-  expect(about({ ...found, junctions: [junction(0, 1, 0.2), junction(1, 2, 0.5)] })).toEqual([]);
-  expect(about({ ...found, junctions: [junction(0, 1, 0.2), junction(1, 2, 0.4)] })).toEqual(['separate 1,1']);
-});
-
-test('a stroke covers the pixels under it, and later strokes win', () => {
-  const line = { points: [3, 5, 12, 5], radius: 1.5, labels: 0b01 };
-  const evidence = evidenceOf([line], 20, 12);
-  for (let p = 0; p < evidence.length; p++) {
+test('a stroke covers the pixels under it', () => {
+  const under = new Set<number>();
+  // Points outside the frame are allowed.
+  for (const points of [[3, 5, 12, 5], [-50, -50, -40, -40]]) eachPixel({ points, radius: 1.5 }, 20, 12, (p) => under.add(p));
+  for (let p = 0; p < 240; p++) {
     const [x, y] = [p % 20, Math.floor(p / 20)];
     const distance = Math.hypot(x - Math.min(Math.max(x, 3), 12), y - 5);
-    if (distance < 1.2) expect(evidence[p]).toBe(0b01);
-    if (distance > 1.5) expect(evidence[p]).toBe(0);
+    if (distance < 1.2) expect(under).toContain(p);
+    if (distance > 1.5) expect(under).not.toContain(p);
   }
-  const dot = { points: [3, 5], radius: 0.5, labels: 0b10 };
-  expect(evidenceOf([line, dot], 20, 12)[5 * 20 + 3]).toBe(0b10);
-  expect(evidenceOf([{ ...line, labels: 0b011 }, { ...dot, labels: 0b110 }], 20, 12)[5 * 20 + 3]).toBe(0b010);
-  // Points outside the frame are allowed.
-  expect(evidenceOf([{ points: [-50, -50, 300, 300], radius: 4, labels: 1 }], 20, 12).length).toBe(240);
 });
 
 test('all notations of a motion move pixels the same way', () => {
@@ -117,12 +85,12 @@ test('a link holds the settings, and invalid values are ignored', () => {
   const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true };
   const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
   expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&masks=motions');
-  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, swapped: false, automatic: null });
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, automatic: null });
   const asked = linkFor({ ...INITIAL, automatic: false }, 'https://example.org/');
   expect(asked).toBe('https://example.org/#segment=asked');
   expect(settingsFromHash(new URL(asked).hash).automatic).toBe(false);
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
-  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false, automatic: null });
+  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, automatic: null });
 });
 
 test('command and script contain the settings that are not defaults', () => {
@@ -146,28 +114,6 @@ test('command and script contain the settings that are not defaults', () => {
     `ffmpeg -i 'my clip.mp4' -vf 'select=between(t\\,-0.817\\,0.183)' -update 1 frame-5.png`,
     'veronese pair b.png frame-5.png --grouped --out masks --overlay',
   ]);
-});
-
-/** Labels given as rows of digits; a dot is unlabelled. */
-function drawing(...rows: string[]): Runs {
-  const labels = Uint8Array.from([...rows.join('')], (digit) => (digit === '.' ? 255 : Number(digit)));
-  return packed(labels, rows[0]!.length, rows.length);
-}
-
-test('a label is matched to another labelling by its pixels', () => {
-  const before = drawing('0000000000', '0011002220', '0011002220', '0000002220');
-  // Other numbers, and some pixels unlabelled.
-  const renumbered = drawing('0.00000000', '0022001110', '0022001110', '00.000111.');
-  expect(labelsIn({ of: before, labels: 0b010 }, renumbered)).toBe(0b100);
-  expect(labelsIn({ of: before, labels: 0b101 }, renumbered)).toBe(0b011);
-  // One label split, one disappeared, and a small new one matches nothing.
-  const other = drawing('0000000004', '0000001133', '0000001133', '0000001130');
-  expect(labelsIn({ of: before, labels: 0b100 }, other)).toBe(0b1010);
-  expect(labelsIn({ of: before, labels: 0b010 }, other)).toBe(0);
-  expect(labelsIn({ of: before, labels: 0b001 }, other)).toBe(0b0001);
-  // A larger frame.
-  const large = drawing(...['0000000000', '0022001110', '0022001110', '0000001110'].flatMap((row) => Array<string>(2).fill([...row].map((c) => c + c).join(''))));
-  expect(labelsIn({ of: before, labels: 0b010 }, large)).toBe(0b100);
 });
 
 /** A frame of 4 pixels a row; an object for each label but 0 and 255. */

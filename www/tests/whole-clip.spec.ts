@@ -325,7 +325,7 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
   // Another pair, and the clip again.
   await withSamples(page);
   await openSample(page, 'Parallax');
-  await expect(page.locator('#timeline')).toBeHidden();
+  await expect(page.locator('#clip-name')).toContainText('2 frames');
   await done(page);
   await expect(page.locator('#objects')).toBeHidden();
   await expect.poll(() => leaves(page)).toBe(true);

@@ -1,12 +1,12 @@
 //! A clip: a video or a folder of frames, from which two frames are chosen by index.
 
 import type { DecodedFrame } from '../frames/frame.js';
-import type { SampleClip } from '../frames/samples.js';
+import type { Sample } from '../frames/samples.js';
 
 export interface Clip {
   readonly name: string;
   /** The sample that it is, if it is one. */
-  readonly sample?: SampleClip | undefined;
+  readonly sample?: Sample | undefined;
   /** Identifies the clip by its content. */
   readonly fingerprint: string;
   /** Number of frames. */

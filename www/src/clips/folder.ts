@@ -1,15 +1,16 @@
 //! A folder of frames as a clip, in the order of their names.
 
 import { folderOfAll, nameIn } from '../frames/files.js';
-import { type DecodedFrame, frameFromBlob } from '../frames/frame.js';
-import type { SampleClip } from '../frames/samples.js';
+import { fingerprintOfImage } from '../frames/fingerprints.js';
+import { type DecodedFrame, frameFromFile } from '../frames/frame.js';
+import type { Sample } from '../frames/samples.js';
 import type { Clip, OtherSize, Picture } from './clip.js';
 
-export async function openFolder(files: readonly File[], sample?: SampleClip): Promise<Clip> {
-  const size = await frameFromBlob(files[0]!, nameIn(folderOfAll(files), files[0]!), Infinity);
+export async function openFolder(files: readonly File[], sample?: Sample): Promise<Clip> {
+  const size = await frameFromFile(files[0]!, nameIn(folderOfAll(files), files[0]!), Infinity);
   size.bitmap.close();
-  // The first frame and the sizes of all files tell folders apart without reading them.
-  const fingerprint = [size.fingerprint, ...files.map((file) => file.size)].join(' ');
+  // The first frame, the last, and the sizes of all files tell folders apart without reading them.
+  const fingerprint = [size.fingerprint, await fingerprintOfImage(files.at(-1)!), ...files.map((file) => file.size)].join(' ');
   return new Folder(files, fingerprint, size.width, size.height, sample);
 }
 
@@ -26,7 +27,7 @@ class Folder implements Clip {
     readonly fingerprint: string,
     readonly width: number,
     readonly height: number,
-    readonly sample: SampleClip | undefined,
+    readonly sample: Sample | undefined,
   ) {
     this.#path = folderOfAll(files);
     this.name = this.#path === '' ? fromTo(this.nameOf(0), this.nameOf(files.length - 1)) : this.#path;
@@ -34,7 +35,7 @@ class Folder implements Clip {
   }
 
   frame(index: number, longestSide: number): Promise<DecodedFrame> {
-    return frameFromBlob(this.files[index]!, this.nameOf(index), longestSide);
+    return frameFromFile(this.files[index]!, this.nameOf(index), longestSide);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {

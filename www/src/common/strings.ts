@@ -104,10 +104,10 @@ export function withNotes(answer: string, notes: readonly Pick<Note, 'message'>[
 }
 
 const TOOLS = {
-  brush: (thing: string) => `Paint what belongs to the selected ${thing}.`,
-  eraser: (thing: string) => `Paint what does not belong to the selected ${thing}.`,
-  polygon: (thing: string) => `Press corners around what belongs to the selected ${thing}, then the first again; with Shift it is removed.`,
-  box: () => 'Drag a box around something, or press on it: it becomes a new object.',
+  brush: 'Paint what belongs to the selected object.',
+  eraser: 'Paint what does not belong to the selected object.',
+  polygon: 'Press corners around what belongs to the selected object, then the first again; with Shift it is removed.',
+  box: 'Drag a box around something, or press on it: it becomes a new object.',
 };
 
 export const strings = {
@@ -130,7 +130,6 @@ export const strings = {
   stabilised: (name: string): string => `, stabilised on ${name}`,
 
   clipFacts: (count: number, width: number, height: number): string => `${frames(count)}, ${size(width, height)}`,
-  anotherFile: 'another file',
   imagesIn: (folder: string, count: number): string => `${folder === '' ? 'No folder' : folder}, ${images(count)}`,
   allImages: (count: number): string => `All ${images(count)}, folder by folder`,
   frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
@@ -209,6 +208,7 @@ export const strings = {
   away: 'not in this frame',
   mergeWith: 'Merge with…',
   newObjectHelp: 'Paint it in any frame.',
+  takeOf: (name: string): string => `Make an object of ${name}: these pixels become one, which is followed to other frames`,
   splitOf: (name: string): string => `Split ${name}: its smaller pieces in this frame become another object`,
   lockOf: (name: string): string => `Lock ${name}`,
   othersOf: (verb: string, name: string): string => `${verb} all objects but ${name}`,
@@ -239,23 +239,12 @@ export const strings = {
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
-  suggestions: {
-    mayBelong: (name: string, other: string): string => `${name} may belong to ${other}`,
-    mayBeGround: (name: string): string => `${name} may be part of the background`,
-    mayBeTwo: (name: string): string => `${name} may be two things`,
-    join: 'Join',
-    separate: 'Separate',
-    dismiss: 'Dismiss',
-    about: (button: string, sentence: string): string => `${button}: ${sentence}`,
-  },
-
   newObject: 'New object',
   toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, isBackground: boolean): string => {
-    const thing = isClip ? 'object' : 'mask';
     if (isBackground && tool === 'eraser') return 'Background is selected, and cannot be erased: select an object first.';
     if (isBackground && (tool === 'brush' || tool === 'polygon')) return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
     if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
-    return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
+    return isClip ? `${TOOLS[tool]} ${isExact ? 'Nothing else changes.' : 'The other frames follow.'}` : strings.notices.notReady;
   },
 
   tab: {
@@ -279,29 +268,11 @@ export const strings = {
       if (count < requested) return `${answer}. Of the ${requested} motions requested, only ${count === 1 ? 'one' : count} could be told apart.`;
       return moving === null ? `${answer}, as requested.` : `${answer}, with ${motions(count).toLowerCase()} as requested.`;
     },
-    /** How many of all strokes have an effect on this result. */
-    applied: (applied: number, all: number): string => {
-      if (applied === all) return all === 1 ? 'Your stroke is applied.' : `Your ${all} strokes are applied.`;
-      if (all === 1) return 'Your stroke has no effect: its mask is not in this result.';
-      if (applied === 0) return `Your ${all} strokes have no effect: their masks are not in this result.`;
-      const others = all - applied === 1 ? 'mask of the other is' : 'masks of the others are';
-      return `${applied} of your ${all} strokes ${applied > 1 ? 'are' : 'is'} applied: the ${others} not in this result.`;
-    },
-    solved: (strokes: number, waited: number): string => `Masks updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${duration(waited)}.`,
-    drawn: 'Kept as drawn.',
-    undone: 'Undone.',
-    redone: 'Redone.',
-    merged: 'Merged.',
-    ungrouped: 'Ungrouped.',
-    separated: 'Separated.',
-    restored: 'Restored your corrections of these frames.',
     live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} frames per second, ${objects(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
     cancelledBefore: 'Cancelled. The masks are from the last result.',
-    cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are applied yet.',
     failed: 'The segmentation failed.',
     failedBefore: 'The segmentation failed. The masks are from the last result.',
-    failedStrokes: 'The update failed. Your strokes are kept, but not all are applied yet.',
   },
 
   selected: (count: number): string => `${whole.format(count)} selected`,
@@ -333,7 +304,6 @@ export const strings = {
 
   notices: {
     noFiles: 'There is no image or video among these files.',
-    noMasks: 'There are no masks to paint yet.',
     chooseMask: 'Select a mask in the list first.',
     nothingElse: 'There is no other mask that these pixels could belong to.',
     leftOut: (folder: string, count: number): string => `Opened the images of “${folder}”. ${images(count)} of other folders ${count === 1 ? 'is' : 'are'} left out.`,

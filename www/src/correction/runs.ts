@@ -73,23 +73,8 @@ export function extentsOf({ width, ends, labels }: Runs): Map<number, Extent> {
   return extents;
 }
 
-/** Size of the runs in memory, bytes. */
-export function sizeOf({ ends, labels }: Runs): number {
-  return ends.byteLength + labels.byteLength;
-}
-
 /** Labels correspond only if their intersection over union reaches this: a smaller overlap is chance. */
 const LEAST_COMMON = 0.1;
-
-/**
- * For each label of `now` the label of `before` with the largest intersection over union, if that reaches {@link LEAST_COMMON}. Several
- * labels may continue the same one, if it was split.
- */
-export function continued(before: Runs, now: Runs): ReadonlyMap<number, number> {
-  const best = new Map<number, number>();
-  for (const { was, is } of overlapsOf([[before, now]])) if (!best.has(is)) best.set(is, was);
-  return best;
-}
 
 /** Two labels, and the intersection over union of their pixels, at least {@link LEAST_COMMON}. */
 interface Overlap {

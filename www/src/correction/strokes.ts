@@ -1,7 +1,4 @@
-//! Brush strokes: paths that restrict which labels are allowed along them.
-
-import type { Segmentation } from 'veronese';
-import { type Part, labellingOf, labelsIn } from './parts.js';
+//! Brush strokes: paths, and the pixels under them.
 
 /** A path over the first frame. */
 export interface Path {
@@ -13,42 +10,7 @@ export interface Path {
   readonly filled?: boolean;
 }
 
-/** A stroke as drawn: "this mask" (`brush`) or "not this mask" (`eraser`). Never changed: strokes are compared by identity. */
-export interface Stroke extends Path {
-  readonly tool: 'brush' | 'eraser';
-  readonly mask: Part;
-}
-
-/** A stroke as a restriction of the labels of one result. */
-export interface Constraint extends Path {
-  /** The allowed labels, one bit each. */
-  readonly labels: number;
-}
-
-/** The labels that a stroke allows in this result, one bit each; 0 if it has no effect, because its mask or any other is missing. */
-export function allowedLabels({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: Segmentation): number {
-  const own = labelsIn(mask, labellingOf(found));
-  if (tool === 'brush') return own;
-  // A mask without labels is the unlabelled one: erasing it allows any motion.
-  return own === 0 && mask.labels !== 0 ? 0 : ((1 << found.motions.length) - 1) & ~own;
-}
-
-/** The constraints of the strokes on this result, without those that have no effect. */
-export function constraintsFrom(strokes: readonly Stroke[], found: Segmentation): Constraint[] {
-  return strokes.map((stroke) => ({ ...stroke, labels: allowedLabels(stroke, found) })).filter(({ labels }) => labels !== 0);
-}
-
-/** All constraints as `relabel` expects them: the allowed labels of each pixel, one bit each, 0 for no constraint. */
-export function evidenceOf(strokes: readonly Constraint[], width: number, height: number): Uint16Array<ArrayBuffer> {
-  const evidence = new Uint16Array(width * height);
-  for (const stroke of strokes) {
-    eachPixel(stroke, width, height, (p) => {
-      // If two strokes contradict each other, the later one counts.
-      evidence[p] = evidence[p] === 0 ? stroke.labels : evidence[p]! & stroke.labels || stroke.labels;
-    });
-  }
-  return evidence;
-}
+export type StrokeTool = 'brush' | 'eraser';
 
 /** Calls `visit` for each pixel whose centre lies under the stroke, for some more than once. */
 export function eachPixel({ points, radius, filled }: Path, width: number, height: number, visit: (pixel: number) => void): void {

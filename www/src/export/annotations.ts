@@ -5,9 +5,10 @@ import { type Export, type Format, TOLERANCE } from './format.js';
 import { zipped } from './zip.js';
 
 /** The arguments of the encoders. */
-function argumentsFor({ labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
+function argumentsFor({ look, labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
   const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
-  const motions = masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
+  // Those of objects are in the formats of clips.
+  const motions = look.kind === 'objects' ? [] : masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
   return [labels, width, height, { image, names, motions, labels: annotated }];
 }
 

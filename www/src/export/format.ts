@@ -36,11 +36,13 @@ export interface Format {
   make(exported: Export): Promise<string | Uint8Array<ArrayBuffer> | Blob>;
 }
 
+/** Of objects those that are ticked. */
 export function exportOf(result: Result, look: Look, background = false): Export {
   const segmentation = atSize(result.segmentation, result.pair.first.full);
-  const labels = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels;
+  const isOut = (id: number): boolean => look.kind === 'objects' && look.hidden.has(id);
+  const labels = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels.map((label) => (isOut(label) ? 0 : label));
   const masks = masksOf(segmentation, look.kind)
-    .filter(({ id }) => id !== UNLABELLED)
+    .filter(({ id }) => id !== UNLABELLED && !isOut(id))
     .map((mask) => ({ ...mask, name: nameOf(look, mask.id), colour: colourOfMask(mask.id, look) }));
   const annotated = masks.map(({ id }) => id).filter((id) => id > 0 || background);
   return { result, look, segmentation, labels, masks, annotated, image: result.pair.first.name };

@@ -37,14 +37,14 @@ export const MASKS: Format = {
   title: 'All masks',
   file: 'masks.zip',
   type: 'application/zip',
-  hint: 'A greyscale PNG of each mask, the labels and the result.',
+  hint: 'A greyscale PNG of each mask, the labels, and of motions the result.',
   async make(exported) {
     const { labels, segmentation, masks } = exported;
     const { width, height } = segmentation;
     const files: Record<string, Uint8Array> = {};
     for (const { id } of masks) files[`mask-${id}.png`] = await pngFromGrey(grey(labels, id), width, height);
     files[LABELS.file] = (await LABELS.make(exported)) as Uint8Array;
-    files[RESULT.file] = new TextEncoder().encode((await RESULT.make(exported)) as string);
+    if (exported.look.kind !== 'objects') files[RESULT.file] = new TextEncoder().encode((await RESULT.make(exported)) as string);
     return zipped(files);
   },
 };
@@ -66,7 +66,7 @@ export const OVERLAY: Format = {
   title: 'Overlay',
   file: 'overlay.png',
   type: PNG,
-  hint: 'The first frame with its masks as shown.',
+  hint: 'The frame with its masks as shown.',
   make: ({ result, look }) => overlayPicture(result, look),
 };
 

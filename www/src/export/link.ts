@@ -1,8 +1,8 @@
 //! Settings and the sample in the page's address, read and written. Values that are not among the choices are ignored.
 
-import { type Sample, sampleCalled } from '../frames/samples.js';
+import { SAMPLES, type Sample, sampleCalled } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
-import { sampleOf } from '../state/pair.js';
+import { timelineOf } from '../state/pair.js';
 import { DEFAULT_SETTINGS, type Settings, settingFrom } from '../state/settings.js';
 import type { State } from '../state/state.js';
 
@@ -10,7 +10,6 @@ export interface Linked {
   readonly settings: Partial<Settings>;
   readonly kind: Kind | null;
   readonly sample: Sample | null;
-  readonly swapped: boolean;
   /** Whether clips are segmented as soon as they are opened; `null` if the link does not say so. */
   readonly automatic: boolean | null;
 }
@@ -23,23 +22,21 @@ export function settingsFromHash(hash: string): Linked {
     settings,
     kind: kind === 'motions' || kind === 'groups' ? kind : null,
     sample: sampleCalled(values.get('sample')),
-    swapped: values.get('swapped') === 'true',
     automatic: values.get('segment') === 'asked' ? false : null,
   };
 }
 
 /** The page's address with the sample and the settings after the `#`, which is never sent to a server. */
-export function linkFor({ settings, look: { kind }, pair, automatic }: Pick<State, 'settings' | 'look' | 'pair' | 'automatic'>, address: string): string {
+export function linkFor({ settings, forced, look: { kind }, pair, automatic }: Pick<State, 'settings' | 'forced' | 'look' | 'pair' | 'automatic'>, address: string): string {
   const values = new URLSearchParams();
-  const shown = sampleOf(pair);
-  // The sample clip needs none: the page opens with it.
-  if (shown !== null) values.set('sample', shown.sample.id);
-  if (shown?.swapped) values.set('swapped', 'true');
-  for (const [name, value] of Object.entries(settings)) {
+  const sample = timelineOf(pair)?.clip.sample;
+  // The first needs none: the page opens with it.
+  if (sample !== undefined && sample !== SAMPLES[0]) values.set('sample', sample.id);
+  for (const [name, value] of Object.entries({ ...settings, motions: forced ?? settings.motions })) {
     if (value !== DEFAULT_SETTINGS[name as keyof Settings]) values.set(name, String(value));
   }
   if (!automatic) values.set('segment', 'asked');
-  if (kind !== 'groups') values.set('masks', kind);
+  if (kind === 'motions') values.set('masks', kind);
   const url = new URL(address);
   url.hash = values.toString();
   return url.href;

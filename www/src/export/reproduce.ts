@@ -14,7 +14,7 @@ function changed(settings: Settings): Partial<Settings> {
 
 /** The file name of a frame, and the command that extracts it from a video first. */
 function found({ name, origin }: LoadedFrame): { name: string; before: string[] } {
-  if (origin === undefined || !('clip' in origin) || origin.clip.times === null) return { name, before: [] };
+  if (origin === undefined || origin.clip.times === null) return { name, before: [] };
   const { clip, index } = origin;
   const file = `frame-${index}.png`;
   return { name: file, before: [`ffmpeg -i ${quoted(clip.name)} ${selecting(clip, index)} ${file}`] };

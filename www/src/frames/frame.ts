@@ -21,24 +21,26 @@ export interface DecodedFrame extends Pixels {
   readonly bitmap: ImageBitmap;
   /** Milliseconds that decoding took. */
   readonly decoded: number;
+  /** Of an image. */
+  readonly file?: File;
 }
 
 /** The page decodes no more pixels than this. */
 const MOST_PIXELS = 16384 * 8192;
 
 /** Decodes an image and scales it down to `longestSide`. Throws a {@link PageError} `unreadable-image`. */
-export async function frameFromBlob(blob: Blob, name: string, longestSide: number): Promise<DecodedFrame> {
+export async function frameFromFile(file: File, name: string, longestSide: number): Promise<DecodedFrame> {
   let fingerprint: string;
   let began: number;
   let bitmap: ImageBitmap;
   try {
-    fingerprint = await fingerprintOfImage(blob);
+    fingerprint = await fingerprintOfImage(file);
     began = performance.now();
-    bitmap = await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+    bitmap = await createImageBitmap(file, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
   } catch {
     throw new PageError('unreadable-image', strings.errors.unreadable(name));
   }
-  return frameFromBitmap(bitmap, { name, fingerprint }, longestSide, began);
+  return { ...(await frameFromBitmap(bitmap, { name, fingerprint }, longestSide, began)), file };
 }
 
 /** Takes ownership of the bitmap. `began`: the time at which decoding began, milliseconds. */
@@ -64,6 +66,20 @@ export async function frameFromBitmap(
   context.drawImage(bitmap, 0, 0);
   const { data } = context.getImageData(0, 0, width, height);
   return { name, fingerprint, data, width, height, full, bitmap, decoded: performance.now() - began };
+}
+
+/** The files of two frames, with names that differ: those that were read, or the pixels on screen. */
+export async function filesOf(frames: readonly (DecodedFrame | File)[]): Promise<File[]> {
+  const files = await Promise.all(frames.map(async (frame) => (frame instanceof File ? frame : (frame.file ?? pngOf(frame)))));
+  if (files[0]?.name !== files[1]?.name) return files;
+  return files.map((file, k) => new File([file], file.name.replace(/(\.[^.]*)?$/, ` ${k + 1}$1`), { type: file.type }));
+}
+
+async function pngOf({ bitmap, name, width, height }: DecodedFrame): Promise<File> {
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext('2d')?.drawImage(bitmap, 0, 0);
+  const type = 'image/png';
+  return new File([await canvas.convertToBlob({ type })], `${name.replace(/[\\/:*?"<>|#]/g, '_')}.png`, { type });
 }
 
 /** The size scaled down so that the longer side is at most `longest`. */

@@ -1,4 +1,4 @@
-//! The samples that come with the page: pairs and a clip. Their sources are named in the footer of `index.html`.
+//! The samples that come with the page: clips, two of them of two frames. Their sources are named in the footer of `index.html`.
 
 /** Small pictures side by side in one file, shown one after another; the first also where nothing should move. */
 export interface MovingPicture {
@@ -9,36 +9,23 @@ export interface MovingPicture {
   readonly each: number;
 }
 
-interface Common {
+export interface Sample {
   readonly id: string;
   readonly title: string;
   readonly thumbnail: MovingPicture;
-}
-
-export interface SamplePair extends Common {
-  readonly first: string;
-  readonly second: string;
-}
-
-export interface SampleClip extends Common {
   readonly frames: readonly string[];
   /** The frame that is shown first. */
   readonly start: number;
 }
 
-export type Sample = SamplePair | SampleClip;
-
-function common(id: string, title: string, count: number, each: number): Common {
-  return { id, title, thumbnail: { path: `samples/${id}/thumbnail.webp`, count, each } };
+function pair(id: string, title: string): Sample {
+  const frames = ['first', 'second'].map((name) => `samples/${id}/${name}.png`);
+  return { id, title, thumbnail: { path: `samples/${id}/thumbnail.webp`, count: 2, each: 0.5 }, frames, start: 0 };
 }
 
-function pair(id: string, title: string): SamplePair {
-  return { ...common(id, title, 2, 0.5), first: `samples/${id}/first.png`, second: `samples/${id}/second.png` };
-}
-
-function clip(id: string, title: string, count: number, start: number): SampleClip {
+function clip(id: string, title: string, count: number, start: number): Sample {
   const frames = Array.from({ length: count }, (_, k) => `samples/${id}/frames/${String(k).padStart(2, '0')}.webp`);
-  return { ...common(id, title, 14, 0.14), frames, start };
+  return { id, title, thumbnail: { path: `samples/${id}/thumbnail.webp`, count: 14, each: 0.14 }, frames, start };
 }
 
 /** The page opens with the first. */

@@ -2,26 +2,19 @@
 
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
-import { NO_EDITS } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
-import type { Kept } from '../state/kept.js';
 import type { Subject } from '../state/pair.js';
-import { acceptedIn } from '../state/tracked.js';
+import type { TrackedFrame } from '../state/tracked.js';
 import { isContent, isRuns } from './content.js';
 import type { Project } from './project.js';
 import * as check from './schema.js';
 
 const FORMAT = 'veronese-project';
-const VERSION = 3;
+const VERSION = 4;
 const MEDIA_TYPE = 'application/gzip';
 
-/** Where a document refers to a label image, and where to other bytes: their place in its lists. */
-interface ImagePlace {
-  readonly image: number;
-}
-interface BytesPlace {
-  readonly bytes: number;
-}
+/** What the content refers to, by its place in the lists: the masks of a frame, which steps share, label images, and other bytes. */
+const PLACES = ['masks', 'image', 'bytes'] as const;
 
 /** The first line: what a list of projects shows. */
 export interface Header extends Subject, Pick<Project, 'thumbnail'> {
@@ -32,22 +25,24 @@ export interface Header extends Subject, Pick<Project, 'thumbnail'> {
 }
 
 /** The bytes of the project's file. */
-export function streamOf({ of, name, frames, sample, thumbnail, settings, classList, clip, pairs }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
-  const [images, blobs] = [new Map<Runs, number>(), new Map<Blob, number>()];
+export function streamOf({ of, name, frames, sample, thumbnail, settings, classList, clip }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
+  const [masks, images, blobs] = [new Map<TrackedFrame, number>(), new Map<Runs, number>(), new Map<Blob, number>()];
   const place = <T>(map: Map<T, number>, value: T): number => {
     const at = map.get(value) ?? map.size;
     map.set(value, at);
     return at;
   };
-  // The same image or blob is written once, however many refer to it.
+  // The same is written once, however many refer to it.
   const referring = (_key: string, value: unknown): unknown => {
-    if (value instanceof Map || value instanceof Set) return [...value];
-    if (value instanceof Blob) return { bytes: place(blobs, value) } satisfies BytesPlace;
-    return isRuns(value) ? ({ image: place(images, value) } satisfies ImagePlace) : value;
+    if (value instanceof Map) return { map: [...value] };
+    if (value instanceof Set) return { set: [...value] };
+    if (value instanceof Blob) return { bytes: place(blobs, value) };
+    if (isRuns(value)) return { image: place(images, value) };
+    return isMasks(value) ? { masks: place(masks, value) } : value;
   };
-  const part = clip && { ...clip, accepted: acceptedIn(clip) };
-  const content = JSON.stringify({ settings, classList, clip: part, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
-  const lists = JSON.stringify({ images: [...images.keys()].map(({ width, height, ends }) => [width, height, ends.length]), bytes: [...blobs.keys()].map(({ size }) => size) });
+  const content = JSON.stringify({ settings, classList, clip }, referring);
+  const frameList = [...masks.keys()].map(({ runs, ...others }) => ({ ...others, image: place(images, runs) }));
+  const lists = JSON.stringify({ masks: frameList, images: [...images.keys()].map(({ width, height, ends }) => [width, height, ends.length]), bytes: [...blobs.keys()].map(({ size }) => size) });
   const header: Header = { format: FORMAT, version: VERSION, of, name, frames, ...(sample && { sample }), saved: now.toISOString(), thumbnail };
   const lines = [header, content, lists].map((line) => `${typeof line === 'string' ? line : JSON.stringify(line)}\n`);
   const runs = [...images.keys()].flatMap(({ ends, labels }) => [ends, labels] as BlobPart[]);
@@ -96,30 +91,18 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
     const images = lists.images.map(([width, height, count]) => runsFrom(width!, height!, new Uint32Array(taken(4 * count!).buffer), taken(count!)));
     const blobs = lists.bytes.map((length) => new Blob([taken(length)]));
     assert(at === bytes.length);
+    const parts = { masks: lists.masks.map(({ image, ...others }) => ({ ...others, runs: images[image] })), image: images, bytes: blobs };
     const value: unknown = JSON.parse(content, (_key, value: unknown) => {
-      if (isImagePlace(value)) return images[value.image];
-      return isBytesPlace(value) ? blobs[value.bytes] : value;
+      const [[key, one] = ['', null], ...more] = value instanceof Object && !Array.isArray(value) ? Object.entries(value) : [];
+      if (more.length > 0) return value;
+      if (key === 'map') return new Map(one as [unknown, unknown][]);
+      if (key === 'set') return new Set(one as unknown[]);
+      const kind = PLACES.find((name) => name === key);
+      return kind === undefined ? value : parts[kind][one as number];
     });
     const { of, name: called, frames, sample, thumbnail } = header;
     assert(isContent(value, frames));
-    const { settings, classList, clip, pairs } = value;
-    const subject = { of, name: called, frames, ...(sample && { sample }) };
-    return {
-      ...subject,
-      thumbnail,
-      settings,
-      classList,
-      clip: clip && {
-        ...clip,
-        exact: new Map(clip.exact),
-        became: new Map(clip.became),
-        locked: new Set(clip.locked),
-        accepted: new Set(clip.accepted.flatMap((index) => clip.frames[index] ?? [])),
-        spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
-        solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },
-      },
-      pairs: new Map(pairs.map(([key, kept]) => [key, { ...kept, subject, edits: { ...NO_EDITS, ...kept.edits } }])),
-    };
+    return { of, name: called, frames, ...(sample !== undefined && { sample }), thumbnail, ...value };
   });
 }
 
@@ -144,12 +127,11 @@ const isHeader = check.objectOf<Header>({
   name: check.isText,
   frames: check.isFrom(1),
   saved: check.isText,
-  sample: check.optional(check.objectOf({ id: check.isText, swapped: check.isFlag })),
+  sample: check.optional(check.isText),
   thumbnail: check.optional(isPicture),
 });
-const isLists = check.objectOf({ images: check.listOf(check.listOf(check.isFrom(0, 2 ** 32), 3)), bytes: check.listOf(check.isFrom(0)) });
-const isImagePlace = check.objectOf<ImagePlace>({ image: check.isFrom(0) });
-const isBytesPlace = check.objectOf<BytesPlace>({ bytes: check.isFrom(0) });
+const isMasks = (value: unknown): value is TrackedFrame => value instanceof Object && 'runs' in value && 'background' in value;
+const isLists = check.objectOf({ masks: check.listOf(check.objectOf({ image: check.isFrom(0) })), images: check.listOf(check.listOf(check.isFrom(0, 2 ** 32), 3)), bytes: check.listOf(check.isFrom(0)) });
 
 function headerIn(line: string, name: string): Header {
   const header: unknown = JSON.parse(line);
@@ -158,12 +140,6 @@ function headerIn(line: string, name: string): Header {
   }
   assert(isHeader(header));
   return header;
-}
-
-/** The last export belongs to the tab, and the subject stands in the header. */
-function withoutSaved({ edits, subject: _subject, ...kept }: Kept): object {
-  const { saved: _saved, ...rest } = edits;
-  return { ...kept, edits: rest };
 }
 
 function runsFrom(width: number, height: number, ends: Uint32Array, labels: Uint8Array): Runs {

@@ -1,9 +1,9 @@
-//! One tab keeps the work on a clip or a pair: the first that has any. What another tab did would be overwritten, or would overwrite it.
+//! One tab keeps the work on a clip: the first that has any. What another tab did would be overwritten, or would overwrite it.
 
 const owned = new Set<string>();
 
 /**
- * Whether this tab keeps the work on this clip or pair: it does already, or no other does and `isUpToDate`. It then does until it is closed.
+ * Whether this tab keeps the work on this clip: it does already, or no other does and `isUpToDate`. It then does until it is closed.
  * Browsers without locks know no other tabs.
  */
 export async function owns(of: string, isUpToDate: () => Promise<boolean>): Promise<boolean> {
@@ -16,6 +16,17 @@ export async function owns(of: string, isUpToDate: () => Promise<boolean>): Prom
       // The lock is held as long as this promise is pending.
       if (own) await new Promise(() => undefined);
     };
-    navigator.locks.request(`veronese project ${of}`, { ifAvailable: true }, take).catch(reject);
+    navigator.locks.request(lockOf(of), { ifAvailable: true }, take).catch(reject);
   });
+}
+
+/** Whether a tab keeps the work on this clip. */
+export async function isOwned(of: string): Promise<boolean> {
+  if (!('locks' in navigator)) return false;
+  const { held = [] } = await navigator.locks.query();
+  return held.some(({ name }) => name === lockOf(of));
+}
+
+function lockOf(of: string): string {
+  return `veronese project ${of}`;
 }

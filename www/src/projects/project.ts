@@ -1,14 +1,13 @@
-//! A project: the work on one clip, or on one pair of frames, without the frames. It is gathered from the state, and put back into it when
-//! the same frames are opened again. What was undone in a clip is not part of it.
+//! A project: the work on one clip, without the frames. It is gathered from the state, and put back into it when the same frames are opened
+//! again.
 
-import { NO_EDITS, asSaved } from '../correction/edits.js';
-import { type Kept, keptFrom } from '../state/kept.js';
-import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
+import { type FramePair, type Subject, subjectOfClip, timelineOf } from '../state/pair.js';
 import type { State } from '../state/state.js';
-import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
+import { isPrompt } from '../state/annotation.js';
+import { type SolvedPairs, type Tracked, type TrackedFrame, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
 
 /** The objects of a clip. */
-export interface ProjectClip extends Version, Pick<Tracked, 'range'> {
+export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'past' | 'future'> {
   /** The frame on screen and the objects that are not ticked, when the project was written. */
   readonly at: number;
   readonly hidden: readonly number[];
@@ -19,23 +18,15 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range'> {
 export interface Project extends Subject, Pick<State, 'settings' | 'classList'> {
   /** A small picture of the frame on screen and its masks, as a `data:` address. */
   readonly thumbnail?: string | undefined;
-  /** `null` if the subject is no clip, or is not segmented. */
-  readonly clip: ProjectClip | null;
-  /** The edited pairs, by their key. */
-  readonly pairs: ReadonlyMap<string, Kept>;
+  readonly clip: ProjectClip;
 }
 
-/** The work on this subject; `null` if nothing was ever done with it. */
+/** The work on this clip; `null` if nothing was ever done with it. */
 export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<string, SolvedPairs>): Project | null {
-  const { settings, motionsElsewhere, classList } = state;
-  const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
-  const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
-  if (open !== null) pairs.set(...open);
+  const { settings, classList } = state;
   const tracked = trackedOf(state, of);
-  const clip = tracked !== null && (!tracked.clip.sample || tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
-  const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
-  if (subject === undefined) return null;
-  return { ...subject, classList, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs.get(of) ?? null), pairs };
+  if (tracked === null || (tracked.clip.sample && tracked.solved === 0 && !isTracked(tracked))) return null;
+  return { ...subjectOfClip(tracked.clip), classList, settings, clip: partOf(tracked, state, solvedPairs.get(of) ?? null) };
 }
 
 function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
@@ -48,23 +39,44 @@ function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: S
   const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
   // A complete clip can be corrected without its pairs.
-  return { ...versionOf(tracked), range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
+  return { ...versionOf(tracked), ...stepsOf(tracked), range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
+}
+
+/** A version without what was accepted of earlier ones. */
+function stepOf(version: Version): Version {
+  return { ...versionOf(version), accepted: new Set(version.frames.filter((frame) => frame !== null && version.accepted.has(frame)) as TrackedFrame[]) };
+}
+
+/** As many steps of undo and redo are kept as have parts of so many bytes, the nearest first. */
+const MOST_OF_STEPS = 5e6;
+
+function stepsOf(tracked: Tracked): Pick<Tracked, 'past' | 'future'> {
+  const counted = new Set<object>(partsOf(tracked).keys());
+  let room = MOST_OF_STEPS;
+  const fits = (version: Version): boolean => {
+    for (const [part, bytes] of partsOf(version)) if (!counted.has(part) && counted.add(part)) room -= bytes;
+    return room >= 0;
+  };
+  const nearest = (versions: readonly Version[]): Version[] => versions.slice(versions.findLastIndex((version) => !fits(version)) + 1).map(stepOf);
+  return { past: nearest(tracked.past), future: nearest(tracked.future) };
+}
+
+/** What a version shares with others, and about how many bytes it takes. */
+function partsOf({ frames, found, annotations, exact, spans }: Version): Map<object, number> {
+  const images = [...frames.map((frame) => frame?.runs), ...found, ...annotations.map((one) => (isPrompt(one) ? null : one.labels)), ...exact.values()];
+  const runs = images.flatMap((image) => (image ? [[image, image.ends.byteLength + image.labels.byteLength] as const] : []));
+  return new Map<object, number>([...runs, ...spans.map(({ state }) => [state, state.size] as const)]);
+}
+
+/** The state with this clip, wherever it is, changed by `change`. */
+function withClip({ tracked, keptClips }: State, of: string, change: (clip: Tracked) => Tracked): Pick<State, 'tracked' | 'keptClips'> {
+  const changed = <T extends Tracked | null>(now: T): T => (now?.clip.fingerprint === of ? (change(now) as T) : now);
+  return { tracked: changed(tracked), keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, changed(one)])) };
 }
 
 /** The state in which what the project has counts as saved, unless it has changed since. */
-export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of, clip, pairs }: Project): Partial<State> {
-  const savedClip = <T extends Tracked | null>(now: T): T =>
-    clip === null || now?.clip.fingerprint !== of ? now : { ...now, saved: savedOf(clip) };
-  const savedEdits = <T extends Kept['edits']>(now: T, key: string | null): T => {
-    const written = pairs.get(key ?? '');
-    return written === undefined ? now : { ...now, saved: asSaved(written.edits).saved };
-  };
-  return {
-    edits: savedEdits(edits, keyOfPair(pair)),
-    kept: new Map([...kept].map(([key, one]) => [key, { ...one, edits: savedEdits(one.edits, key) }])),
-    tracked: savedClip(tracked),
-    keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, savedClip(one)])),
-  };
+export function withSaved(state: State, { of, clip }: Project): Partial<State> {
+  return withClip(state, of, (now) => ({ ...now, saved: savedOf(clip) }));
 }
 
 const NOTHING: Tracked['saved'] = { frames: [], locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
@@ -75,26 +87,17 @@ function hasWork({ past, annotations, exact, became, locked, accepted, names, cl
   return counts.some((count) => count > 0);
 }
 
-/** The state in which nothing that was done with this subject counts as saved. */
-export function withoutSaved({ edits, pair, kept, tracked, keptClips }: State, of: string): Partial<State> {
-  const { saved } = NO_EDITS;
-  const unsavedClip = <T extends Tracked | null>(now: T): T => (now?.clip.fingerprint === of && hasWork(now) ? { ...now, saved: NOTHING } : now);
-  return {
-    edits: subjectOf(pair)?.of === of ? { ...edits, saved } : edits,
-    kept: new Map([...kept].map(([key, one]) => [key, one.subject.of === of ? { ...one, edits: { ...one.edits, saved } } : one])),
-    tracked: unsavedClip(tracked),
-    keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, unsavedClip(one)])),
-  };
+/** The state in which nothing that was done with this clip counts as saved. */
+export function withoutSaved(state: State, of: string): Partial<State> {
+  return withClip(state, of, (now) => (hasWork(now) ? { ...now, saved: NOTHING } : now));
 }
 
-/** The state with the work of the project, which is of this pair or of its clip. */
-export function withProject(state: State, { of, settings, classList: saved, clip, pairs }: Project, pair: FramePair): Partial<State> {
-  const kept = new Map([...state.kept, ...[...pairs].map(([key, one]) => [key, { ...one, edits: asSaved(one.edits) }] as const)]);
+/** The state with the work of the project, which is of the clip of this pair. */
+export function withProject(state: State, { of, settings, classList: saved, clip }: Project, pair: FramePair): Partial<State> {
   // The project's classes keep their numbers.
-  const classList = [...new Set([...saved, ...state.classList])];
-  const common = { settings, motionsElsewhere: null, classList, kept };
+  const common = { settings, classList: [...new Set([...saved, ...state.classList])] };
   const opened = timelineOf(pair)?.clip;
-  if (clip === null || opened === undefined) return common;
+  if (opened === undefined) return common;
   const { tracked, keptClips } = state;
   if (tracked?.clip.fingerprint === of) return { ...common, tracked: continued(tracked, clip) };
   return { ...common, keptClips: new Map(keptClips).set(of, continued(keptClips.get(of) ?? untracked(opened), clip)) };
@@ -109,8 +112,7 @@ function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip 
     ...clip,
     run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: begun ? 'cancelled' : 'idle' },
     solved: complete ? lengthOf(clip.range) : (solved?.pairs.size ?? 0),
-    past: isTracked(before) ? [...before.past, versionOf(before)] : [],
-    future: [],
+    ...(isTracked(before) ? { past: [...before.past, versionOf(before)], future: [] } : {}),
     saved: savedOf(clip),
   };
 }

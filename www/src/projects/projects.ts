@@ -4,8 +4,8 @@
 import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
-import { NO_EDITS, hasEdits } from '../correction/edits.js';
-import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
+import { type Sample, sampleCalled } from '../frames/samples.js';
+import { type FramePair, subjectOf } from '../state/pair.js';
 import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
@@ -15,8 +15,7 @@ import type { Listed } from './shelf.js';
 const SOON = 500;
 const LATER = 10_000;
 
-const OF_EDITS = ['actions', 'done', 'appearances'] as const;
-const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'solved', 'run', 'range'] as const;
+const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'solved', 'run', 'range', 'past', 'future'] as const;
 
 type Shelf = typeof import('./shelf.js');
 
@@ -24,11 +23,11 @@ export class Projects {
   readonly #store: Store;
   /** The solved pairs of clips, by fingerprint: they are not in the state. */
   readonly #pairs: Map<string, SolvedPairs>;
-  /** Subjects whose changes are not written yet, by the fingerprint of the clip or the key of the pair. */
+  /** Clips whose changes are not written yet, by fingerprint. */
   readonly #changed = new Set<string>();
   /** Projects of files, until their frames are opened. */
   readonly #opened = new Map<string, Project>();
-  /** Subjects that need not be looked for again. */
+  /** Clips that need not be looked for again. */
   readonly #known = new Set<string>();
   /** The files that the frames of each were opened from. */
   readonly #files = new Map<string, readonly File[]>();
@@ -60,6 +59,21 @@ export class Projects {
     return !(await isNothingKept());
   }
 
+  /** The frames of the work that was kept last: a sample, or files; `null` if there is none, or another tab has it. */
+  async last(): Promise<Sample | readonly File[] | null> {
+    if (await isNothingKept()) return null;
+    try {
+      const { framesOf, isOwned, list } = await this.#load();
+      const [newest] = await list();
+      const header = newest?.header ?? null;
+      if (newest === undefined || header === null || (await isOwned(header.of))) return null;
+      if (header.sample !== undefined) return sampleCalled(header.sample);
+      return newest.hasFrames ? await framesOf(newest.file) : null;
+    } catch {
+      return null;
+    }
+  }
+
   /** Opens a project's file. Throws a `PageError`. */
   async open(file: File): Promise<Project> {
     const { projectFromFile } = await this.#load();
@@ -68,13 +82,13 @@ export class Projects {
     return project;
   }
 
-  /** Both frames of the pair, or its clip, were opened from these files. */
+  /** The open clip was opened from these files. */
   comeFrom(files: readonly File[]): void {
     const subject = subjectOf(this.#store.get().pair);
     if (subject === null) return;
     this.#files.set(subject.of, files);
-    // A clip is kept from the first moment, so that a reload finds it.
-    if (this.#store.get().tracked !== null) this.#touch(subject.of, SOON);
+    // It is kept from the first moment, so that a reload finds it.
+    this.#touch(subject.of, SOON);
   }
 
   /** The project of these frames, if it is not in the state already. */
@@ -107,11 +121,8 @@ export class Projects {
     const { withProject } = this.#shelf;
     this.#opened.delete(project.of);
     if (project.thumbnail !== undefined) this.#thumbnails.set(project.of, project.thumbnail);
-    if (project.clip?.solved) this.#pairs.set(project.of, project.clip.solved);
-    const now = this.#store.get();
-    // The edits on screen are replaced too.
-    const own = keyOfPair(now.pair) === keyOfPair(pair) ? { edits: NO_EDITS, found: null, result: null } : {};
-    this.#store.set({ ...withProject(now, project, pair), ...own });
+    if (project.clip.solved) this.#pairs.set(project.of, project.clip.solved);
+    this.#store.set(withProject(this.#store.get(), project, pair));
     this.#keeps(project.of);
     this.#touch(project.of, SOON);
   }
@@ -127,7 +138,7 @@ export class Projects {
     return { name: `${project.name.replace(/\.[^./]*$/, '').replace(/[\\/:*?"<>|#]/g, '_')}.veronese`, content };
   }
 
-  /** The work on this subject, with a new picture if it is on screen. */
+  /** The work on this clip, with a new picture if it is on screen. */
   async #projectOf(of: string, { projectFrom, thumbnailOf }: Shelf): Promise<Project | null> {
     const state = this.#store.get();
     const project = projectFrom(state, of, this.#pairs);
@@ -156,9 +167,6 @@ export class Projects {
   #watch(now: State, before: State): void {
     const keeping = now.pair === before.pair ? now.keeping : (this.#keeping.get(subjectOf(now.pair)?.of ?? '') ?? NOTHING_KEPT);
     if (keeping !== now.keeping) this.#store.set({ keeping });
-    const edited = now.found !== before.found || now.motionsElsewhere !== before.motionsElsewhere || OF_EDITS.some((part) => now.edits[part] !== before.edits[part]);
-    const subject = now.pair === before.pair && edited ? subjectOf(now.pair) : null;
-    if (subject !== null && (hasEdits(now.edits) || now.motionsElsewhere !== null)) this.#touch(subject.of, SOON);
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (clip === null || clip.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
@@ -183,7 +191,7 @@ export class Projects {
     this.#written = Promise.all([this.#written, this.#write()]);
   }
 
-  /** The subjects that can be written: not a clip between two states, whose masks do not belong together. */
+  /** The clips that can be written: not one between two states, whose masks do not belong together. */
   #ready(): string[] {
     const { tracked } = this.#store.get();
     const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0));
@@ -212,7 +220,7 @@ export class Projects {
     await Promise.all(written.map((project) => this.#keepFrames(project)));
   }
 
-  /** Writes the project of this subject and returns it; `null` if there is none, or another tab keeps it. */
+  /** Writes the project of this clip and returns it; `null` if there is none, or another tab keeps it. */
   async #put(of: string): Promise<Project | null> {
     const shelf = await this.#load();
     const { owns, put, savedAt, withSaved } = shelf;

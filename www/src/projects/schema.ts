@@ -34,7 +34,7 @@ export function listOf<T>(check: Check<T>, length?: number): Check<readonly T[]>
 }
 
 /** Values by any name. */
-export function mapOf<T>(check: Check<T>): Check<Readonly<Record<string, T>>> {
+export function recordOf<T>(check: Check<T>): Check<Readonly<Record<string, T>>> {
   return (value): value is Readonly<Record<string, T>> => isRecord(value) && Object.values(value).every(check);
 }
 

@@ -9,7 +9,7 @@ import type { Project } from './project.js';
 
 export { framesOf } from './copies.js';
 export { fileOf, projectFromFile } from './file.js';
-export { owns } from './owner.js';
+export { isOwned, owns } from './owner.js';
 export { projectFrom, withProject, withSaved, withoutSaved } from './project.js';
 export { thumbnailOf } from './thumbnail.js';
 
@@ -51,21 +51,21 @@ export async function put(project: Project): Promise<void> {
   changed();
 }
 
-/** Keeps a copy of the frames of this clip or pair. Returns whether there is one. */
+/** Keeps a copy of the frames of this clip. Returns whether there is one. */
 export async function putFrames(of: string, files: readonly File[]): Promise<boolean> {
   const kept = await keepFrames(fileNameOf(of), files);
   changed();
   return kept;
 }
 
-/** The project of this clip or pair; `null` if none is kept. */
+/** The project of this clip; `null` if none is kept. */
 export async function get(of: string, name: string): Promise<Project | null> {
   const file = await (await projects()).read(fileNameOf(of));
   const project = file === null ? null : await projectFromFile(file, name);
   return project?.of === of ? project : null;
 }
 
-/** When the project of this clip or pair was last written, as an ISO 8601 date; empty if none is kept, or a damaged one. */
+/** When the project of this clip was last written, as an ISO 8601 date; empty if none is kept, or a damaged one. */
 export async function savedAt(of: string): Promise<string> {
   const file = await (await projects()).read(fileNameOf(of));
   const header = file === null ? null : await headerOf(file, of).catch(() => null);

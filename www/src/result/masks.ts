@@ -1,5 +1,5 @@
-//! Masks: what is shown, listed and exported as one. A mask is one motion of a pair, a group of them (the motions of one surface, or those
-//! that the user merged), or an object of a whole clip.
+//! Masks: what is shown, listed and exported as one. A mask is one motion of a pair, a group of them (the motions of one surface), or an
+//! object of a whole clip.
 
 import type { Segmentation } from 'veronese';
 
@@ -17,11 +17,6 @@ export interface Mask {
   readonly motions: readonly Motion[];
   readonly pixels: number;
   readonly share: number;
-}
-
-/** Whether a mask of this kind can be ungrouped. */
-export function isMerged(kind: Kind, motions: readonly unknown[]): boolean {
-  return kind === 'groups' && motions.length > 1;
 }
 
 /** The key of a mask's name and colour: the kinds number their masks separately. */
@@ -59,45 +54,4 @@ export function masksOf(segmentation: Segmentation, kind: Kind): Mask[] {
 /** The largest motion of a mask. */
 export function mainMotion(segmentation: Segmentation, kind: Kind, id: number): Motion | null {
   return masksOf(segmentation, kind).find((mask) => mask.id === id)?.motions[0] ?? null;
-}
-
-/** The labels of a mask, one bit each, as `relabel` expects them. */
-export function labelSet(segmentation: Pick<Segmentation, 'motions'>, kind: Kind, id: number): number {
-  return segmentation.motions.reduce((set, { label }) => (maskOf(label, segmentation, kind) === id ? set | (1 << label) : set), 0);
-}
-
-/** The segmentation with other groups: `group` gives the group of each motion. */
-export function regrouped(segmentation: Segmentation, group: (motion: Motion) => number): Segmentation {
-  return { ...segmentation, motions: segmentation.motions.map((motion) => ({ ...motion, group: group(motion) })) };
-}
-
-/** The segmentation with two masks merged under the smaller of their numbers. */
-export function merged(segmentation: Segmentation, kind: Kind, one: number, other: number): Segmentation {
-  const sets = [labelSet(segmentation, kind, one), labelSet(segmentation, kind, other)];
-  const joined = segmentation.motions.filter(({ label }) => ((sets[0]! | sets[1]!) >> label) & 1);
-  const id = Math.min(...joined.map(({ group }) => group));
-  return regrouped(segmentation, (motion) => (joined.includes(motion) ? id : motion.group));
-}
-
-/** The segmentation with a motion in a group of its own, under an unused number. */
-export function separated(segmentation: Segmentation, label: number): Segmentation {
-  const unused = Math.max(...segmentation.motions.map(({ group }) => group)) + 1;
-  return regrouped(segmentation, (motion) => (motion.label === label ? unused : motion.group));
-}
-
-/** The segmentation with a group split into its motions: the largest keeps the number, the others get unused ones. */
-export function ungrouped(segmentation: Segmentation, group: number): Segmentation {
-  const used = new Set(segmentation.motions.map((motion) => motion.group));
-  let first = true;
-  return regrouped(segmentation, (motion) => {
-    if (motion.group !== group) return motion.group;
-    if (first) {
-      first = false;
-      return group;
-    }
-    let free = 0;
-    while (used.has(free)) free += 1;
-    used.add(free);
-    return free;
-  });
 }

@@ -10,9 +10,10 @@ import { FRESH, type Look, type Store } from '../state/state.js';
 import { correctedIn, isSeen, largestChanges, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
+import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import type { Opening } from './opening.js';
-import type { Masks } from './pair/masks.js';
+import type { PairSegmenting } from './pair/segmenting.js';
 import type { PairWorker } from './pair/worker.js';
 import type { Shown } from './shown.js';
 
@@ -25,7 +26,8 @@ interface Parts {
   readonly worker: PairWorker;
   readonly camera: Camera;
   readonly clip: ClipSegmenting;
-  readonly masks: Masks;
+  readonly pair: PairSegmenting;
+  readonly objects: Objects;
   readonly shown: Shown;
   readonly projects: Projects;
 }
@@ -45,26 +47,21 @@ export class Frames {
     const { timeline } = this.#store.get();
     if (timeline === null) return Promise.resolve();
     const places = { ...timeline, [slot]: clamped(Math.round(index), timeline.clip.count) };
-    if (places.first !== null && places.second !== null) this.#apart = places.second - places.first;
+    this.#apart = places.second - places.first;
     return this.#goTo(places);
   }
 
-  /** Steps all frames that are of the clip. */
+  /** Steps both frames. */
   step(by: number): Promise<void> {
     const { timeline } = this.#store.get();
-    const at = timeline?.first ?? timeline?.second ?? null;
-    return at === null ? Promise.resolve() : this.goTo(at + by);
+    return timeline === null ? Promise.resolve() : this.goTo(timeline.first + by);
   }
 
   /** Goes to a frame of the clip. The second frame keeps its distance, except that masks of a clip can be seen up to its ends. */
   goTo(index: number): Promise<void> {
     const { timeline, look } = this.#store.get();
     if (timeline === null) return Promise.resolve();
-    const { first, second, clip } = timeline;
-    if (first === null || second === null) {
-      const slot = first === null ? 'second' : 'first';
-      return this.#goTo({ [slot]: clamped(index, clip.count) });
-    }
+    const { clip } = timeline;
     const apart = this.#apart;
     const [least, most] = look.kind === 'objects' ? [0, clip.count - 1] : [Math.max(0, -apart), clip.count - 1 - Math.max(0, apart)];
     const at = Math.min(Math.max(index, least), most);
@@ -118,7 +115,7 @@ export class Frames {
     then: (found: Project | null) => void = () => undefined,
     as?: number | 'step',
   ): Promise<void> {
-    const { opening, worker, camera, masks, projects } = this.#parts;
+    const { opening, worker, camera, objects, projects } = this.#parts;
     worker.prepare();
     return opening.open(
       async (signal) => {
@@ -128,10 +125,10 @@ export class Frames {
       ({ frames, project }) => {
         const pair = place(frames, this.#store.get().pair);
         if (frames.length > 0) camera.stop();
-        if (project !== null) masks.keep();
+        if (project !== null) objects.finishStroke();
         projects.restore(project, pair);
         if (frames.length > 0 || project !== null) this.#setPair(pair);
-        if (project?.clip) this.#continue(project.clip);
+        if (project !== null) this.#continue(project.clip);
         then(project);
       },
       ({ frames }) => {
@@ -139,7 +136,7 @@ export class Frames {
         for (const frame of frames) {
           const { bitmap, origin } = frame;
           if (frame !== first && frame !== second) bitmap.close();
-          if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
+          if (origin !== undefined && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
         }
       },
       as,
@@ -191,8 +188,9 @@ export class Frames {
   }
 
   #setPair(pair: FramePair): void {
-    const { clip, masks, shown } = this.#parts;
-    masks.leave();
+    const { clip, pair: segmenting, objects, shown } = this.#parts;
+    objects.finishStroke();
+    segmenting.stop();
     const { look, pair: before, viewport, timeline: left } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
     const complete = pair.first !== null && pair.second !== null;
@@ -205,8 +203,8 @@ export class Frames {
     // The objects of a clip are the same in all its frames.
     const same = kind === 'objects' && sameClip;
     const carried: Look = same ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
-    if (!same && timeline !== null && timeline.first !== null && timeline.second !== null) this.#apart = timeline.second - timeline.first;
-    shown.pair(pair, { ...carried, view }, { timeline, tracked, viewport: sameSize ? viewport : WHOLE });
+    if (!same && timeline !== null) this.#apart = timeline.second - timeline.first;
+    shown.pair(pair, { ...carried, view }, { timeline, tracked, forced: null, viewport: sameSize ? viewport : WHOLE });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && !sameClip) left.clip.close();

@@ -7,14 +7,14 @@ import { openClip } from '../clips/open.js';
 import { PageError } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
-import { type ImageFolder, folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable, withPath } from '../frames/files.js';
-import { fetchImage, frameFromBlob } from '../frames/frame.js';
-import { SAMPLES, type Sample, type SampleClip, type SamplePair } from '../frames/samples.js';
+import { type ImageFolder, foldersOf, likelyFrames, selectOpenable, withPath } from '../frames/files.js';
+import { fetchImage, filesOf, frameFromFile } from '../frames/frame.js';
+import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Project } from '../projects/project.js';
 import type { Projects } from '../projects/projects.js';
 import type { FramePair, LoadedFrame, Slot } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { isTracked, lengthOf, masksIn } from '../state/tracked.js';
+import { lengthOf, masksIn } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import { importClasses } from './class-list.js';
@@ -42,23 +42,29 @@ export class Open {
     this.#parts = parts;
   }
 
-  /** Opens a sample and segments it. `swapped`: a pair with the second frame first. */
-  sample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
+  /** Opens a sample and segments it. `ticket`: as `Opening.open` takes it. */
+  sample(sample: Sample = SAMPLES[0], ticket?: number): Promise<void> {
     return this.#parts.frames.open(
-      async () => {
-        if ('frames' in sample) return this.#startOf(await openFolderOf(sample), sample.start);
-        return Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot)));
-      },
+      async () => this.#startOf(await openFolderOf(sample), sample.start),
       pairOf,
-      () => {
-        if (!isTracked(this.#store.get().tracked)) void this.#parts.clip.segment();
-      },
+      () => this.#begin(),
+      ticket,
     );
   }
 
+  /** Begins with the work that was kept last, or with a sample. */
+  async begin(sample: Sample): Promise<void> {
+    // What is opened while the work is being looked for is newer.
+    const ticket = this.#parts.opening.ticket();
+    const last = await this.#parts.projects.last();
+    if (last === null || 'frames' in last) return this.sample(last ?? sample, ticket);
+    await this.#frames(last, null, ticket);
+    if (this.#store.get().pair.first === null) return this.sample(sample, ticket);
+  }
+
   /**
-   * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
-   * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair. A project continues
+   * Opens files. A video or several images are a clip, in the order of their names. One image goes into `slot`; without a slot, it becomes the
+   * missing second frame or the first of a new pair. With the frame that is there it is a clip of two. A project continues
    * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported,
    * and lists of classes.
    */
@@ -77,6 +83,12 @@ export class Open {
     } catch (error) {
       report(this.#store, error);
     }
+  }
+
+  /** Opens the two frames on screen as a clip: those of the camera. */
+  async pair(): Promise<void> {
+    const { first, second } = this.#store.get().pair;
+    if (first !== null && second !== null) await this.files(await filesOf([first, second]));
   }
 
   /** Imports masks for the frames of the open clip. */
@@ -107,29 +119,29 @@ export class Open {
         const images = others.length > 0 ? await this.#chosen(folders, all, signal) : (likely?.images ?? []);
         if (images === null) return [];
         if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
-        if (images.length > 1) source = images;
-        if (images.length > 2) return this.#startOf((clip = await openFolder(images)));
-        if (images.length === 0 && project !== null) return [];
-        if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
-        const { longestSide } = this.#store.get().settings;
-        const read = images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide));
-        // Of several that cannot be read, the first one is named.
-        await Promise.allSettled(read);
-        return Promise.all(read);
+        const [image] = images;
+        if (image === undefined && project !== null) return [];
+        if (image === undefined) throw new PageError('no-image', strings.notices.noFiles);
+        const { pair, settings } = this.#store.get();
+        const beside = images.length > 1 ? null : pair[slot === 'first' || (slot === null && pair.second !== null) ? 'second' : 'first'];
+        if (images.length === 1 && (beside === null || (slot === null && pair.second !== null))) {
+          return [await frameFromFile(image, image.name, settings.longestSide)];
+        }
+        source = beside === null ? images : await filesOf(slot === 'first' ? [image, beside] : [beside, image]);
+        return this.#startOf((clip = await openFolder(source)));
       },
       (frames, pair) => {
         if (frames.length === 2) return pairOf(frames);
         const [frame] = frames;
         if (frame === undefined) return pair;
-        if (slot !== null) return { ...pair, [slot]: frame };
-        return pair.first !== null && pair.second === null ? { ...pair, second: frame } : { first: frame, second: null };
+        return slot === 'second' ? { first: null, second: frame } : { first: frame, second: null };
       },
       (found) => {
         if (opened !== null && found !== opened) this.#store.say(strings.projects.waiting(opened.name));
         else if (leftOut !== '') this.#store.say(leftOut);
         if (source.length > 0) this.#parts.projects.comeFrom(source);
         if (clip === null) return;
-        void this.#checkSizes(clip);
+        if (clip.count > 2) void this.#checkSizes(clip); // of two frames the package says it
         this.#begin();
       },
       ticket,
@@ -175,10 +187,6 @@ export class Open {
     }
   }
 
-  async #frameOfSample(sample: SamplePair, slot: Slot): Promise<LoadedFrame> {
-    const image = await fetchImage(sample[slot]);
-    return { ...(await frameFromBlob(image, image.name, this.#store.get().settings.longestSide)), origin: { sample, slot } };
-  }
 }
 
 function importing(): Promise<typeof import('./clip/importing.js')> {
@@ -186,7 +194,7 @@ function importing(): Promise<typeof import('./clip/importing.js')> {
 }
 
 /** Opens a sample as the folder that it is. */
-async function openFolderOf(sample: SampleClip): Promise<Clip> {
+async function openFolderOf(sample: Sample): Promise<Clip> {
   const images = await Promise.all(sample.frames.map(fetchImage));
   return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
 }

@@ -11,9 +11,7 @@ import { Spans } from './clip/spans.js';
 import { Frames } from './frames.js';
 import { Open } from './open.js';
 import { Opening } from './opening.js';
-import { Masks } from './pair/masks.js';
 import { PairSegmenting } from './pair/segmenting.js';
-import { Solving } from './pair/solving.js';
 import { PairWorker } from './pair/worker.js';
 import { Playing } from './playing.js';
 import { Shown } from './shown.js';
@@ -24,15 +22,15 @@ export interface Session {
   readonly play: Playing;
   readonly camera: Camera;
   readonly shown: Shown;
-  /** Segmenting the pair, and the masks of the pair. */
+  /** The view of the pair. */
   readonly pair: PairSegmenting;
-  readonly masks: Masks;
   /** Segmenting the clip, and the objects of the clip. */
   readonly clip: ClipSegmenting;
   readonly objects: Objects;
   readonly projects: Projects;
-  /** The masks on screen, which undo and redo are about. */
-  edited(): Masks | Objects;
+  /** Takes back the last edit of the objects, which are shown; or brings it back. */
+  undo(): void;
+  redo(): void;
   /** Stops what is being opened, else the run on the pair, else that on the clip. What is on screen stays. */
   cancel(): void;
   /** Shows a notice; with a code it is an error. */
@@ -41,30 +39,35 @@ export interface Session {
 
 export function sessionOf(store: Store): Session {
   const worker = new PairWorker();
-  const solving = new Solving(store, worker);
-  const pair = new PairSegmenting(store, worker, solving);
-  const masks = new Masks(store, solving);
-  const shown = new Shown(store, pair, solving, masks);
+  const pair = new PairSegmenting(store, worker);
+  const shown = new Shown(store, pair);
   const runs = new ClipRuns(store);
   const spans = new Spans(store, runs.segmenter);
   const clip = new ClipSegmenting(store, runs, spans, shown);
   const objects = new Objects(store, new Carrying(store, runs, spans, shown));
   const projects = new Projects(store, clip.solvedPairs);
   const opening = new Opening(store);
-  const camera = new Camera(store, opening, pair, masks, clip);
-  const frames = new Frames(store, { opening, worker, camera, clip, masks, shown, projects });
+  const camera = new Camera(store, { opening, pair, clip, objects, openLast: () => open.pair() });
+  const frames = new Frames(store, { opening, worker, camera, clip, pair, objects, shown, projects });
+  const open = new Open(store, { opening, frames, projects, clip, objects, shown });
   return {
-    open: new Open(store, { opening, frames, projects, clip, objects, shown }),
+    open,
     frames,
     play: new Playing(store, frames, pair),
     camera,
     shown,
     pair,
-    masks,
     clip,
     objects,
     projects,
-    edited: () => (store.get().look.kind === 'objects' ? objects : masks),
+    undo: () => {
+      shown.choose('objects');
+      objects.carrying.undo();
+    },
+    redo: () => {
+      shown.choose('objects');
+      objects.carrying.redo();
+    },
     cancel: () => {
       const { run } = store.get();
       if (opening.isUnderWay) opening.stop();

@@ -12,13 +12,12 @@ export function resultOf(tracked: Tracked | null, { first, second }: FramePair):
   if (tracked === null || first === null || second === null) return null;
   const [found, other] = [frameOf(tracked, first), frameOf(tracked, second)];
   if (found === null) return null;
-  return { segmentation: segmentationOf(found), pair: { first, second }, second: other && segmentationOf(other), waited: 0, under: null };
+  return { segmentation: segmentationOf(found), pair: { first, second }, second: other && segmentationOf(other), waited: 0 };
 }
 
 /** The masks of the clip in a frame that is open. */
 export function frameOf(tracked: Tracked, { origin }: LoadedFrame): TrackedFrame | null {
-  if (origin === undefined || !('clip' in origin) || origin.clip !== tracked.clip) return null;
-  return shownFrames(tracked)[origin.index] ?? null;
+  return origin?.clip === tracked.clip ? (shownFrames(tracked)[origin.index] ?? null) : null;
 }
 
 /** The matrix of what has no motion that is known. */

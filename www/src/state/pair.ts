@@ -1,75 +1,49 @@
-//! The two frames of a pair, and where each comes from.
+//! The two frames of a pair: a clip has both, unless it is one image that waits for another, or the camera's.
 
 import type { Clip } from '../clips/clip.js';
 import type { DecodedFrame } from '../frames/frame.js';
-import type { SamplePair } from '../frames/samples.js';
 
 export type Slot = 'first' | 'second';
 
-/** Where a frame comes from: a clip or a sample pair. */
-export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: SamplePair; readonly slot: Slot };
-
-/** A frame that is open. `origin` is absent for a file of its own and for the camera. */
+/** A frame that is open. */
 export interface LoadedFrame extends DecodedFrame {
-  readonly origin?: Origin;
+  /** Its place in a clip; absent for one image and for the camera. */
+  readonly origin?: { readonly clip: Clip; readonly index: number };
 }
 
 /** The two frames; `null` until a frame is opened. */
 export type FramePair = Readonly<Record<Slot, LoadedFrame | null>>;
 
-/** Identifies a pair by its content; `null` if a frame is missing. */
-export function keyOfPair({ first, second }: FramePair): string | null {
-  return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
-}
-
-/** The subject of work: a clip, or a pair of frames that are of none. */
+/** The clip that work is about. */
 export interface Subject {
-  /** The fingerprint of the clip, or the key of the pair. */
+  /** Its fingerprint. */
   readonly of: string;
   readonly name: string;
   /** Number of frames. */
   readonly frames: number;
   /** The sample that it is, if it is one. */
-  readonly sample?: OfSample;
+  readonly sample?: string;
 }
 
-export interface OfSample {
-  readonly id: string;
-  readonly swapped: boolean;
-}
-
-/** The subject of the work on this pair; `null` if a frame is missing. */
+/** The subject of the work on this pair; `null` if it is of no clip. */
 export function subjectOf(pair: FramePair): Subject | null {
   const clip = timelineOf(pair)?.clip;
-  if (clip !== undefined) return subjectOfClip(clip);
-  const of = keyOfPair(pair);
-  if (of === null) return null;
-  const shown = sampleOf(pair);
-  const sample = shown && { sample: { id: shown.sample.id, swapped: shown.swapped } };
-  return { of, name: `${pair.first!.name}, ${pair.second!.name}`, frames: 2, ...sample };
+  return clip === undefined ? null : subjectOfClip(clip);
 }
 
 export function subjectOfClip({ fingerprint, name, count, sample }: Clip): Subject {
-  return { of: fingerprint, name, frames: count, ...(sample && { sample: { id: sample.id, swapped: false } }) };
+  return { of: fingerprint, name, frames: count, ...(sample && { sample: sample.id }) };
 }
 
-/** The sample pair that is shown; `null` if either frame is anything else. */
-export function sampleOf({ first, second }: FramePair): { readonly sample: SamplePair; readonly swapped: boolean } | null {
-  const [a, b] = [first?.origin, second?.origin];
-  if (!a || !b || !('sample' in a && 'sample' in b) || a.sample !== b.sample || a.slot === b.slot) return null;
-  return { sample: a.sample, swapped: a.slot === 'second' };
-}
-
-/** The open clip and the indices of the two frames in it; `null` for a frame that is not of the clip. */
+/** The open clip and the indices of the two frames in it. */
 export interface Timeline {
   readonly clip: Clip;
-  readonly first: number | null;
-  readonly second: number | null;
+  readonly first: number;
+  readonly second: number;
 }
 
-/** The timeline of a pair; `null` if neither frame is of a clip. */
+/** The timeline of a pair; `null` if it is of no clip. */
 export function timelineOf({ first, second }: FramePair): Timeline | null {
-  const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
-  const clip = a?.clip ?? b?.clip;
-  return clip === undefined ? null : { clip, first: a?.index ?? null, second: b?.clip === clip ? b.index : null };
+  const [a, b] = [first?.origin, second?.origin];
+  return a === undefined || b === undefined ? null : { clip: a.clip, first: a.index, second: b.index };
 }

@@ -1,24 +1,21 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
 import type { ClipPropagation, Segmentation } from 'veronese';
-import { NO_EDITS, type Edits, lastStroke } from '../correction/edits.js';
-import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { ImageFolder } from '../frames/files.js';
-import type { Kept } from './kept.js';
 import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
-/** How the masks on screen came about. */
-export type Cause = 'found' | 'solved' | 'drawn' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'separated' | 'restored' | 'tracked';
-
-/** The run on the pair. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
+/**
+ * The run on the pair. `index` counts stages from 0; `of` is 0 until the number of stages is known. Of what is done, `cause` says whether the
+ * masks on screen were found for the pair, or are those of the clip.
+ */
 export type Run =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
-  | { readonly phase: 'done'; readonly cause: Cause }
-  | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
+  | { readonly phase: 'done'; readonly cause: 'found' | 'tracked' }
+  | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
 
 /** A segmentation with the frames that it belongs to, so that views never combine two requests. */
 export interface Result {
@@ -28,8 +25,6 @@ export interface Result {
   readonly second?: Segmentation | null;
   /** Time from request to result, transfers to and from the worker included, milliseconds. */
   readonly waited: number;
-  /** The last stroke that the labels take into account. */
-  readonly under: Stroke | null;
 }
 
 /** How the result is displayed. Mask numbers refer to the current result and kind. */
@@ -50,11 +45,9 @@ export interface Look extends Painting {
   readonly selected: number | null;
   /** The second frame is drawn warped back by the motion of this mask, so that its pixels stay in place. */
   readonly stabilised: number | null;
-  /** The junctions about which the user does not want to be asked. */
-  readonly dismissed: ReadonlySet<string>;
   /** The objects of a clip that are selected together, `selected` among them; `null` while one is selected alone. */
   readonly among: ReadonlySet<number> | null;
-  /** Names and classes that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
+  /** Names and classes that a person gave to the objects of a clip, by `keyOf`, as the colours. */
   readonly names: Readonly<Record<string, string>>;
   readonly classes: Readonly<Record<string, string>>;
 }
@@ -134,20 +127,14 @@ interface PassingState {
   readonly live: Live | null;
 }
 
-/** The masks of the pair: `session/pair`. */
+/** A view of the pair: `session/pair`. */
 interface PairState {
   readonly settings: Settings;
-  /** The number of motions set for all other pairs, while this pair has its own; otherwise `null`. */
-  readonly motionsElsewhere: Settings['motions'] | null;
+  /** The number of motions for this pair alone, in the place of that of the settings. */
+  readonly forced: number | null;
   readonly run: Run;
   /** The masks on screen, of the pair or of the clip: `session/shown.ts` puts one in the place of the other. */
   readonly result: Result | null;
-  /** The segmentation before corrections. */
-  readonly found: Segmentation | null;
-  /** The edits of this pair. */
-  readonly edits: Edits;
-  /** The edits of other pairs, by `keyOfPair`. */
-  readonly kept: ReadonlyMap<string, Kept>;
 }
 
 /** The objects of clips: `session/clip`. */
@@ -181,11 +168,6 @@ export function isAwaited({ result, run }: State): boolean {
   return result === null && run.phase === 'working';
 }
 
-/** Whether the segmentation was made with the current settings. */
-export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
-  return found !== null && (['motions', 'quality', 'markUnknown'] as const).every((name) => found.settings[name] === settings[name]);
-}
-
 /** Whether the frames on screen are left at once, so that their pair is not segmented. */
 export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
   return playing || scrubbing;
@@ -196,13 +178,8 @@ export function selectedIn({ selected, among }: Look): readonly number[] {
   return [...(among ?? (selected === null ? [] : [selected]))];
 }
 
-/** Whether some strokes are not applied yet. */
-export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
-  return result !== null && lastStroke(edits) !== result.under;
-}
-
 /** The initial values of the parts of a look that belong to one result. */
-export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, dismissed: new Set<string>(), blinking: false, among: null, names: {}, classes: {}, colours: {} } as const;
+export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, among: null, names: {}, classes: {}, colours: {} } as const;
 
 export const INITIAL: State = {
   pair: { first: null, second: null },
@@ -217,12 +194,9 @@ export const INITIAL: State = {
   opening: false,
   automatic: true,
   settings: DEFAULT_SETTINGS,
-  motionsElsewhere: null,
+  forced: null,
   run: { phase: 'idle' },
   result: null,
-  found: null,
-  edits: NO_EDITS,
-  kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, onion: false, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,
   tool: { name: 'look', radius: 8, exact: false, spread: 'both', pointing: 'new' },

@@ -1,10 +1,8 @@
-//! Brush, eraser, polygon and box: the circle under the pointer, what is being drawn, and earlier strokes.
+//! Brush, eraser, polygon and box: the circle under the pointer, and what is being drawn.
 
-import { maskWith, strokesOf } from '../correction/edits.js';
-import { labellingOf, labelsIn } from '../correction/parts.js';
-import { type Path, type Stroke, allowedLabels } from '../correction/strokes.js';
+import type { Path } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
-import { type Colour, cssColour } from '../drawing/palette.js';
+import { cssColour } from '../drawing/palette.js';
 import { Drawing } from '../session/clip/drawing.js';
 import type { Session } from '../session/session.js';
 import type { Pointing, State, Store, ToolName } from '../state/state.js';
@@ -18,9 +16,6 @@ type Point = readonly [number, number];
 /** Directions of the arrow keys. */
 const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** The colour of the eraser, and of strokes whose mask is not in the result. */
-const COLOURLESS: Colour = [20, 20, 20];
-
 /** Radius of the circle for the corners of a box or a polygon, pixels of the picture before it is enlarged. */
 const CORNER = 3;
 
@@ -29,13 +24,11 @@ const NEXT_POINT = 0.3;
 
 export class Brush {
   readonly #store: Store;
-  readonly #session: Session;
   readonly drawing: Drawing;
   readonly #picture: SVGSVGElement;
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #corners = drawn('path', { class: 'corners' });
-  readonly #strokes = drawn('g', {});
   readonly #prompt = drawn('g', {});
   /** The stroke under way, and who takes it: it belongs to the tool and the mask that were selected when it began. */
   #now: { readonly tool: ToolName; readonly points: number[]; readonly take: (path: Path) => void } | null = null;
@@ -46,14 +39,12 @@ export class Brush {
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
-    this.#session = session;
     this.drawing = new Drawing(store, session.objects);
     this.#picture = find(stage, '#strokes', SVGSVGElement);
-    this.#picture.append(this.#strokes, this.#prompt, this.#path, this.#corners, this.#circle);
-    session.masks.finishStroke = () => this.#finish();
+    this.#picture.append(this.#prompt, this.#path, this.#corners, this.#circle);
+    session.objects.finishStroke = () => this.#finish();
     this.#fit(store.get());
     this.#dress(store.get());
-    this.#draw(store.get());
     mountPointing(document, this.#prompt, store);
     mountCursor(find(stage, '.layers', HTMLElement), store);
     store.subscribe((now, before) => {
@@ -64,8 +55,6 @@ export class Brush {
       }
       if (now.tool.name !== before.tool.name) this.#finish();
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
-      const same = now.edits === before.edits && now.tool.name === before.tool.name && now.result === before.result && now.look === before.look;
-      if (!same) this.#draw(now);
     });
   }
 
@@ -118,17 +107,13 @@ export class Brush {
     if (!this.painting) this.#circle.setAttribute('r', '0');
   }
 
-  #beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
-    return (this.#store.get().look.kind === 'objects' ? this.drawing : this.#session.masks).beginStroke(tool);
-  }
-
   /** `pointing`: what a box or a press is, if that is not what is chosen. */
   begin(point: Point, pointing: Pointing | null = null): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
     this.#pressed = true;
     if (!this.#polygon) {
-      const take = tool.name === 'box' ? this.drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.#beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
+      const take = tool.name === 'box' ? this.drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.drawing.beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
       if (take !== null) this.#now = { tool: tool.name, points: [...point], take };
     }
     this.hover(point);
@@ -189,7 +174,7 @@ export class Brush {
 
   #close(erases: boolean): void {
     const points = cornersOf(this.#polygon ?? []);
-    const take = erases ? this.#beginStroke('eraser') : this.#now?.take;
+    const take = erases ? this.drawing.beginStroke('eraser') : this.#now?.take;
     if (!take || !isPolygon(points)) return;
     this.#clear();
     take({ points, radius: 0, filled: true });
@@ -215,21 +200,6 @@ export class Brush {
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
     else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(now)));
-  }
-
-  #draw({ edits, tool, result, found, look }: State): void {
-    if (result === null || found === null || tool.name === 'look') return this.#strokes.replaceChildren();
-    const { segmentation } = result;
-    this.#strokes.replaceChildren(
-      ...strokesOf(edits).map((stroke) => {
-        const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;
-        const colour = mask === null ? COLOURLESS : colourOfMask(mask, look);
-        const className = allowedLabels(stroke, found) === 0 ? 'stroke ineffective' : 'stroke';
-        const { points, radius, filled = false } = stroke;
-        const [line, fill] = [cssColour(colour), filled ? cssColour(colour) : 'none'];
-        return drawn('path', { class: className, d: pathOf(points, filled), 'stroke-width': 2 * radius, stroke: line, fill });
-      }),
-    );
   }
 }
 

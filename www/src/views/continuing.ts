@@ -44,8 +44,8 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
 }
 
 function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFrames }: Whole, session: Session): HTMLElement {
-  const known = sample && sampleCalled(sample.id);
-  const facts = strings.projects.left(frames, new Date(saved), Boolean(known) || hasFrames);
+  const known = sample === undefined ? null : sampleCalled(sample);
+  const facts = strings.projects.left(frames, new Date(saved), known !== null || hasFrames);
   const button = element('button', '', 'work');
   button.type = 'button';
   button.title = name;
@@ -57,7 +57,7 @@ function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFr
   text.append(element('strong', name), element('span', facts, 'faint'));
   button.append(picture, text);
   button.addEventListener('click', () => {
-    if (known) void session.open.sample(known, sample.swapped);
+    if (known !== null) void session.open.sample(known);
     else if (hasFrames) void session.open.files(framesOf(file));
     // Their project is found when they are opened.
     else find(document, '#open-pair', HTMLInputElement).click();

@@ -23,7 +23,8 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   let scores: readonly { motions: number; score: number }[] = [];
 
   const render = (now: State): void => {
-    const { result, settings } = now;
+    const { result, settings, forced } = now;
+    const asked = forced ?? settings.motions;
     if (isAwaited(now)) return;
     const found = result?.segmentation;
     root.hidden = found === undefined || now.look.kind === 'objects';
@@ -35,8 +36,8 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
     const differs = found.settings.motions === 'auto' && shortest !== undefined && shortest.motions !== found.count;
     choice.hidden = !differs;
     choice.textContent = differs ? strings.otherThanShortest(found.count, shortest.motions) : '';
-    const offered = Math.max(OFFERED, found.count, typeof settings.motions === 'number' ? settings.motions : 0, ...scored.map(({ motions }) => motions));
-    automatic.setAttribute('aria-pressed', String(settings.motions === 'auto'));
+    const offered = Math.max(OFFERED, found.count, typeof asked === 'number' ? asked : 0, ...scored.map(({ motions }) => motions));
+    automatic.setAttribute('aria-pressed', String(asked === 'auto'));
     const focused = buttons.contains(document.activeElement) ? document.activeElement?.textContent : null;
     buttons.replaceChildren(
       ...Array.from({ length: offered }, (_, k) => {
@@ -45,7 +46,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         const longer = score === undefined || shortest === undefined ? null : score - shortest.score;
         const button = element('button', String(motions), 'number');
         button.type = 'button';
-        button.setAttribute('aria-pressed', String(settings.motions === motions));
+        button.setAttribute('aria-pressed', String(asked === motions));
         button.classList.toggle('found', motions === found.count);
         button.setAttribute('aria-label', strings.forceNumber(motions, longer));
         if (longer !== null) button.title = strings.descriptionOf(longer);
@@ -60,7 +61,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   store.subscribe((now, before) => {
     if (now.pair !== before.pair) scores = [];
     if (now.live !== null) root.hidden = true;
-    else if (now.result !== before.result || now.settings !== before.settings || before.live !== null || isAwaited(before)) render(now);
+    else if (now.result !== before.result || now.settings !== before.settings || now.forced !== before.forced || before.live !== null || isAwaited(before)) render(now);
   });
   if (store.get().live === null) render(store.get());
 }

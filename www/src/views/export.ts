@@ -1,4 +1,4 @@
-//! Taking the result away: as files, to the clipboard, as something that makes it again.
+//! Taking the frame on screen away, with its masks: as files, to the clipboard, as something that makes them again.
 
 import { strings } from '../common/strings.js';
 import { ANNOTATIONS } from '../export/annotations.js';
@@ -7,9 +7,10 @@ import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
 import { linkFor } from '../export/link.js';
 import { commandFor, scriptFor } from '../export/reproduce.js';
 import { save } from '../export/save.js';
-import { pairExported, settled } from '../session/exported.js';
 import type { Session } from '../session/session.js';
-import { type Result, type State, type Store, isPending } from '../state/state.js';
+import type { Settings } from '../state/settings.js';
+import type { Result, State, Store } from '../state/state.js';
+import { isDrafting } from '../state/tracked.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
 
@@ -18,12 +19,18 @@ const BUTTONS: readonly Format[] = [LABELS, MASKS, RESULT];
 
 /** Texts to copy; those with a result need one. */
 const COPIES: readonly { readonly title: string; readonly text: (state: State, result: Result) => string }[] = [
-  { title: 'command', text: ({ settings, look }, result) => commandFor(result, settings, look) },
-  { title: 'JavaScript', text: ({ settings, look }, result) => scriptFor(result, settings, look) },
+  { title: 'command', text: (state, result) => commandFor(result, settingsOf(state), state.look) },
+  { title: 'JavaScript', text: (state, result) => scriptFor(result, settingsOf(state), state.look) },
 ];
+
+function settingsOf({ settings, forced }: State): Settings {
+  return { ...settings, motions: forced ?? settings.motions };
+}
 
 export function mountExport(root: HTMLElement, store: Store, session: Session): void {
   const need: (HTMLButtonElement | HTMLSelectElement)[] = [];
+  /** Of the motions of a pair, not of objects. */
+  const ofMotions: HTMLElement[] = [];
   const button = (text: string, run: (result: Result) => void, className = 'button small quiet'): HTMLButtonElement => {
     const made = element('button', text, className);
     made.type = 'button';
@@ -37,22 +44,24 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
 
   const download = async (format: Format): Promise<void> => {
     try {
-      const state = await settled(store);
-      if (state.result === null) return;
-      const content = await format.make(exportOf(state.result, state.look, background.checked));
-      save(content, format.type, format.file);
-      // The report alone holds no masks.
-      if (format !== RESULT && !isPending(state)) pairExported(store, state);
+      const { result, look, tracked } = store.get();
+      if (result === null) return;
+      if (look.kind === 'objects' && isDrafting(tracked)) return session.say(strings.notices.drafts);
+      save(await format.make(exportOf(result, look, background.checked)), format.type, format.file);
     } catch {
       session.say(strings.errors.notWritten(format.title), 'not-written');
     }
   };
-  find(root, '.export-buttons', HTMLElement).append(...BUTTONS.map((format) => button(format.title, () => void download(format), 'button small')));
+  const buttons = BUTTONS.map((format) => button(format.title, () => void download(format), 'button small'));
+  find(root, '.export-buttons', HTMLElement).append(...buttons);
+  ofMotions.push(...buttons.filter((_, k) => BUTTONS[k] === RESULT));
 
   const select = find(root, 'select', HTMLSelectElement);
   const hint = find(root, '#format-hint', HTMLElement);
   const background = find(root, '#with-background', HTMLInputElement);
-  select.append(...FORMATS.map(({ id, title }) => new Option(title, id)));
+  const options = FORMATS.map(({ id, title }) => new Option(title, id));
+  select.append(...options);
+  ofMotions.push(...options.filter((_, k) => FORMATS[k] === RESULT));
   need.push(select);
   const chosen = (): Format => FORMATS[select.selectedIndex] ?? LABELS;
   const tell = (): void => {
@@ -65,14 +74,16 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
 
   const copies = find(root, '.copies', HTMLElement);
   copies.append(button('Copy picture', (result) => copyPicture(OVERLAY.make(exportOf(result, store.get().look)) as Promise<Blob>, session)));
-  copies.append(...COPIES.map(({ title, text }) => button(`Copy ${title}`, (result) => copyText(text(store.get(), result), strings.copiedText(title), session))));
+  const texts = COPIES.map(({ title, text }) => button(`Copy ${title}`, (result) => copyText(text(store.get(), result), strings.copiedText(title), session)));
+  copies.append(...texts);
+  ofMotions.push(...texts);
   const link = element('button', 'Copy link', 'button small quiet');
   link.type = 'button';
   link.addEventListener('click', () => copyText(linkFor(store.get(), location.href), strings.copiedText('link with the settings'), session));
   copies.append(link);
 
   const render = ({ result, live, look }: State): void => {
-    root.hidden = look.kind === 'objects';
+    for (const one of ofMotions) one.hidden = look.kind === 'objects';
     for (const control of need) control.disabled = result === null || live !== null;
   };
   store.subscribe(render);

@@ -26,7 +26,7 @@ export function mountLook(form: HTMLFormElement, store: Store, session: Session)
   for (const view of views) {
     view.addEventListener('change', () => store.look({ view: view.value as Look['view'], blinking: false }));
   }
-  for (const kind of Object.values(kinds)) kind.addEventListener('change', () => session.shown.kind(kind.value as Kind));
+  for (const kind of Object.values(kinds)) kind.addEventListener('change', () => session.shown.choose(kind.value as Kind));
   for (const input of switches) input.addEventListener('change', () => store.look({ [input.name]: input.checked }));
 
   store.subscribe(({ look, pair, tracked, live }, before) => {

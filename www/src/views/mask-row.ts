@@ -3,7 +3,7 @@
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { colourOfMask, isShown } from '../drawing/paint.js';
-import { colourFromHex, cssColour, hexColour } from '../drawing/palette.js';
+import { cssColour, hexColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, Store } from '../state/state.js';
 import { find } from './markup.js';
@@ -24,9 +24,6 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   const colour = find(row, '[data-action=colour]', HTMLInputElement);
   const name = find(row, '.motion-name', HTMLInputElement);
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const mergeWith = find(row, '[data-action=merge-with]', HTMLSelectElement);
-  const merge = find(row, '[data-action=merge]', HTMLButtonElement);
-  const masks = of === 'pair' ? session.masks : session.objects;
 
   shown.addEventListener('change', () => {
     const hidden = new Set(store.get().look.hidden);
@@ -34,24 +31,9 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     else hidden.add(id);
     store.look({ hidden, solo: null });
   });
-  let picking = false;
-  colour.addEventListener('input', () => {
-    masks.setAppearance(id, { colour: colourFromHex(colour.value) }, picking);
-    picking = true;
-  });
-  colour.addEventListener('change', () => (picking = false));
-  name.addEventListener('change', () => masks.setAppearance(id, { name: name.value.trim() }));
-  name.addEventListener('blur', () => (name.readOnly = true));
-  name.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter' && name.readOnly) return rename(name);
-    if (event.key === 'Escape' && !name.readOnly) name.value = nameOf(store.get().look, id);
-    else if (event.key !== 'Enter') return;
-    name.blur();
-  });
+  colour.disabled = of === 'pair';
+  if (of === 'pair') name.removeAttribute('title');
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
-  // A select changes with every arrow key, so it only chooses.
-  mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
-  merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
   // A row that is selected has its actions elsewhere, and another one that was loses its own: nothing may move away from a pointer that is down.
   let pressed = false;
   const select = ({ target }: Event): void => {
@@ -81,8 +63,6 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     colour.setAttribute('aria-label', strings.colourOf(called));
     name.setAttribute('aria-label', strings.nameOf(called));
     solo.setAttribute('aria-label', strings.soloOf(called));
-    mergeWith.setAttribute('aria-label', strings.mergeWithOf(called));
-    merge.setAttribute('aria-label', strings.mergeOf(called));
   };
   return { element: row, refresh };
 }
@@ -105,8 +85,9 @@ document.addEventListener('click', (event) => {
   if (isSecond(event)) rename(pressedName!);
 }, true);
 
-/** Lets a person change a name, which a click only selects. */
-function rename(name: HTMLInputElement): void {
+/** Lets a person change the name of an object, which a click only selects. */
+export function rename(name: HTMLInputElement): void {
+  if (name.closest('#objects') === null) return;
   name.readOnly = false;
   name.focus();
   name.select();
@@ -114,20 +95,8 @@ function rename(name: HTMLInputElement): void {
 
 /** Lets a person change the name of the mask that is selected. */
 export function renameSelected(): void {
-  const name = document.querySelector<HTMLInputElement>('.motions:not([hidden], [inert]) .selected .motion-name');
+  const name = document.querySelector<HTMLInputElement>('#objects:not([hidden], [inert]) .selected .motion-name');
   if (name !== null) rename(name);
-}
-
-/** Lists the masks that this one can be merged with. Options that stay are left alone: their list may be open, or one chosen. */
-export function offerMerging(row: HTMLElement, others: readonly number[], look: Look, ready = true): void {
-  const merge = find(row, '[data-action=merge-with]', HTMLSelectElement);
-  const button = find(row, '[data-action=merge]', HTMLButtonElement);
-  const offered = [new Option(strings.mergeWith, ''), ...others.map((id) => new Option(nameOf(look, id), String(id)))];
-  const textOf = (options: Iterable<HTMLOptionElement>): string => Array.from(options, ({ text, value }) => `${value} ${text}`).join();
-  if (textOf(offered) !== textOf(merge.options)) merge.replaceChildren(...offered);
-  merge.disabled = !ready;
-  button.disabled = !ready || merge.value === '';
-  merge.hidden = button.hidden = others.length === 0;
 }
 
 /** The mask whose row has the focus. */

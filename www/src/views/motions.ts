@@ -1,15 +1,15 @@
-//! The list of masks: colour, name, share and motion of each, with its actions.
+//! The list of the masks of a pair: share and motion of each, with what can be seen of it.
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { centreOf, partsOf, visibleParts } from '../result/describe.js';
-import { UNLABELLED, type Mask, isMerged, masksOf } from '../result/masks.js';
+import { type Mask, masksOf } from '../result/masks.js';
 import { NOTATIONS } from '../result/matrices.js';
 import type { Session } from '../session/session.js';
 import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find, prefersStillness } from './markup.js';
-import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
+import { focusRow, heldRow, maskRow } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
 
 type Segmentation = Result['segmentation'];
@@ -35,12 +35,10 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
     }
     if (awaited) return;
     if (other) {
-      const typed = typedName(list, before.look.kind);
       const held = heldRow(list);
       list.replaceChildren();
       rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, look, result, store, session);
-      if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
-      if (held !== null && typed === null) focusRow(list, held, look);
+      if (held !== null) focusRow(list, held, look);
     }
     if (other || look !== before.look) for (const refresh of rows) refresh(look);
   });
@@ -48,23 +46,6 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
 
 function whyNone({ phase }: State['run']): string {
   return phase === 'failed' || phase === 'cancelled' ? strings.noMasks[phase] : strings.noMasksYet;
-}
-
-/** Carries a name that is being typed over to the new list; `null` if none is. */
-function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, now: State) => void) | null {
-  const field = document.activeElement;
-  if (!(field instanceof HTMLInputElement) || !field.matches('.motion-name') || !list.contains(field)) return null;
-  const mask = field.closest<HTMLElement>('[data-mask]')?.dataset.mask;
-  const { value, readOnly, selectionStart, selectionEnd } = field;
-  return (filled, { look }) => {
-    const same = filled.querySelector<HTMLInputElement>(`[data-mask="${mask}"] .motion-name`);
-    if (same === null || look.kind !== kind) return;
-    same.readOnly = readOnly;
-    same.focus({ preventScroll: true });
-    if (readOnly) return;
-    same.value = value;
-    same.setSelectionRange(selectionStart, selectionEnd);
-  };
 }
 
 function fillList(list: HTMLElement, look: Look, result: Result, store: Store, session: Session): Refresh[] {
@@ -83,7 +64,7 @@ function fillList(list: HTMLElement, look: Look, result: Result, store: Store, s
       return refresh;
     }
     describe(row, mask, look, segmentation);
-    const refreshMore = fillMore(row, mask, masks, store, session);
+    const refreshMore = fillMore(row, mask, store, session);
     return (now) => {
       refresh(now);
       refreshMore(now);
@@ -118,8 +99,8 @@ export function toggleStabilised(store: Store, id: number): void {
   else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !prefersStillness() });
 }
 
-/** Connects what only masks of a pair have: the motion to copy, stabilising, merging within the pair. */
-function fillMore(row: HTMLElement, { id, motions }: Mask, masks: readonly Mask[], store: Store, session: Session): Refresh {
+/** Connects what only masks of a pair have: the motion to copy, stabilising, and becoming an object. */
+function fillMore(row: HTMLElement, { id, motions }: Mask, store: Store, session: Session): Refresh {
   const { matrix } = motions[0]!;
   const body = find(row, 'tbody', HTMLElement);
   for (const entries of [matrix.slice(0, 3), matrix.slice(3, 6)]) {
@@ -136,12 +117,16 @@ function fillMore(row: HTMLElement, { id, motions }: Mask, masks: readonly Mask[
   }
   const stabilise = find(row, '[data-action=stabilise]', HTMLButtonElement);
   stabilise.addEventListener('click', () => toggleStabilised(store, id));
-  const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
-  ungroup.hidden = !isMerged(store.get().look.kind, motions);
-  ungroup.addEventListener('click', () => session.masks.ungroup(id));
-  const others = masks.map((mask) => mask.id).filter((other) => other !== id && other !== UNLABELLED);
+  const take = find(row, '[data-action=take]', HTMLButtonElement);
+  take.hidden = id === 0;
+  take.addEventListener('click', async () => {
+    const selected = await session.objects.take(id);
+    if (selected === null) return;
+    session.shown.choose('objects');
+    store.look({ selected });
+  });
   return (look) => {
-    offerMerging(row, others, look);
+    take.setAttribute('aria-label', strings.takeOf(nameOf(look, id)));
     stabilise.setAttribute('aria-pressed', String(look.stabilised === id));
     stabilise.setAttribute('aria-label', strings.stabiliseOf(nameOf(look, id)));
   };

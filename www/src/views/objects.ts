@@ -2,12 +2,13 @@
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
+import { colourFromHex } from '../drawing/palette.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
-import type { Result, State, Store } from '../state/state.js';
+import type { Look, Result, State, Store } from '../state/state.js';
 import { type Life, isDrafting, livesOf, shownFrames } from '../state/tracked.js';
 import { find } from './markup.js';
-import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
+import { focusRow, heldRow, maskRow, rename } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
 import { chooseTool } from './tools.js';
 
@@ -23,7 +24,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
   const add = find(foot, '#add-object', HTMLButtonElement);
   const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
-    if (session.objects.addObject()) chooseTool(store, 'brush');
+    if (session.objects.addObject()) chooseTool(store, session, 'brush');
   });
 
   store.subscribe((now, before) => {
@@ -76,6 +77,12 @@ function rowOf(id: number, store: Store, session: Session): Row {
   const lock = find(row, '[data-action=lock]', HTMLButtonElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
+  const mergeWith = find(row, '[data-action=merge-with]', HTMLSelectElement);
+  const merge = find(row, '[data-action=merge]', HTMLButtonElement);
+  mountAppearance(row, id, store, session);
+  // A select changes with every arrow key, so it only chooses.
+  mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
+  merge.addEventListener('click', () => session.objects.merge(id, Number(mergeWith.value)));
   doubtful.addEventListener('click', () => {
     session.frames.goToDoubtful(id);
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
@@ -118,6 +125,8 @@ function rowOf(id: number, store: Store, session: Session): Row {
       doubtful.textContent = strings.doubtful(life.doubtful.index);
       doubtful.setAttribute('aria-label', strings.doubtfulOf(called, life.doubtful.index));
     }
+    mergeWith.setAttribute('aria-label', strings.mergeWithOf(called));
+    merge.setAttribute('aria-label', strings.mergeOf(called));
     split.setAttribute('aria-label', strings.splitOf(called));
     remove.setAttribute('aria-label', strings.removeOf(called));
   };
@@ -128,4 +137,36 @@ function factsOf(life: Life | null, away: boolean): string {
   if (life === null) return strings.newObjectHelp;
   const lives = strings.life(life.first, life.last);
   return away ? `${lives} · ${strings.away}` : lives;
+}
+
+/** Connects the colour and the name, which a person can change. */
+function mountAppearance(row: HTMLElement, id: number, store: Store, session: Session): void {
+  const colour = find(row, '[data-action=colour]', HTMLInputElement);
+  const name = find(row, '.motion-name', HTMLInputElement);
+  let picking = false;
+  colour.addEventListener('input', () => {
+    session.objects.setAppearance(id, { colour: colourFromHex(colour.value) }, picking);
+    picking = true;
+  });
+  colour.addEventListener('change', () => (picking = false));
+  name.addEventListener('change', () => session.objects.setAppearance(id, { name: name.value.trim() }));
+  name.addEventListener('blur', () => (name.readOnly = true));
+  name.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter' && name.readOnly) return rename(name);
+    if (event.key === 'Escape' && !name.readOnly) name.value = nameOf(store.get().look, id);
+    else if (event.key !== 'Enter') return;
+    name.blur();
+  });
+}
+
+/** Lists the objects that this one can be merged with. Options that stay are left alone: their list may be open, or one chosen. */
+function offerMerging(row: HTMLElement, others: readonly number[], look: Look, ready: boolean): void {
+  const merge = find(row, '[data-action=merge-with]', HTMLSelectElement);
+  const button = find(row, '[data-action=merge]', HTMLButtonElement);
+  const offered = [new Option(strings.mergeWith, ''), ...others.map((id) => new Option(nameOf(look, id), String(id)))];
+  const textOf = (options: Iterable<HTMLOptionElement>): string => Array.from(options, ({ text, value }) => `${value} ${text}`).join();
+  if (textOf(offered) !== textOf(merge.options)) merge.replaceChildren(...offered);
+  merge.disabled = !ready;
+  button.disabled = !ready || merge.value === '';
+  merge.hidden = button.hidden = others.length === 0;
 }

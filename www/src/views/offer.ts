@@ -36,7 +36,7 @@ export class Offer {
 
   async #take(session: Session): Promise<void> {
     await session.objects.point(this.#pixel);
-    chooseTool(this.#store, 'box');
+    chooseTool(this.#store, session, 'box');
     this.#store.set({ tool: { ...this.#store.get().tool, pointing: 'add' } });
   }
 }

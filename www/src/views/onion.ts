@@ -17,7 +17,7 @@ export function mountOnion(picture: SVGSVGElement, store: Store): void {
   let waiting = 0;
   const draw = ({ look, tracked, pair, ...now }: State): void => {
     const origin = pair.first?.origin;
-    const at = origin && 'clip' in origin && origin.clip === tracked?.clip ? origin.index : NaN;
+    const at = origin !== undefined && origin.clip === tracked?.clip ? origin.index : NaN;
     const seen = look.onion && look.kind === 'objects' && look.view !== 'second' && !isPassing(now);
     const paths = (seen ? SIDES : []).flatMap(({ by, name }) => {
       const runs = tracked?.frames[at + by]?.runs;

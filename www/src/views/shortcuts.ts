@@ -35,7 +35,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
   const toggle = (name: 'outlines' | 'onion' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
   const step = (by: number) => () => stepOne(store, session, 'both', by);
-  const tool = (name: ToolName) => () => chooseTool(store, name);
+  const tool = (name: ToolName) => () => chooseTool(store, session, name);
   const inClip = (): boolean => store.get().timeline !== null;
   const steps = (target: EventTarget | null): boolean => inClip() && !takesArrows(target) && !(isReached(target, '.layers') && store.get().viewport.zoom > 1);
   const pans = (target: EventTarget | null): boolean => store.get().viewport.zoom > 1 && !takesArrows(target);
@@ -64,13 +64,13 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['b', 'p'], run: tool('brush') },
     { keys: ['e'], run: tool('eraser') },
     { keys: ['w'], run: tool('polygon') },
-    { keys: ['x'], run: () => chooseBox(store) },
+    { keys: ['x'], run: () => chooseBox(store, session) },
     { keys: ['['], run: () => changeRadius(store, 0.75) },
     { keys: [']'], run: () => changeRadius(store, 4 / 3) },
     { keys: ['q'], run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
-    { keys: ['z'], run: () => session.edited().undo(), command: true, shift: false },
-    { keys: ['z'], run: () => session.edited().redo(), command: true, shift: true },
-    { keys: ['y'], run: () => session.edited().redo(), command: true },
+    { keys: ['z'], run: () => session.undo(), command: true, shift: false },
+    { keys: ['z'], run: () => session.redo(), command: true, shift: true },
+    { keys: ['y'], run: () => session.redo(), command: true },
     { keys: ['escape'], run: () => session.cancel() },
     { keys: NUMBERS, run: (name) => selectMask(store, session, Number(name)) },
     { keys: ['f2'], run: renameSelected },
@@ -81,7 +81,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['<'], run: () => void copyMask(session, -1) },
     { keys: ['f'], run: () => toggleBlinking(store), shift: true },
     { keys: ['s'], run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['g'], run: () => session.shown.choose(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
     { keys: ['l'], run: toggle('outlines'), shift: false },
     { keys: ['u'], run: toggle('onion') },
     { keys: ['a'], run: toggle('arrows') },
@@ -118,8 +118,8 @@ function toClass(): void {
 }
 
 /** Chooses the box; if it is chosen, what a press is next. */
-function chooseBox(store: Store): void {
-  if (store.get().tool.name !== 'box') return chooseTool(store, 'box');
+function chooseBox(store: Store, session: Session): void {
+  if (store.get().tool.name !== 'box') return chooseTool(store, session, 'box');
   const choices = [...document.querySelectorAll<HTMLInputElement>('[name=pointing]:enabled')];
   choices[(choices.findIndex(({ checked }) => checked) + 1) % choices.length]?.click();
 }

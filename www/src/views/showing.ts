@@ -2,7 +2,7 @@
 //! solved. Then it plays.
 //! Whoever touches or opens anything first is not interrupted.
 
-import type { SampleClip } from '../frames/samples.js';
+import type { Sample } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { prefersStillness } from './markup.js';
@@ -11,7 +11,7 @@ import { prefersStillness } from './markup.js';
 const TIMES = 2;
 const TOUCHES = ['pointerdown', 'keydown', 'wheel', 'dragover'] as const;
 
-export function mountShowing(root: Window, store: Store, session: Session, sample: SampleClip): void {
+export function mountShowing(root: Window, store: Store, session: Session, sample: Sample): void {
   if (prefersStillness()) return;
   let touched = false;
   const touch = (): void => {

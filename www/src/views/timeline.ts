@@ -8,8 +8,6 @@ import { contextOf, element, find } from './markup.js';
 
 /** Smallest width of a thumbnail, screen pixels. */
 const THUMB = 72;
-/** Position of a hidden mark, share of the strip. */
-const OUTSIDE = '-1';
 /** Page keys move by this share of the clip. */
 const PAGE = 0.1;
 /** How many frames arrow keys step with Shift. */
@@ -63,9 +61,9 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     track.setAttribute('aria-valuetext', strings.frameSlider(at, clip.count, clip.times?.[at] ?? null));
     for (const { slot, input, readout } of sliders) {
       const index = timeline[slot];
-      root.style.setProperty(`--${slot}`, index === null ? OUTSIDE : String((index + 0.5) / clip.count));
+      root.style.setProperty(`--${slot}`, String((index + 0.5) / clip.count));
       input.max = String(clip.count - 1);
-      if (index !== null) input.value = String(index);
+      input.value = String(index);
       readout.textContent = placeOf(timeline, index);
     }
   });
@@ -111,22 +109,21 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
   });
 }
 
-/** The index of the frame on screen: the first, unless only the second is of the clip. */
+/** The index of the frame on screen. */
 export function currentFrame(timeline: Timeline | null): number {
-  return timeline?.first ?? timeline?.second ?? 0;
+  return timeline?.first ?? 0;
 }
 
-/** Steps one frame or both. A frame that is not of the clip starts from the position of the other. */
+/** Steps one frame or both. */
 export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
   const { timeline } = store.get();
   if (timeline === null) return;
   if (which === 'both') void session.frames.step(by);
-  else void session.frames.choose(which, (timeline[which] ?? timeline.first ?? timeline.second ?? 0) + by);
+  else void session.frames.choose(which, timeline[which] + by);
 }
 
-function placeOf(timeline: Timeline | null, index: number | null): string {
+function placeOf(timeline: Timeline | null, index: number): string {
   if (timeline === null) return '';
-  if (index === null) return strings.anotherFile;
   return strings.frameAt(index, timeline.clip.times?.[index] ?? null);
 }
 

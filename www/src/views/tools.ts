@@ -4,6 +4,7 @@ import type { ClipPropagation } from 'veronese';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store, ToolName } from '../state/state.js';
+import { isCorrecting } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -19,18 +20,18 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const redo = find(form, '#redo', HTMLButtonElement);
 
   form.addEventListener('submit', (event) => event.preventDefault());
-  for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
+  for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, session, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
   spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as ClipPropagation } }));
   exact.addEventListener('change', () => store.set({ tool: { ...store.get().tool, exact: exact.checked } }));
-  undo.addEventListener('click', () => session.edited().undo());
-  redo.addEventListener('click', () => session.edited().redo());
+  undo.addEventListener('click', () => session.undo());
+  redo.addEventListener('click', () => session.redo());
 
   const render = (): void => {
-    const { tool, result, edits, live, look, tracked } = store.get();
+    const { tool, result, live, look, tracked } = store.get();
     const clip = look.kind === 'objects' ? tracked : null;
-    // A pair has no objects that could be new.
-    if (clip === null && tool.name === 'box') return chooseTool(store, 'look');
+    // Masks of a pair are a view: there is nothing to correct, nor could an object be new.
+    if (clip === null && tool.name === 'box') return chooseTool(store, session, 'look');
     const usable = result !== null && live === null;
     for (const radio of radios) {
       radio.checked = radio.value === tool.name;
@@ -45,25 +46,25 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0);
       help.classList.toggle('away', tool.name !== name);
     }
-    undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');
-    redo.disabled = clip === null ? edits.done === edits.actions.length : clip.future.length === 0;
+    undo.disabled = tracked === null || (tracked.past.length === 0 && !isCorrecting(tracked.run));
+    redo.disabled = tracked === null || tracked.future.length === 0;
   };
   store.subscribe((now, before) => {
-    const same = (['tool', 'result', 'edits', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
+    const same = (['tool', 'result', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
     if (!same || now.look.kind !== before.look.kind || now.look.selected !== before.look.selected) render();
   });
   render();
 }
 
-/** Selects a tool. For painting it shows the first frame, and selects the second-largest motion if no mask is selected. */
-export function chooseTool(store: Store, name: ToolName): void {
+/** Selects a tool. For drawing it shows the first frame and the objects of the clip, and selects one if none is. */
+export function chooseTool(store: Store, session: Session, name: ToolName): void {
+  if (name !== 'look') session.shown.choose('objects');
   const { tool, look, result } = store.get();
   if (name === 'box' && look.kind !== 'objects') return;
   store.set({ tool: { ...tool, name } });
   if (name === 'look') return;
   const { motions } = result?.segmentation ?? { motions: [] };
-  const second = motions[1] ?? motions[0];
-  const selected = look.selected ?? (second === undefined ? null : look.kind === 'groups' ? second.group : second.label);
+  const selected = look.selected ?? (motions[1] ?? motions[0])?.label ?? null;
   store.look({ view: 'first', blinking: false, stabilised: null, selected });
 }
 

@@ -1,44 +1,49 @@
 //! The camera, switched on and off. It owns the live view.
 
 import type { Store } from '../../state/state.js';
+import type { Objects } from '../clip/objects.js';
 import type { ClipSegmenting } from '../clip/segmenting.js';
 import type { Opening } from '../opening.js';
-import type { Masks } from '../pair/masks.js';
 import type { PairSegmenting } from '../pair/segmenting.js';
 import { LiveView } from './live.js';
 
+/** The parts that make way for it. */
+interface Parts {
+  readonly opening: Opening;
+  readonly pair: PairSegmenting;
+  readonly clip: ClipSegmenting;
+  readonly objects: Objects;
+  /** Opens its last two frames, which are on screen. */
+  readonly openLast: () => Promise<void>;
+}
+
 export class Camera {
   readonly #store: Store;
-  readonly #opening: Opening;
-  readonly #segmenting: PairSegmenting;
-  readonly #masks: Masks;
-  readonly #clip: ClipSegmenting;
+  readonly #parts: Parts;
   readonly #live: LiveView;
 
-  constructor(store: Store, opening: Opening, segmenting: PairSegmenting, masks: Masks, clip: ClipSegmenting) {
+  constructor(store: Store, parts: Parts) {
     this.#store = store;
-    this.#opening = opening;
-    this.#segmenting = segmenting;
-    this.#masks = masks;
-    this.#clip = clip;
+    this.#parts = parts;
     this.#live = new LiveView(store);
   }
 
-  /** Switches the camera on, or off: its last two frames become a pair. */
+  /** Switches the camera on, or off: its last two frames become a clip. */
   toggle(): Promise<void> {
     if (this.#store.get().live !== null) {
       this.stop();
-      return this.#segmenting.segment();
+      return this.#parts.openLast();
     }
-    return this.#opening.open(
+    return this.#parts.opening.open(
       (signal) => {
         signal.addEventListener('abort', () => this.stop());
         return this.#live.start();
       },
       (show) => {
-        this.#masks.leave();
+        this.#parts.objects.finishStroke();
+        this.#parts.pair.stop();
         const { timeline } = this.#store.get();
-        this.#clip.of(null);
+        this.#parts.clip.of(null);
         show();
         timeline?.clip.close();
       },

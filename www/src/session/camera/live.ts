@@ -3,7 +3,6 @@
 import { type Pixels, type Segmentation, Segmenter } from 'veronese';
 import { PageError } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
-import { NO_EDITS } from '../../correction/edits.js';
 import { frameFromBitmap } from '../../frames/frame.js';
 import type { Kind } from '../../result/masks.js';
 import { segmentationFrom } from '../../state/objects.js';
@@ -89,7 +88,7 @@ export class LiveView {
     const { look } = this.#store.get();
     this.#kind = look.kind === 'objects' ? 'groups' : look.kind;
     // As of motions, the numbers of objects are their labels.
-    this.#show(first.value, { timeline: null, tracked: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, kind: 'motions', view: 'second' } });
+    this.#show(first.value, { timeline: null, tracked: null, forced: null, look: { ...look, ...FRESH, kind: 'motions', view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {
@@ -142,7 +141,7 @@ export class LiveView {
           milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;
           if (before !== null) {
             const pair = { first: before.frame, second: frame };
-            yield { result: { segmentation: before.segmentation, pair, second: segmentation, waited, under: null }, rate: 1000 / milliseconds };
+            yield { result: { segmentation: before.segmentation, pair, second: segmentation, waited }, rate: 1000 / milliseconds };
           }
           before = { frame, segmentation };
         }

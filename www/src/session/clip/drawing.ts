@@ -4,9 +4,9 @@
 import type { ClipPropagation } from 'veronese';
 import { strings } from '../../common/strings.js';
 import { smallerPieces } from '../../correction/pieces.js';
-import { type Runs, packed, unpacked } from '../../correction/runs.js';
-import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
-import { UNLABELLED, keyOf } from '../../result/masks.js';
+import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
+import { type Path, type StrokeTool, eachPixel } from '../../correction/strokes.js';
+import { UNLABELLED, keyOf, maskOf } from '../../result/masks.js';
 import { type Spread, seenOf } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
 import type { Pointing, Store } from '../../state/state.js';
@@ -30,7 +30,7 @@ export class Drawing {
    * Begins a stroke over the frame on screen, with the selected object. Returns what takes its path, or `null`, with a notice, if nothing
    * can be painted.
    */
-  beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
+  beginStroke(tool: StrokeTool): ((path: Path) => void) | null {
     const at = this.#objects.frameToCorrect();
     const own = this.#store.get().look.selected;
     if (at === null) return null;
@@ -104,6 +104,19 @@ export class Drawing {
     const labels = before.map((label, p) => (mask[p] !== own ? 0 : tracked.locked.has(label) ? UNLABELLED : own));
     this.#paint(to, [[own, labels]]);
     return to;
+  }
+
+  /** Makes a new object of a mask of the pair on screen; the other frames follow. Returns its number. */
+  take(mask: number): number | null {
+    const at = this.#objects.frameToCorrect();
+    const number = at === null ? null : this.#objects.newNumber();
+    const { tracked, result, look } = this.#store.get();
+    const masks = tracked?.frames[at?.index ?? -1]?.runs;
+    if (at === null || number === null || result === null || masks === undefined) return null;
+    const { segmentation } = result;
+    const found = unpacked(resized(packed(segmentation.labels, segmentation.width, segmentation.height), masks));
+    this.#paint(at.index, [[number, found.map((label) => (maskOf(label, segmentation, look.kind) === mask ? number : 0))]]);
+    return number;
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */

@@ -86,7 +86,7 @@ export class ClipFrames {
 
 /** Whether a frame is that of the clip with this index, at the size for this longest side. */
 export function isFrameOf({ origin, full, width }: LoadedFrame, clip: Clip, index: number, longestSide: number): boolean {
-  return origin !== undefined && 'clip' in origin && origin.clip === clip && origin.index === index && smaller(full, longestSide).width === width;
+  return origin?.clip === clip && origin.index === index && smaller(full, longestSide).width === width;
 }
 
 /** The package may take the buffer. */

@@ -12,8 +12,9 @@ import type { Store } from '../../state/state.js';
 import { type Notes, isDrafting, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
-/** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}, {@link Objects.point}. */
+/** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}, {@link Objects.take}, {@link Objects.point}. */
 interface Drawing {
+  take(mask: number): number | null;
   copyMask(by: 1 | -1): number | null;
   split(id: number): void;
   beginPrompt(pointing: 'new'): ((path: { readonly points: readonly number[] }) => void) | null;
@@ -24,6 +25,8 @@ export class Objects {
   readonly carrying: Carrying;
   /** Draws; loaded when it is used, and `null`, with a notice, if it cannot be. Set by the brush. */
   drawing: () => Promise<Drawing | null> = () => Promise.resolve(null);
+  /** Ends the stroke that is being drawn, before other frames are shown. Set by the brush. */
+  finishStroke: () => void = () => undefined;
 
   constructor(store: Store, carrying: Carrying) {
     this.#store = store;
@@ -57,6 +60,11 @@ export class Objects {
     if (this.#store.get().pair === pair) drawing?.beginPrompt('new')?.({ points: pixel });
   }
 
+  /** Makes a new object of a mask of the pair on screen; the other frames follow. Returns its number. */
+  async take(mask: number): Promise<number | null> {
+    return (await this.drawing())?.take(mask) ?? null;
+  }
+
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
   async split(id: number): Promise<void> {
     (await this.drawing())?.split(id);
@@ -67,14 +75,6 @@ export class Objects {
     const number = this.takesCorrections() ? this.newNumber() : null;
     if (number !== null) this.#store.look({ selected: number });
     return number !== null;
-  }
-
-  undo(): void {
-    this.carrying.undo();
-  }
-
-  redo(): void {
-    this.carrying.redo();
   }
 
   /** Locks the objects, or unlocks them if all are locked: nothing changes what is locked. */

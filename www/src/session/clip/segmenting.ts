@@ -63,12 +63,11 @@ export class ClipSegmenting {
    * there; what is outside stays, and corrections are applied again.
    */
   async segment(): Promise<void> {
-    const { tracked, settings: own, motionsElsewhere } = this.#store.get();
+    const { tracked, settings: own } = this.#store.get();
     if (tracked === null) return;
     const { clip, range } = tracked;
-    // The number of motions of a single pair is not that of the clip.
     const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
-    const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
+    const settings = { ...own, longestSide: alone ? own.longestSide : tracked.longestSide };
     const { longestSide, ...options } = settings;
     const { pairs } = this.#knownOf(clip, range, settings);
     const frames = new ClipFrames(clip, longestSide, range);

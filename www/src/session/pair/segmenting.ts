@@ -1,61 +1,63 @@
-//! Segmenting the pair on screen with the current settings, first fast and then as well as they ask for. The result and what is running
-//! are in the state.
+//! Segmenting the pair on screen with the current settings, first fast and then as well as they ask for: a view of two frames, which takes no
+//! corrections. The result and what is running are in the state.
 
+import type { Segmentation } from 'veronese';
 import type { Settings } from '../../state/settings.js';
-import { type Run, type Store, isCurrent, isPassing, isPending } from '../../state/state.js';
+import { FRESH, type Result, type Run, type Store, isPassing } from '../../state/state.js';
 import { fail } from '../failures.js';
-import type { Solving } from './solving.js';
 import type { PairWorker } from './worker.js';
 
 /** The state of a run before its first stage. */
-export const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 };
+export const STARTING: Run = { phase: 'working', stage: '', index: 0, of: 0 };
 
 export class PairSegmenting {
   readonly #store: Store;
   readonly #worker: PairWorker;
-  readonly #solving: Solving;
 
-  constructor(store: Store, worker: PairWorker, solving: Solving) {
+  constructor(store: Store, worker: PairWorker) {
     this.#store = store;
     this.#worker = worker;
-    this.#solving = solving;
   }
 
   /** Changes settings and segments the pair again. */
   change(settings: Partial<Settings>): void {
-    const { settings: before, motionsElsewhere } = this.#store.get();
-    this.#store.set({ settings: { ...before, ...settings }, motionsElsewhere: settings.motions === undefined ? motionsElsewhere : null });
-    // The masks of a clip stay until it is segmented again.
+    const { settings: before, forced } = this.#store.get();
+    this.#store.set({ settings: { ...before, ...settings }, forced: settings.motions === undefined ? forced : null });
+    this.#again();
+  }
+
+  /** Sets the number of motions for this pair alone. */
+  forceMotions(forced: number): void {
+    this.#store.set({ forced });
+    this.#again();
+  }
+
+  /** The masks of a clip stay until it is segmented again. */
+  #again(): void {
     const { live, look } = this.#store.get();
     if (live === null && look.kind !== 'objects') void this.segment();
   }
 
-  /** Sets the number of motions for this pair alone. */
-  forceMotions(motions: number): void {
-    const { settings, motionsElsewhere } = this.#store.get();
-    this.change({ motions });
-    this.#store.set({ motionsElsewhere: motionsElsewhere ?? settings.motions });
-  }
-
   /** Segments the pair with the current settings; idle if a frame is missing. */
   async segment(): Promise<void> {
-    const { pair, settings } = this.#store.get();
-    const { first, second } = pair;
-    this.#solving.stop();
+    const { pair: { first, second }, settings: { longestSide: _, ...settings }, forced } = this.#store.get();
+    this.stop();
     if (first === null || second === null) return this.#store.set({ run: { phase: 'idle' } });
     this.#store.set({ run: STARTING });
+    const pair = { first, second };
+    const options = { ...settings, motions: forced ?? settings.motions };
     const began = performance.now();
     try {
       // A fast preview of a new pair, shown until the best result is ready.
-      if (settings.quality === 'best' && this.#store.get().result === null) {
-        const preview = await this.#worker.run({ first, second }, { ...settings, quality: 'fast' });
+      if (options.quality === 'best' && this.#store.get().result === null) {
+        const preview = await this.#worker.run(pair, { ...options, quality: 'fast' });
         if (preview === null) return;
-        await this.#solving.accept(preview, { first, second }, began, false);
+        this.#show(preview, pair, began);
       }
-      const segmentation = await this.#worker.run({ first, second }, settings, ({ stage, index, of }) =>
-        this.#store.set({ run: { phase: 'working', work: 'segmenting', stage, index, of } }),
-      );
-      if (segmentation !== null) await this.#solving.accept(segmentation, { first, second }, began, true);
+      const segmentation = await this.#worker.run(pair, options, ({ stage, index, of }) => this.#store.set({ run: { phase: 'working', stage, index, of } }));
+      if (segmentation === null) return;
+      this.#show(segmentation, pair, began);
+      this.#store.set({ run: { phase: 'done', cause: 'found' } });
     } catch (error) {
       fail(this.#store, error);
     }
@@ -69,13 +71,23 @@ export class PairSegmenting {
 
   /** Stops at once; the last result stays. */
   cancel(): void {
-    this.#solving.stop();
+    this.stop();
     this.#store.set({ run: { phase: 'cancelled' } });
   }
 
-  /** Resumes what was cancelled. */
-  again(): void {
-    if (isCurrent(this.#store.get())) this.#solving.settle(isPending(this.#store.get()) ? 'solved' : 'found');
-    else void this.segment();
+  /** Stops what others take the place of. */
+  stop(): void {
+    this.#worker.cancel();
+  }
+
+  /** Another number of motions numbers them anew. */
+  #show(segmentation: Segmentation, pair: Result['pair'], began: number): void {
+    const { result, look } = this.#store.get();
+    const { hidden, solo, stabilised, selected } = FRESH;
+    const anew = result !== null && result.segmentation.count !== segmentation.count;
+    this.#store.set({
+      result: { segmentation, pair, waited: performance.now() - began },
+      look: anew ? { ...look, hidden, solo, stabilised, selected } : look,
+    });
   }
 }

@@ -1,8 +1,7 @@
 //! The only access to the worker of the pair, and the owner of the request under way. The latest request wins: a new one aborts the one
 //! before, as `cancel` does. The package then ends the worker, and the next request starts a new one.
 
-import { type Pixels, type Progress, type Segmentation, Segmenter } from 'veronese';
-import type { Settings } from '../../state/settings.js';
+import { type Pixels, type Progress, type SegmentOptions, type Segmentation, Segmenter } from 'veronese';
 
 interface Pair {
   readonly first: Pixels;
@@ -22,38 +21,19 @@ export class PairWorker {
   }
 
   /** Segments a pair; `null` if the request was cancelled or replaced by another. Throws the package's errors. */
-  run(pair: Pair, settings: Settings, onProgress: (progress: Progress) => void = () => undefined): Promise<Segmentation | null> {
-    const { longestSide: _, ...options } = settings;
-    return this.#request((signal) =>
-      this.#segmenter.segmentPair(pixelsOf(pair.first), pixelsOf(pair.second), {
-        ...options,
-        signal,
-        onProgress: (progress) => {
-          if (!signal.aborted) onProgress(progress);
-        },
-      }),
-    );
-  }
-
-  /** Solves the labels again given evidence; otherwise like {@link run}. */
-  relabel(pair: Pair, segmentation: Segmentation, evidence: Uint16Array): Promise<Segmentation | null> {
-    return this.#request((signal) =>
-      this.#segmenter.relabel(pixelsOf(pair.first), pixelsOf(pair.second), segmentation, evidence, { signal }),
-    );
-  }
-
-  cancel(): void {
-    this.#current?.abort();
-    this.#current = null;
-  }
-
-  async #request(ask: (signal: AbortSignal) => Promise<Segmentation>): Promise<Segmentation | null> {
+  async run(pair: Pair, options: SegmentOptions, onProgress: (progress: Progress) => void = () => undefined): Promise<Segmentation | null> {
     this.cancel();
     const request = new AbortController();
     this.#current = request;
     const { signal } = request;
     try {
-      const segmentation = await ask(signal);
+      const segmentation = await this.#segmenter.segmentPair(pixelsOf(pair.first), pixelsOf(pair.second), {
+        ...options,
+        signal,
+        onProgress: (progress) => {
+          if (!signal.aborted) onProgress(progress);
+        },
+      });
       return signal.aborted ? null : segmentation;
     } catch (error) {
       if (signal.aborted) return null;
@@ -61,6 +41,11 @@ export class PairWorker {
     } finally {
       if (this.#current === request) this.#current = null;
     }
+  }
+
+  cancel(): void {
+    this.#current?.abort();
+    this.#current = null;
   }
 }
 

@@ -1,0 +1,220 @@
+//! Two frames are a clip: found, corrected, undone and kept like any other. The motions of the two are a view, which changes nothing.
+
+import { type Page } from '@playwright/test';
+import { encodeColourPng } from 'veronese/codecs';
+
+import { type Upload, axe, chooseMotions, clipDone, clipInNode, differences, done, drag, expect, goTo, kept, labelsOnCanvas, motionsChosen, openAdvanced, openEmpty, openExport, openSample, reloadEmpty, rename, segmentedInNode, shown, square, test, undoAll, upload, withSamples, withoutStorage } from './support.js';
+
+/** Frames of a square that moves right and down. */
+function frames(count: number): Promise<Upload[]> {
+  return Promise.all(Array.from({ length: count }, (_, k) => square(`f${k}.png`, 160, 96, 3 * k, k)));
+}
+
+/** Opens frames, which are segmented by themselves. */
+async function openPair(page: Page, files: Upload[]): Promise<void> {
+  await holdAutomatic(page);
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toHaveText('f0-f1.png, 2 frames, 160 × 96');
+  await clipDone(page);
+}
+
+/** The page without frames, with quality fast, where clips are segmented when they are opened. */
+async function holdAutomatic(page: Page): Promise<void> {
+  await openEmpty(page, 'groups');
+  await page.getByLabel('Segment a clip when it is opened').check();
+}
+
+const undo = (page: Page) => page.locator('#undo');
+
+test('two frames have objects in both, which are corrected, undone and kept like those of a longer clip', async ({ page }) => {
+  const files = await frames(4);
+  const pair = files.slice(0, 2);
+  const found = await clipInNode(pair, { quality: 'fast' });
+  await openPair(page, pair);
+  await page.locator('#kinds [value=objects]').check();
+  await expect(page.locator('#clip-status')).toHaveText('One object in 2 frames.');
+  expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+  await goTo(page, 1);
+  expect(differences(await labelsOnCanvas(page), found[1]!)).toBe(0);
+  await goTo(page, 0);
+
+  await test.step('they are kept before anything is done', async () => {
+    await kept(page);
+    await reloadEmpty(page);
+    await upload(page, pair);
+    await expect(page.locator('#clip-status')).toHaveText('Continued: one object in 2 frames.');
+    await goTo(page, 0); // it was written with the frame that was on screen then
+  });
+
+  await test.step('a stroke is carried to the other frame; undo and redo', async () => {
+    await page.locator('#tools [value=brush]').check();
+    await drag(page, [0.75, 0.2], [0.85, 0.25]);
+    await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+    const at = Math.round(0.225 * 96) * 160 + Math.round(0.8 * 160);
+    expect((await labelsOnCanvas(page))[at]).toBe(1);
+    await page.keyboard.press('Control+z');
+    await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+    expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+    await page.keyboard.press('Control+y');
+    expect((await labelsOnCanvas(page))[at]).toBe(1);
+    await rename(page, '#objects', 1, 'Square');
+    await page.keyboard.press('Control+z');
+    await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Object 1');
+    await kept(page);
+
+    // Also after a reload.
+    await reloadEmpty(page);
+    await upload(page, pair);
+    await expect(undo(page)).toBeEnabled();
+    await goTo(page, 0);
+    await page.keyboard.press('Control+z');
+    await expect(page.locator('#clip-status')).toHaveText(/^Undone in /);
+    expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+    await page.keyboard.press('Control+y');
+    expect((await labelsOnCanvas(page))[at]).toBe(1);
+    await page.keyboard.press('Control+y');
+    await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Square');
+  });
+
+  await test.step('replaced and put back, swapped, and after another pair it is as it was', async () => {
+    const name = page.locator('#objects .motion-name').nth(1);
+    for (const [k, clip] of [[3, 'f0-f3.png'], [1, 'f0-f1.png']] as const) {
+      await page.locator('#inspect').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
+      await page.getByLabel('Replace the second frame').setInputFiles([files[k]!]);
+      await expect(page.locator('#clip-name')).toContainText(clip);
+      await done(page);
+      await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', k === 1 ? 'done' : 'idle');
+    }
+    await expect(name).toHaveValue('Square');
+    await page.locator('#swap').click();
+    await expect(page.locator('#caption')).toHaveText('Frame 1');
+    await expect(name).toHaveValue('Square');
+    await page.locator('#swap').click();
+    await withSamples(page);
+    await openSample(page, 'Parallax');
+    await shown(page, 'first', '400 × 300');
+    await upload(page, pair);
+    await expect(name).toHaveValue('Square');
+    await expect(undo(page)).toBeEnabled();
+    await undoAll(page);
+    expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+  });
+});
+
+test('the motions of two frames are a view: tools and undo are about the objects; what is chosen stays', async ({ page }) => {
+  await page.goto('./#sample=intel-two-cars&quality=fast&masks=motions');
+  await clipDone(page);
+  await done(page);
+  const rows = page.locator('#motions > li');
+  await expect(page.locator('#look [value=motions]')).toBeChecked();
+  expect(await rows.count()).toBeGreaterThan(2);
+  await expect(rows.nth(1).locator('[type=color]')).toBeDisabled();
+  await rows.nth(1).locator('.motion-name').dblclick({ position: { x: 12, y: 10 } });
+  await expect(rows.nth(1).locator('.motion-name')).toHaveAttribute('readonly');
+  expect(await axe(page)).toEqual([]);
+
+  await page.keyboard.press('b');
+  await expect(page.locator('#look [value=objects]')).toBeChecked();
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await page.keyboard.press('g');
+  await done(page);
+  await expect(page.locator('#look [value=groups]')).toBeChecked();
+  await page.keyboard.press('Control+z');
+  await expect(page.locator('#look [value=objects]')).toBeChecked();
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+});
+
+test('the status says how many motions or groups are found, and whether as many as asked', async ({ page }) => {
+  await openEmpty(page);
+  await upload(page, await frames(2));
+  await shown(page, 'second', 'f1.png');
+  const status = page.locator('#status');
+  await page.evaluate(() => (location.hash = '#quality=fast&masks=motions&motions=10'));
+  await done(page);
+  const count = await page.locator('#motions > li').count();
+  expect(count).toBeLessThan(10);
+  await expect(status).toHaveText(/\. Of the 10 motions requested, only (one|\d) could be told apart\.$/);
+  await chooseMotions(page, 2);
+  await done(page);
+  await expect(status).toHaveText(/^2 motions found in [\d.]+\sm?s, as requested\.$/);
+  await page.locator('#look [value=groups]').check();
+  await expect(status).toHaveText(/^One object found in [\d.]+\sm?s, with 2 motions as requested\.$/);
+  // It is a number for these two frames.
+  await openAdvanced(page);
+  await upload(page, await frames(4));
+  await expect(page.locator('#clip-name')).toContainText('4 frames');
+  await done(page);
+  await motionsChosen(page, 10);
+  const [first, second] = await frames(2);
+  expect((await segmentedInNode(first!, second!, { quality: 'fast', motions: 10 })).count).toBe(count);
+});
+
+test('where nothing is kept, leaving asks first only with unsaved corrections; the camera leaves a clip', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await withoutStorage(page);
+  const files = await frames(2);
+  await openPair(page, files);
+  await page.locator('#kinds [value=objects]').check();
+  const asks = (): Promise<boolean> => page.evaluate(() => !window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+  expect(await asks()).toBe(false);
+  await rename(page, '#objects', 1, 'Square');
+  expect(await asks()).toBe(true);
+  await openExport(page);
+  await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
+  await expect.poll(asks).toBe(false);
+  await page.keyboard.press('Escape');
+  await rename(page, '#objects', 1, 'Box');
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live/);
+  expect(await asks()).toBe(true);
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await expect(page.locator('#clip-name')).toHaveText(/^camera 1-camera 2\.png/);
+  await clipDone(page);
+  await upload(page, files);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
+});
+
+/** A textured thing of two parts that touch, before a textured ground: between the frames one part moves by 6 pixels, the other by 4.2. */
+async function parts(name: string, t: number): Promise<Upload> {
+  const [width, height] = [320, 240];
+  const wave = (x: number, y: number, seed: number): number => 128 + 60 * Math.sin(0.31 * x + 0.17 * y + seed) + 50 * Math.cos(0.29 * y - 0.11 * x * seed);
+  const pixels = new Uint8Array(width * height * 3);
+  for (let p = 0; p < width * height; p++) {
+    const [x, y] = [p % width, Math.floor(p / width)];
+    const inside = (left: number, top: number, across: number, down: number): boolean => x >= left && x < left + across && y >= top && y < top + down;
+    const upper = inside(100 + 6 * t, 60, 90, 70);
+    const lower = inside(100 + 4.2 * t, 130, 90, 50);
+    const [u, seed] = upper ? [x - 6 * t, 2] : lower ? [x - 4.2 * t, 3] : [x, 1];
+    for (let c = 0; c < 3; c++) pixels[3 * p + c] = wave(u + 37 * c, y, seed);
+  }
+  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+}
+
+test('a part that moves by itself becomes an object of its own', async ({ page }) => {
+  await holdAutomatic(page);
+  await upload(page, [await parts('first.png', 0), await parts('second.png', 1)]);
+  await clipDone(page);
+  await done(page);
+  const rows = page.locator('#motions > li');
+  await expect(rows).toHaveCount(3);
+  await expect(page.locator('#clip-status')).toHaveText('One object in 2 frames.'); // they touch
+  const groups = await labelsOnCanvas(page);
+  await rows.nth(2).locator('.motion-words').click();
+  await rows.nth(2).getByText('More', { exact: true }).click();
+  await rows.nth(2).getByRole('button', { name: 'Make an object of Object 2' }).click();
+  await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 2 frames have changed.');
+  await expect(page.locator('#look [value=objects]')).toBeChecked();
+  await expect(page.locator('#objects > .selected')).toHaveAttribute('data-mask', '2');
+  const objects = await labelsOnCanvas(page);
+  expect([...groups.keys()].filter((p) => (groups[p] === 2) !== (objects[p] === 2)).length).toBe(0);
+  await goTo(page, 1);
+  // It has gone on with its own motion.
+  const [left, right] = [104, 194];
+  const there = await labelsOnCanvas(page);
+  const covered = Array.from({ length: right - left }, (_, k) => there[155 * 320 + left + k]).filter((object) => object === 2).length;
+  expect(covered / (right - left)).toBeGreaterThan(0.9);
+  await undo(page).click();
+  await expect(page.locator('#clip-status')).toHaveText('Undone in 2 frames.');
+  expect(await labelsOnCanvas(page)).not.toContain(2);
+});
