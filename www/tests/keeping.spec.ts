@@ -118,7 +118,7 @@ test('accepted frames stay accepted and as they are when something is corrected 
   const before = await allMasks(page);
   await page.getByRole('button', { name: 'New object' }).click();
   await drag(page, at(32, 30), at(52, 30));
-  await expect(status(page)).toHaveText(/^Corrected/);
+  await expect(status(page)).toHaveText(/^Corrected: .* 2 accepted frames stay as they are\.$/);
   await expect(reviewed).toHaveText(`2 of ${COUNT} accepted`);
   const now = await allMasks(page);
   expect([1, 4].map((index) => differences(now[index]!, before[index]!))).toEqual([0, 0]);

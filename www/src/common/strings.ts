@@ -145,7 +145,9 @@ export const strings = {
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
     started: 'Segmenting…',
     drafting: 'Segmenting… Drafts for now.',
-    corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,
+    /** `accepted`: frames that it may not change. */
+    corrected: (changed: number, accepted: number): string =>
+      `Corrected: the masks of ${frames(changed)} have changed.${changed > 1 && accepted > 0 ? ` ${accepted === 1 ? 'One accepted frame stays as it is' : `${whole.format(accepted)} accepted frames stay as they are`}.` : ''}`,
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     locked: (): string => 'Locked.',

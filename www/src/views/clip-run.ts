@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, isDrafting, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
+import { type Tracked, acceptedIn, isDrafting, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipRun(root: HTMLElement, store: Store, session: Session): void {
@@ -60,7 +60,8 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : isDrafting(tracked) ? tracking.drafting : tracking.started;
     case 'done':
-      if (run.cause === 'corrected' || run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
+      if (run.cause === 'corrected') return tracking.corrected(run.changed, acceptedIn(tracked).length);
+      if (run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
       return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)), run.notes);
     case 'cancelled':
     case 'failed':

@@ -60,7 +60,7 @@ function fillList(list: HTMLElement, look: Look, result: Result, store: Store, s
     const [main] = mask.motions;
     if (main === undefined) {
       find(row, '.words', HTMLElement).textContent = strings.unknownWords;
-      for (const selector of ['.direction', '[data-action=stabilise]', '.more']) find(row, selector, Element).remove();
+      for (const selector of ['.direction', '[data-action=stabilise]', '[data-action=take]', '.more']) find(row, selector, Element).remove();
       return refresh;
     }
     describe(row, mask, look, segmentation);
