@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 use crate::support::moving::{
-    Thing, correct, frames_of, mask, moving_and_resting, moving_and_resting_clip, one_number, options, scene, thing,
-    whole,
+    Thing, correct, frames_of, mask, moving_and_resting, moving_and_resting_clip, noisy_scene, one_number, options,
+    scene, thing, whole,
 };
 use veronese::clip::{
     Annotations, ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Painted, SegmentedClip, Spread,
@@ -78,14 +78,16 @@ fn repeated_frames_do_not_stop_what_is_covered() {
     assert_covered_and_back(things, 22);
 }
 
-/// As where the rate of frames was raised.
+/// As where the rate of frames was raised, from 30 to 60 or from 24 to 60; a codec changes the frames that it repeats.
 #[test]
 fn what_moves_is_seen_in_repeated_frames_too() {
-    let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * (t / 2) as f32, 44.0])];
-    let (frames, truths) = scene(1, &things, 20);
-    for (quality, look_ahead) in [(Quality::Best, None), (Quality::Best, Some(0)), (Quality::Fast, Some(0))] {
-        let done = segment(&frames, options(quality, look_ahead));
-        one_number(&done, &truths, 1, 4..20);
+    let doubled = thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * (t / 2) as f32, 44.0]);
+    let three_two = thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * ((2 * t + 1) / 5) as f32, 44.0]);
+    for (things, made) in [([doubled], scene as fn(u64, &[Thing], usize) -> _), ([three_two], noisy_scene)] {
+        let (frames, truths) = made(1, &things, 20);
+        for (quality, look_ahead) in [(Quality::Best, None), (Quality::Best, Some(0)), (Quality::Fast, Some(0))] {
+            one_number(&segment(&frames, options(quality, look_ahead)), &truths, 1, 4..20);
+        }
     }
 }
 

@@ -5,7 +5,8 @@ use super::runs::Runs;
 use super::saved::saved;
 use crate::clip::options::model;
 use crate::frame::Plane;
-use crate::labelling::BACKGROUND;
+use crate::labelling::{BACKGROUND, is_background};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::pair::figure::GROUND;
 use crate::pair::frame_motions::{FrameMotions, Prior};
@@ -52,6 +53,17 @@ impl Flow {
         let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
         let inside = px >= 0.0 && py >= 0.0 && px < self.width as f64 && py < self.height() as f64;
         inside.then_some([px as usize, py as usize])
+    }
+
+    /// Whether nothing moves in a pair, neither the camera nor an object: recordings repeat frames.
+    pub(crate) fn is_still(&self) -> bool {
+        let [right, bottom] = [self.width - 1, self.height() - 1];
+        let still = |(x, y): (usize, usize)| {
+            let [u, v] = self.at(x, y);
+            u * u + v * v < f64::from(Model::DEFAULT.position_sigma).powi(2)
+        };
+        self.labels.iter().all(|&label| is_background(label))
+            && [(0, 0), (right, 0), (0, bottom), (right, bottom)].into_iter().all(still)
     }
 
     /// Height of the frame, working pixels.

@@ -35,6 +35,11 @@ impl Record {
         self.palette.size()
     }
 
+    /// Whether nothing moves in its pairs.
+    pub(crate) fn is_still(&self) -> bool {
+        [&self.onward, &self.back].into_iter().flatten().all(Flow::is_still)
+    }
+
     /// Prices of borders between labels.
     pub(crate) fn borders(&self, smoothness: f32) -> Borders {
         self.unit_borders.times(smoothness)

@@ -1,5 +1,6 @@
 //! Frames in, objects of the working size out.
 
+use std::collections::VecDeque;
 use std::rc::Rc;
 
 use super::carry::continued_labels;
@@ -14,6 +15,10 @@ use crate::frame::{Frame, Plane};
 use crate::options::Quality;
 use crate::pair::frame_motions::{Expected, FrameMotions, Prior, frame_motions};
 use crate::pair::settings::Settings;
+
+/// A frame in which nothing moves is no evidence of ground if something moves in one so near to it: frames may be shown several times, as
+/// where the rate was raised, or what moves stops for a moment. From 12 to 60 frames a second the third of five is this far from the others.
+const REACH: usize = 2;
 
 /// Follows objects through a clip.
 #[derive(Debug)]
@@ -30,6 +35,10 @@ pub(crate) struct Tracker {
     waits: bool,
     /// The expectation of a fast stream for the next pair.
     prior: Option<Prior>,
+    /// The newest frames of a whole clip, which wait for what moves after them, and the odds of their own pairs.
+    held: VecDeque<(Rc<Record>, Plane)>,
+    /// Frames since something moved.
+    still: usize,
     rounds: [Round; 2],
     identities: Identities,
     /// The frame that went to the rounds last.
@@ -89,6 +98,8 @@ impl Tracker {
             last: None,
             waits: false,
             prior: None,
+            held: VecDeque::new(),
+            still: REACH,
             rounds,
             identities,
             latest: None,
@@ -186,13 +197,16 @@ impl Tracker {
         if self.waits {
             frames.extend(self.advance(last, None, None));
         }
+        while !self.held.is_empty() {
+            frames.extend(self.release());
+        }
         while let Some(foreground) = self.rounds[0].next() {
             frames.extend(self.second_round(foreground));
         }
         while let Some(foreground) = self.rounds[1].next() {
             frames.push(self.tracked(foreground));
         }
-        (self.count, self.size, self.waits, self.prior) = (0, None, false, None);
+        (self.count, self.size, self.waits, self.prior, self.still) = (0, None, false, None, REACH);
         frames
     }
 
@@ -220,7 +234,10 @@ impl Tracker {
     ) -> Option<Tracked> {
         let (back_odds, back) = back.unzip();
         // Of object against background from the frame's pairs; zero where there is no pair.
+        let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
         let odds = match (onward_odds, back_odds) {
+            (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
+            (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
             (Some(mut odds), Some(other)) => {
                 let share = model().backward;
                 odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
@@ -239,6 +256,20 @@ impl Tracker {
         let record = Rc::new(Record { index: self.count, frame: kept, repeats, palette, unit_borders, onward, back });
         self.count += 1;
         self.latest = Some(Latest { record: record.clone(), frame, odds: odds.clone() });
+        self.held.push_back((record, odds));
+        let holds = if self.options.look_ahead.is_none() { REACH } else { 0 };
+        if self.held.len() > holds { self.release() } else { None }
+    }
+
+    /// The frame that is held longest goes to the rounds.
+    fn release(&mut self) -> Option<Tracked> {
+        let (record, mut odds) = self.held.pop_front()?;
+        let before = if record.back.is_none() { REACH } else { self.still };
+        self.still = if record.is_still() { before.saturating_add(1) } else { 0 };
+        let mut after = self.held.iter().take_while(|(record, _)| record.back.is_some());
+        if (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still()) {
+            odds.values_mut().fill(0.0);
+        }
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
     }

@@ -51,7 +51,19 @@ pub fn thing(seed: u64, size: [f32; 2], place: fn(usize) -> [f32; 2]) -> Thing {
 }
 
 /// A frame of a scene, and which thing (from 1) is seen at each pixel.
-pub fn frame([width, height]: [usize; 2], ground: &Texture, things: &[Thing], t: usize) -> (Frame, Vec<usize>) {
+pub fn frame(size: [usize; 2], ground: &Texture, things: &[Thing], t: usize) -> (Frame, Vec<usize>) {
+    noisy_frame(size, ground, things, t, 0.0)
+}
+
+/// As [`frame`], each pixel with noise of at most so many grey levels, other noise in each frame.
+fn noisy_frame(
+    [width, height]: [usize; 2],
+    ground: &Texture,
+    things: &[Thing],
+    t: usize,
+    noise: f64,
+) -> (Frame, Vec<usize>) {
+    let mut random = Random::from_seed(t as u64);
     let (mut rgba, mut truth) = (Vec::new(), Vec::new());
     for y in 0..height {
         for x in 0..width {
@@ -63,7 +75,8 @@ pub fn frame([width, height]: [usize; 2], ground: &Texture, things: &[Thing], t:
                 }
                 None => ground.at(x as f32, y as f32),
             };
-            rgba.extend(colour.map(|c| c.clamp(0.0, 255.0) as u8));
+            let added = random.uniform(-noise, noise) as f32;
+            rgba.extend(colour.map(|c| (c + added).clamp(0.0, 255.0) as u8));
             rgba.push(255);
             truth.push(seen.map_or(0, |k| k + 1));
         }
@@ -93,6 +106,12 @@ pub fn scene(ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Ve
 pub fn scene_of(size: [usize; 2], ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Vec<usize>>) {
     let ground = Texture::new(ground);
     (0..count).map(|t| frame(size, &ground, things, t)).unzip()
+}
+
+/// A scene as a codec or a camera gives it, with noise of 2 grey levels.
+pub fn noisy_scene(ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Vec<usize>>) {
+    let ground = Texture::new(ground);
+    (0..count).map(|t| noisy_frame(SIZE, &ground, things, t, 2.0)).unzip()
 }
 
 /// The label that most pixels of a thing have in a frame, and the IoU of both; none where less than 40 pixels of it are in sight.

@@ -1,6 +1,6 @@
 //! An object as last seen, and where it is expected.
 
-use super::sight::{Sight, is_still, mean_motion, moves};
+use super::sight::{Sight, mean_motion, moves};
 use crate::clip::evidence::Flow;
 use crate::clip::options::{MAX_LOOK_AHEAD, model};
 use crate::clip::record::Record;
@@ -114,7 +114,7 @@ impl Object {
 fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
     let (onward, back) = (record.onward.as_ref()?, record.back.as_ref()?);
     let (to, from) = (mean_motion(onward, pixels), mean_motion(back, pixels).map(|v| -v));
-    (!is_still(onward) && !is_still(back) && same(to, from)).then_some(from)
+    (!onward.is_still() && !back.is_still() && same(to, from)).then_some(from)
 }
 
 /// Whether one displacement is like another.

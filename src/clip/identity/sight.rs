@@ -4,7 +4,6 @@ use crate::clip::evidence::Flow;
 use crate::clip::record::Record;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
-use crate::model::Model;
 
 /// Some pixels of a frame in figures.
 #[derive(Clone, Debug)]
@@ -40,18 +39,7 @@ impl Sight {
 /// The pair that tells how the pixels of a frame move: that with the next frame or, at the end of a scene or where the next frame repeats
 /// this one, that with the frame before.
 pub(crate) fn telling(record: &Record) -> Option<&Flow> {
-    record.onward.as_ref().filter(|onward| !is_still(onward)).or(record.back.as_ref()).or(record.onward.as_ref())
-}
-
-/// Whether nothing moves in a pair, neither the camera nor an object: recordings repeat frames.
-pub(crate) fn is_still(flow: &Flow) -> bool {
-    let [right, bottom] = [flow.width - 1, flow.labels.len() / flow.width - 1];
-    let still = |(x, y): (usize, usize)| {
-        let [u, v] = flow.at(x, y);
-        u * u + v * v < f64::from(Model::DEFAULT.position_sigma).powi(2)
-    };
-    flow.labels.iter().all(|&label| is_background(label))
-        && [(0, 0), (right, 0), (0, bottom), (right, bottom)].into_iter().all(still)
+    record.onward.as_ref().filter(|onward| !onward.is_still()).or(record.back.as_ref()).or(record.onward.as_ref())
 }
 
 /// Mean displacement of some pixels along a flow.
