@@ -25,7 +25,7 @@ import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
 import { type Painted, type Prompt, type Annotation, points, withAnnotation } from '../src/state/annotation.js';
 import { annotationAtSize, packageNumbers, toSpan, forPackage } from '../src/state/package-numbers.js';
-import { type TrackedFrame, type Version, untracked } from '../src/state/tracked.js';
+import { type TrackedFrame, type Version, livesOf, toReview, untracked } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 
@@ -357,4 +357,19 @@ test('twenty objects have colours that are apart, also to the colour-blind; thos
     const distances = seen.flatMap((one, i) => seen.slice(0, i).map((other) => Math.hypot(...one.map((value, axis) => value - other[axis]!))));
     expect(Math.min(...distances)).toBeGreaterThan(k === 0 ? 0.09 : 0.058);
   }
+});
+
+test('the frame that lost an object is looked at first, unless it left through the border', () => {
+  const frame = (...objects: [number, number, number][]): TrackedFrame => ({
+    runs: packed(new Uint8Array(32), 8, 4),
+    objects: objects.map(([id, x, confidence]) => ({ id, pixels: 4, bbox: [x, 1, 2, 2], confidence, matrix: null })),
+    background: null,
+  });
+  const frames = [frame([1, 2, 0.6], [2, 2, 0.8]), frame([1, 3, 0.9], [2, 0, 0.7]), frame([1, 4, 0.9]), frame(), null];
+  expect(livesOf({ frames }).map(({ id, first, last, doubtful }) => [id, first, last, doubtful])).toEqual([
+    [1, 0, 2, { index: 3, confidence: 0 }],
+    [2, 0, 1, { index: 1, confidence: 0.7 }],
+  ]);
+  expect(toReview({ frames, accepted: new Set() })).toBe(3);
+  expect(toReview({ frames, accepted: new Set([frames[3]!]) })).toBe(0);
 });

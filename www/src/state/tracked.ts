@@ -180,7 +180,7 @@ export interface Life {
   /** Indices of the first and the last frame that show it. */
   readonly first: number;
   readonly last: number;
-  /** The frame that shows it with the lowest confidence, and that confidence, 0 to 1. */
+  /** The frame that lost it, at confidence 0, or else the one that shows it with the lowest confidence, 0 to 1. */
   readonly doubtful: { readonly index: number; readonly confidence: number };
 }
 
@@ -194,7 +194,22 @@ export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
       lives.set(id, { id, first, last: index, doubtful: least });
     }
   });
+  frames.forEach((_, index) => {
+    for (const id of lostIn(frames, index)) {
+      const life = lives.get(id)!;
+      if (life.doubtful.confidence > 0) lives.set(id, { ...life, doubtful: { index, confidence: 0 } });
+    }
+  });
   return [...lives.values()].sort((one, other) => one.id - other.id);
+}
+
+/** The objects that a frame does not show although the one before or after it shows them clear of its border: they cannot have left in between. */
+function lostIn(frames: Tracked['frames'], index: number): number[] {
+  const frame = frames[index];
+  if (frame == null) return [];
+  const clear = [frames[index - 1], frames[index + 1]].flatMap((beside) => (beside == null ? [] : beside.objects.filter(({ bbox: [x, y, width, height] }) =>
+    Math.min(x, y, beside.runs.width - x - width, beside.runs.height - y - height) > 0)));
+  return clear.map(({ id }) => id).filter((id) => frame.objects.every((object) => object.id !== id));
 }
 
 /** The frames whose masks a person has accepted, by index. */
@@ -202,10 +217,11 @@ export function acceptedIn({ frames, accepted }: Pick<Version, 'frames' | 'accep
   return [...frames.keys()].filter((index) => frames[index] != null && accepted.has(frames[index]));
 }
 
-/** The frame that most needs a look: of those with masks that are not accepted, the one with the least certain object; `null` if none is left. */
+/** The frame that most needs a look: of those with masks that are not accepted, the one that lost an object, or with the least certain one; `null` if none is left. */
 export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>): number | null {
   const left = [...frames.keys()].filter((index) => frames[index] != null && !accepted.has(frames[index]));
-  const certainty = (index: number): number => Math.min(1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
+  const certainty = (index: number): number =>
+    Math.min(lostIn(frames, index).length > 0 ? 0 : 1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
   const [first] = left.toSorted((one, other) => certainty(one) - certainty(other));
   return first ?? null;
 }
