@@ -13,14 +13,15 @@ use crate::{Failure, Options};
 const SEED: u64 = 83_000;
 /// Clips of each kind.
 const EACH: u64 = 4;
-/// A kind of clips: its name, what happens, the least number of objects, and whether they have colours in common.
-type Kind = (&'static str, &'static [Event], usize, bool);
-const KINDS: [Kind; 5] = [
-    ("crossing", &[Event::Crossing], 3, false),
-    ("hidden", &[Event::HiddenByBackground, Event::HiddenByObject], 3, false),
-    ("limbs", &[Event::Articulated, Event::Articulated], 2, false),
-    ("similar colours", &[Event::Crossing], 3, true),
-    ("all together", &[Event::Crossing, Event::HiddenByBackground, Event::Articulated], 4, true),
+/// A kind of clips: its name, what happens, the least number of objects, whether they have colours in common, and the number of frames.
+type Kind = (&'static str, &'static [Event], usize, bool, usize);
+const KINDS: [Kind; 6] = [
+    ("crossing", &[Event::Crossing], 3, false, 32),
+    ("hidden", &[Event::HiddenByBackground, Event::HiddenByObject], 3, false, 32),
+    ("limbs", &[Event::Articulated, Event::Articulated], 2, false, 32),
+    ("similar colours", &[Event::Crossing], 3, true, 32),
+    ("all together", &[Event::Crossing, Event::HiddenByBackground, Event::Articulated], 4, true, 32),
+    ("long", &[Event::Crossing, Event::HiddenByBackground, Event::Articulated], 4, true, 120),
 ];
 /// An object whose mask is given has its true number and this much.
 const GIVEN: u8 = 100;
@@ -42,7 +43,9 @@ pub(crate) struct Row {
 pub(crate) struct Object {
     /// Mean IoU over the frames after the first in which it is in sight …
     assigned: f64,
-    /// … and after strokes in the worst of them.
+    /// … of those in the last quarter of the clip; none where it is out of sight there …
+    last_quarter: Option<f64>,
+    /// … and of all after strokes in the worst of them.
     stroked: f64,
     /// Pixels of the other given objects, all frames, that these strokes changed.
     others_changed: usize,
@@ -51,11 +54,11 @@ pub(crate) struct Object {
 /// All clips.
 pub(crate) fn cases() -> Vec<Case> {
     let seeds = KINDS.into_iter().flat_map(|kind| [kind; EACH as usize]).zip(SEED..);
-    let case = |((kind, events, objects, alike), seed): (Kind, u64)| {
+    let case = |((kind, events, objects, alike, frames), seed): (Kind, u64)| {
         // Before a camera at rest and one that pans, by turns.
         let pan = (seed % 2 == 1).then_some(Event::Pan);
         let events = events.iter().copied().chain(pan).collect();
-        let options = ClipSceneOptions { objects, events, alike, seed, ..ClipSceneOptions::default() };
+        let options = ClipSceneOptions { objects, events, alike, frames, seed, ..ClipSceneOptions::default() };
         Case::generated(format!("{kind} {seed}"), options)
     };
     seeds.map(case).collect()
@@ -104,7 +107,9 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         let pixels = session.labels.iter().flatten().zip(corrected.labels.iter().flatten());
         let changed = |&(&a, &b): &(&u8, &u8)| a != b && (is_other(a, number) || is_other(b, number));
         let (assigned, stroked) = (of(&before), of(&seen(&corrected)));
-        objects.push(Object { assigned, stroked, others_changed: pixels.filter(changed).count() });
+        let last = &before[3 * before.len() / 4..];
+        let last_quarter = last.iter().any(|value| value.is_finite()).then(|| of(last));
+        objects.push(Object { assigned, last_quarter, stroked, others_changed: pixels.filter(changed).count() });
     }
     let quality = options.quality_name().into();
     Ok(Row { clip: case.name.clone(), quality, objects, frame_milliseconds })

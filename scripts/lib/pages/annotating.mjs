@@ -70,10 +70,10 @@ function objects({ objects }) {
   const rows = [...kinds.map((kind) => [kind, objects.filter((row) => kindOf(row) === kind)]), ['all', objects]].map(([name, own]) => {
     const all = own.flatMap((row) => row.objects);
     const changed = all.reduce((sum, { othersChanged }) => sum + othersChanged, 0);
-    const scores = ['assigned', 'stroked'].map((figure) => score(mean(all.map((object) => object[figure]))));
+    const scores = ['assigned', 'lastQuarter', 'stroked'].map((figure) => score(mean(all.map((object) => object[figure]).filter((j) => j != null))));
     return [`${name} (${own.length})`, all.length, ...scores, whole(changed), amount(mean(own.map((row) => row.frameMilliseconds)))];
   });
-  return table(['clips', 'objects', 'assigned', 'after strokes', 'pixels of others changed', 'ms a frame'], rows);
+  return table(['clips', 'objects', 'assigned', 'last quarter', 'after strokes', 'pixels of others changed', 'ms a frame'], rows);
 }
 
 function strokes({ strokes }) {
