@@ -233,8 +233,8 @@ impl Tracker {
         onward: Option<Flow>,
     ) -> Option<Tracked> {
         let (back_odds, back) = back.unzip();
-        // Of object against background from the frame's pairs; zero where there is no pair.
         let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
+        // Of object against background from the frame's pairs, or from the one in which something moves; zero where there is no pair.
         let odds = match (onward_odds, back_odds) {
             (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
             (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
@@ -264,6 +264,7 @@ impl Tracker {
     /// The frame that is held longest goes to the rounds.
     fn release(&mut self) -> Option<Tracked> {
         let (record, mut odds) = self.held.pop_front()?;
+        // A scene begins as if nothing had moved for long.
         let before = if record.back.is_none() { REACH } else { self.still };
         self.still = if record.is_still() { before.saturating_add(1) } else { 0 };
         let mut after = self.held.iter().take_while(|(record, _)| record.back.is_some());

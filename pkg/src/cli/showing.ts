@@ -7,6 +7,7 @@ import type { ClipFrame, Pixels } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
+import { scaled } from '../common/scaling.js';
 import { encodeColourPng } from '../entries/codecs.js';
 
 /** For help and completion; N is the number of an object. */
@@ -38,8 +39,8 @@ const ENCODERS = {
   mov: { transparent: ['-c:v', 'prores_ks', '-profile:v', '4444', '-pix_fmt', 'yuva444p10le', '-vendor', 'apl0'] },
 } satisfies Record<string, { opaque?: readonly string[]; transparent?: readonly string[] }>;
 
-/** Of a sheet: frames in all and in a row, the largest width of one and the space between them, pixels. */
-const SHEET = { most: 12, columns: 4, width: 480, space: 4 };
+/** Of a sheet: frames in all and in a row, the longest side of one and the space between them, pixels. */
+const SHEET = { most: 12, columns: 4, longest: 480, space: 4 };
 
 /** What a name stands for; undefined where it stands for nothing. */
 export function shownOf(name: string): Shown | undefined {
@@ -102,7 +103,7 @@ export class Showing {
       }
       painted ??= overlay(data as Uint8Array, labels);
       if (kind === 'sheet') {
-        if (this.#isOnSheet(index)) this.#tiles.push(smaller(painted, width, height));
+        if (this.#isOnSheet(index)) this.#tiles.push(scaled({ data: painted, width, height }, SHEET.longest));
       } else if (kind === 'beside') {
         await this.#film(shown, 2 * width, height).take(beside(data, painted, width));
       } else {
@@ -197,22 +198,6 @@ function beside(rgba: Pixels['data'], painted: Uint8Array, width: number): Uint8
     }
   }
   return both;
-}
-
-/** RGB for a sheet: each pixel is the mean of those that it stands for. */
-function smaller(rgb: Uint8Array, width: number, height: number): Pixels {
-  const factor = Math.max(1, Math.ceil(width / SHEET.width));
-  const [w, h] = [Math.max(1, Math.floor(width / factor)), Math.max(1, Math.floor(height / factor))];
-  const data = new Uint8Array(3 * w * h);
-  data.forEach((_, at) => {
-    const [channel, x, y] = [at % 3, Math.floor(at / 3) % w, Math.floor(at / 3 / w)];
-    let sum = 0;
-    for (let k = 0; k < factor * factor; k++) {
-      sum += rgb[3 * ((y * factor + Math.floor(k / factor)) * width + x * factor + (k % factor)) + channel] as number;
-    }
-    data[at] = Math.round(sum / (factor * factor));
-  });
-  return { data, width: w, height: h };
 }
 
 async function sheetOf(tiles: readonly Pixels[]): Promise<Uint8Array> {

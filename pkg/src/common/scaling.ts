@@ -1,13 +1,14 @@
-// Frames scaled down so that their longest side has a given number of pixels. Each pixel is the mean of the area that it covers.
+// Pictures scaled down so that their longest side has a given number of pixels. Each pixel is the mean of the area that it covers.
 
 import type { Pixels } from '../../types/index.js';
 
-/** The frame itself where it is not larger. */
+/** The picture itself where it is not larger. It may have any number of channels. */
 export function scaled(frame: Pixels, longest: number | undefined): Pixels {
   const { data, width: w, height: h } = frame;
   const { width, height } = scaledSize(frame, longest);
   if (width === w && height === h) return frame;
-  const [out, row, sums] = [new Uint8Array(4 * width * height), new Float64Array(4 * width), new Float64Array(4 * width)];
+  const channels = data.length / (w * h);
+  const [out, row, sums] = [new Uint8Array(channels * width * height), new Float64Array(channels * width), new Float64Array(channels * width)];
   const area = (w / width) * (h / height);
   for (let y = 0, to = 0; y < h; y++) {
     row.fill(0);
@@ -15,7 +16,7 @@ export function scaled(frame: Pixels, longest: number | undefined): Pixels {
       const [begin, end] = [(x * w) / width, ((x + 1) * w) / width];
       for (let from = Math.floor(begin); from < end; from++) {
         const part = Math.min(from + 1, end) - Math.max(from, begin);
-        for (let channel = 0; channel < 4; channel++) (row[4 * x + channel] as number) += part * (data[4 * (y * w + from) + channel] as number);
+        for (let channel = 0; channel < channels; channel++) (row[channels * x + channel] as number) += part * (data[channels * (y * w + from) + channel] as number);
       }
     }
     // Scaled down, a row of the frame belongs to two rows at most.
