@@ -107,6 +107,9 @@ pub struct ClipSceneOptions {
     pub objects: usize,
     /// Events, by default none. Objects of their own take part in each, at most [`MAX_OBJECTS`] in all.
     pub events: Vec<Event>,
+    /// Share of the usual speed at which everything happens, above 0 to 1; default 1. Of a slow clip, the middle of each shot is shown: less
+    /// happens, and events may be outside.
+    pub speed: f64,
     /// Standard deviation of the noise at grey level 128, in grey levels, 0 to 50; default 2. It grows with √I.
     pub noise: f64,
     /// Standard deviation of the camera's blur, pixels, 0 to 5; default 0.65.
@@ -127,6 +130,7 @@ impl Default for ClipSceneOptions {
             frames: 32,
             objects: 1,
             events: Vec::new(),
+            speed: 1.0,
             noise: 2.0,
             blur: 0.65,
             colour: true,
@@ -154,8 +158,8 @@ pub struct Occurrence {
 struct Shown {
     /// Index of the shot.
     shot: usize,
-    /// Moment of the shot.
-    moment: usize,
+    /// Moment of the shot, of a slow one between two of those that its script names.
+    moment: f64,
     /// The first frame that shows this moment.
     original: usize,
     /// Gain and bias.
@@ -199,14 +203,18 @@ pub struct ClipScene {
 pub fn generate_clip(options: &ClipSceneOptions) -> Result<ClipScene> {
     check(options)?;
     let mut random = Random::from_seed(options.seed);
-    let timeline = timeline(options, &mut random);
+    let mut timeline = timeline(options, &mut random);
     let mut shots = Vec::new();
     let mut found = Vec::new();
     for (index, events) in events_of_shots(options).into_iter().enumerate() {
-        let moments = timeline.iter().filter(|s| s.shot == index).map(|s| s.moment + 1).max().unwrap_or(1);
+        let last = timeline.iter().filter(|s| s.shot == index).map(|s| s.moment).fold(0.0, f64::max);
+        let (moments, middle) = (last as usize + 1, 0.5 * last);
+        let of_shot = timeline.iter_mut().filter(|s| s.shot == index);
+        of_shot.for_each(|s| s.moment = middle + options.speed * (s.moment - middle));
         let next = shots.iter().map(|shot: &Shot| shot.script.numbers().len()).sum::<usize>() + 1;
         let script = Script::draw(&mut random, options, &events, moments, next as u8);
-        found.extend(script.occurrences.iter().map(|o| on_timeline(o, index, &timeline)));
+        let shown = script.occurrences.iter().map(|o| on_timeline(o, index, &timeline));
+        found.extend(shown.filter(|o| !o.frames.is_empty()));
         shots.push(Shot::dress(&mut random, options, script));
     }
     let asked = |event: &Event| options.events.contains(event);
@@ -255,7 +263,7 @@ fn timeline(options: &ClipSceneOptions, random: &mut Random) -> Vec<Shown> {
                     () if has(Event::Exposure) => [libm::exp(change * eased), 0.0],
                     () => [1.0, 0.0],
                 };
-                Shown { shot, moment: before.map_or(0, |before| before.moment + 1), original: t, exposure }
+                Shown { shot, moment: before.map_or(0.0, |before| before.moment + 1.0), original: t, exposure }
             }
         };
         timeline.push(shown);
@@ -266,7 +274,7 @@ fn timeline(options: &ClipSceneOptions, random: &mut Random) -> Vec<Shown> {
 /// An occurrence in moments of a shot as one in frames of the clip.
 fn on_timeline(occurrence: &Occurrence, shot: usize, timeline: &[Shown]) -> Occurrence {
     let frame = |moment: usize| {
-        let later = |s: &Shown| s.shot > shot || (s.shot == shot && s.moment >= moment);
+        let later = |s: &Shown| s.shot > shot || (s.shot == shot && s.moment >= moment as f64);
         timeline.iter().position(later).unwrap_or(timeline.len())
     };
     Occurrence { frames: frame(occurrence.frames.start)..frame(occurrence.frames.end), ..occurrence.clone() }
@@ -367,7 +375,7 @@ impl ClipScene {
     pub fn motion(&self, object: u8, t: usize) -> Option<AffineMotion> {
         let (now, next) = self.pair(t)?;
         let script = &self.shots[now.shot].script;
-        let pose = |moment: usize| match object {
+        let pose = |moment: f64| match object {
             0 => Some(script.camera.at(moment)),
             _ => script.owners().iter().rposition(|&owner| owner == object).map(|part| script.parts(moment)[part]),
         };
@@ -408,10 +416,13 @@ impl ClipScene {
 
 fn check(options: &ClipSceneOptions) -> Result<()> {
     let bad = |name, reason: String| Err(Error::InvalidOption { name, reason });
-    let &ClipSceneOptions { width, height, frames, objects, noise, blur, .. } = options;
+    let &ClipSceneOptions { width, height, frames, objects, speed, noise, blur, .. } = options;
     check_scene(&SceneOptions { width, height, objects, noise, blur, ..SceneOptions::default() })?;
     if !(MIN_CLIP_FRAMES..=MAX_CLIP_FRAMES).contains(&frames) {
         return bad("frames", format!("must be from {MIN_CLIP_FRAMES} to {MAX_CLIP_FRAMES}, not {frames}"));
+    }
+    if !(speed > 0.0 && speed <= 1.0) {
+        return bad("speed", format!("must be above 0 and at most 1, not {speed}"));
     }
     let needed: usize = options.events.iter().map(|event| event.objects()).sum();
     if needed > MAX_OBJECTS {

@@ -50,6 +50,23 @@ fn objects_are_out_of_sight_when_the_clip_says() {
 }
 
 #[test]
+fn a_slow_clip_shows_the_middle_of_the_usual_one() {
+    let usual = clip(&[Event::Crossing, Event::Articulated, Event::Pan], 4);
+    let slow = generate_clip(&ClipSceneOptions { speed: 0.25, ..usual.options.clone() }).unwrap();
+    // Four frames show what one usually does.
+    let middle = usual.options.frames as f64 / 2.0 - 0.5;
+    for (object, t) in (0..=usual.objects() as u8).flat_map(|object| [2, 13, 28].map(|t| (object, t))) {
+        let then = (middle + 0.25 * (t as f64 - middle)) as usize;
+        let [slow, usual] = [slow.motion(object, t), usual.motion(object, then)].map(|motion| motion.unwrap());
+        let (at, then) = (slow.flow(80.0, 60.0), usual.flow(80.0, 60.0));
+        for k in 0..2 {
+            assert!((4.0 * at[k] - then[k]).abs() < 0.1, "object {object}, frame {t}: {at:?}, {then:?}");
+        }
+    }
+    assert!(generate_clip(&ClipSceneOptions { speed: 0.0, ..usual.options }).is_err());
+}
+
+#[test]
 fn labels_carried_by_the_true_motion_land_on_the_labels_of_the_next_frame() {
     for (seed, events) in [
         (1, vec![Event::Crossing, Event::Pan, Event::Zoom]),

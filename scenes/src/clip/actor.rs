@@ -34,16 +34,16 @@ impl Part {
         Part { shape, joint: [0.0; 2], arm: [0.0; 2], swing: [0.0; 3] }
     }
 
-    fn at(&self, moment: usize) -> Warp {
+    fn at(&self, moment: f64) -> Warp {
         let [amplitude, rate, phase] = self.swing;
-        let angle = amplitude * libm::sin(rate * moment as f64 + phase);
+        let angle = amplitude * libm::sin(rate * moment + phase);
         Warp::similarity(self.joint, angle, 1.0).after(&Warp::similarity(self.arm, 0.0, 1.0))
     }
 }
 
 impl Actor {
     /// From each part to the world; `time` is that from the middle of the shot.
-    pub(super) fn at(&self, moment: usize, time: f64) -> impl Iterator<Item = Warp> {
+    pub(super) fn at(&self, moment: f64, time: f64) -> impl Iterator<Item = Warp> {
         let pose = Warp::similarity(self.path.at(moment), self.spin * time, libm::exp(self.growth * time));
         self.parts.iter().map(move |part| pose.after(&part.at(moment)))
     }

@@ -24,12 +24,12 @@ pub(super) fn swung(time: f64, moments: usize, swing: f64) -> f64 {
 
 impl Camera {
     /// Time from the middle of the shot, frames.
-    pub(super) fn time(&self, moment: usize) -> f64 {
-        moment as f64 - 0.5 * (self.moments as f64 - 1.0)
+    pub(super) fn time(&self, moment: f64) -> f64 {
+        moment - 0.5 * (self.moments as f64 - 1.0)
     }
 
     /// From the world to the frame.
-    pub(super) fn at(&self, moment: usize) -> Warp {
+    pub(super) fn at(&self, moment: f64) -> Warp {
         let time = self.time(moment);
         let scale = libm::exp(self.zoom * time);
         let way = swung(time, self.moments, 0.3);
@@ -42,7 +42,7 @@ impl Camera {
         const MARGIN: f64 = 4.0;
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for moment in 0..self.moments {
-            let world = self.at(moment).inverse();
+            let world = self.at(moment as f64).inverse();
             for corner in [world.at(0.0, 0.0), world.at(size[0] as f64, size[1] as f64)] {
                 for k in 0..2 {
                     low[k] = f64::min(low[k], (corner[k] - MARGIN).floor());

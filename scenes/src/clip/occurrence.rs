@@ -7,7 +7,7 @@ use super::script::Script;
 use super::{Event, Occurrence};
 
 /// The parts, one bit each, that cover more than half of every pixel.
-pub(super) fn coverage(script: &Script, moment: usize, size: [usize; 2]) -> Vec<u64> {
+pub(super) fn coverage(script: &Script, moment: f64, size: [usize; 2]) -> Vec<u64> {
     let mut covered = vec![0u64; size[0] * size[1]];
     let shapes = script.actors.iter().flat_map(|actor| &actor.parts).map(|part| (part.shape.clone(), [0.0; 2]));
     for (k, (shape, warp)) in shapes.zip(script.parts(moment)).enumerate() {
@@ -45,7 +45,7 @@ pub(super) struct Watch<'a> {
 
 impl Watch<'_> {
     pub(super) fn of(script: &Script, size: [usize; 2]) -> Watch<'_> {
-        let moments = (0..script.camera.moments).map(|moment| coverage(script, moment, size)).collect();
+        let moments = (0..script.camera.moments).map(|moment| coverage(script, moment as f64, size)).collect();
         Watch { script, size, moments }
     }
 

@@ -15,8 +15,10 @@ pub(super) struct Path {
 }
 
 impl Path {
-    pub(super) fn at(&self, moment: usize) -> [f64; 2] {
-        let way = self.way[moment];
+    pub(super) fn at(&self, moment: f64) -> [f64; 2] {
+        let before = moment as usize;
+        let after = (before + 1).min(self.way.len() - 1);
+        let way = self.way[before] + (moment - before as f64) * (self.way[after] - self.way[before]);
         let (sine, rise) = (libm::sin(self.rate * way), 1.0 - libm::cos(self.rate * way));
         [0, 1].map(|k| self.anchor[k] + self.velocity[k] * way + self.bow[0][k] * sine + self.bow[1][k] * rise)
     }

@@ -67,7 +67,7 @@ impl Script {
     }
 
     /// From each part to the frame.
-    pub(super) fn parts(&self, moment: usize) -> Vec<Warp> {
+    pub(super) fn parts(&self, moment: f64) -> Vec<Warp> {
         let (camera, time) = (self.camera.at(moment), self.camera.time(moment));
         self.actors.iter().flat_map(|actor| actor.at(moment, time)).map(|warp| camera.after(&warp)).collect()
     }
@@ -248,14 +248,14 @@ impl<'a> Director<'a> {
 
     /// A way through the world that is at `anchor` at a moment.
     fn line(&self, anchor: [f64; 2], velocity: [f64; 2], moment: usize) -> Path {
-        let middle = self.camera.time(moment);
-        let way = |m: usize| swung(self.camera.time(m) - middle, self.moments, 0.15);
+        let middle = self.camera.time(moment as f64);
+        let way = |m: usize| swung(self.camera.time(m as f64) - middle, self.moments, 0.15);
         let way = (0..self.moments).map(way).collect();
         Path { anchor, velocity, bow: [[0.0; 2]; 2], rate: PI / self.moments as f64, way }
     }
 
     fn world(&self, place: [f64; 2], moment: usize) -> [f64; 2] {
-        self.camera.at(moment).inverse().at(place[0], place[1])
+        self.camera.at(moment as f64).inverse().at(place[0], place[1])
     }
 
     fn shape(&mut self, size: f64) -> Shape {
