@@ -108,9 +108,9 @@ export const RARE = {
   },
   formats: {
     title: "formats, read by the annotation tools' own decoders",
-    needs: { python: true },
-    run: ({ python }) => {
-      if (python.problem) throw new Stop(python.problem);
+    needs: { python: true, fiftyone: true },
+    run: ({ python, fiftyone }) => {
+      for (const { problem } of [python, fiftyone]) if (problem) throw new Stop(problem);
       return ofPackage('test:formats');
     },
   },

@@ -1,5 +1,5 @@
 // Installs Python packages in separate environments under .tools: the annotation tools' own decoders and CVAT's SDK, which only the tests of
-// formats and of the examples use, and what builds and tests the Python package.
+// formats and of the examples use, FiftyOne, and what builds and tests the Python package.
 
 import { rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -18,6 +18,14 @@ export const DECODERS = environment({
   problem: `The formats are not read by the tools themselves, and cvat-clip.py does not run: ${NEEDED}`,
 });
 
+export const FIFTYONE = environment({
+  folder: '.tools/fiftyone',
+  list: 'pkg/test/support/requirements-fiftyone.txt',
+  what: 'FiftyOne, one gigabyte',
+  problem: `The formats are not read by FiftyOne: ${NEEDED}`,
+  complete: true,
+});
+
 export const OWN = environment({
   folder: '.tools/python-package',
   list: 'python/tests/requirements.txt',
@@ -25,14 +33,14 @@ export const OWN = environment({
   problem: `The Python package is not tested: ${NEEDED}`,
 });
 
-/** `list` names all packages of the environment with their versions. */
+/** `list` names all packages of the environment with their versions; where it is `complete`, what they depend on follows. */
 function environment(parts) {
   const inside = process.platform === 'win32' ? ['Scripts', 'python.exe'] : ['bin', 'python'];
   return { ...parts, python: join(root, parts.folder, ...inside) };
 }
 
 /** Returns `{ problem }` if there is no suitable Python; the tests that need it are then skipped. */
-export async function preparePython({ folder, list, what, problem, python }) {
+export async function preparePython({ folder, list, what, problem, complete, python }) {
   if (inProject(folder) && (await isInstalled(python, list))) return {};
   const program = await suitable(process.platform === 'win32' ? ['python', 'python3'] : ['python3', 'python']);
   if (!program) return { problem };
@@ -42,17 +50,18 @@ export async function preparePython({ folder, list, what, problem, python }) {
     `Installing ${what} (about a minute)`,
     'The Python packages could not be installed. See above; if it is the network, run the command again.',
     python,
-    [...PIP, '--requirement', join(root, list)],
+    [...PIP, ...(complete ? [] : ALONE), '--requirement', join(root, list)],
   );
   return {};
 }
 
 /** Installs a wheel, in the place of what was built before. */
 export async function installWheel({ python }, wheel) {
-  await must('The wheel could not be installed.', python, [...PIP, '--force-reinstall', wheel], { output: 'collect' });
+  await must('The wheel could not be installed.', python, [...PIP, ...ALONE, '--force-reinstall', wheel], { output: 'collect' });
 }
 
-const PIP = ['-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', '--no-deps'];
+const PIP = ['-m', 'pip', 'install', '--quiet', '--disable-pip-version-check'];
+const ALONE = ['--no-deps'];
 
 async function suitable(programs) {
   for (const program of programs) {

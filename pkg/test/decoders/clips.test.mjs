@@ -4,16 +4,22 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { after, describe, test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import { random } from '../../../scripts/lib/random.mjs';
 import { clipFolder, drawnClip } from '../support/clip.mjs';
 import { veronese } from '../support/program.mjs';
-import { decoded, skip } from '../support/python.mjs';
+import { decoded, fiftyone, python, skip as withoutDecoders, withoutFiftyone } from '../support/python.mjs';
 
 const FORMATS =
   'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,cvat-points,cvat-mots,mots,mot,label-studio,label-studio-polygon,label-studio-video,labelme,yolo,davis,supervisely,masks';
+const WAYS = {
+  'coco-polygon': ['coco-polygon', 'coco, read by datumaro', 'coco-polygon, read by datumaro'],
+  'cvat-video': ['cvat-video, polygons', 'cvat-video, boxes'],
+  mot: ['mot', 'mot, read by datumaro'],
+  yolo: ['yolo', 'yolo, read by ultralytics'],
+};
 /** Names of comparisons: some formats are written in two ways or read by two tools. */
-const READ = FORMATS.split(',').flatMap((name) => ({ 'cvat-video': ['cvat-video, polygons', 'cvat-video, boxes'], mot: ['mot', 'mot, read by datumaro'] })[name] ?? name);
+const READ = FORMATS.split(',').flatMap((name) => WAYS[name] ?? name);
 
 /** Discs and boxes that wander, leave and come back, with holes, noise and pixels without a label; and the names of some. */
 function wandering(seed) {
@@ -45,13 +51,20 @@ function wandering(seed) {
   return { frames, width, height, names };
 }
 
-describe('clips, decoded by the tools themselves', { skip }, () => {
+/** The drawn clip with squares for pixels, and each object of its own class. */
+function large() {
+  const side = 16;
+  const [width, height] = [37 * side, 23 * side];
+  const frames = drawnClip().map((labels) => Uint8Array.from({ length: width * height }, (_, at) => labels[Math.floor(at / width / side) * 37 + Math.floor((at % width) / side)]));
+  return { frames, width, height, names: { 1: 'ring', 2: 'car', 4: 'Boot' } };
+}
+
+describe('clips', () => {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-clips-'));
   after(() => rmSync(folder, { recursive: true, force: true }));
-  const clips = [{ frames: drawnClip(), names: { 2: 'car', 4: 'car' } }, { frames: drawnClip() }, ...Array.from({ length: 14 }, (_, seed) => wandering(seed))];
-  let report = {};
+  const clips = [{ frames: drawnClip(), names: { 2: 'car', 4: 'car' } }, { frames: drawnClip() }, large(), ...Array.from({ length: 14 }, (_, seed) => wandering(seed))];
 
-  test('the decoders run', async () => {
+  before(async () => {
     const cases = [];
     for (const [index, clip] of clips.entries()) {
       const [name, out] = [`clip-${index}`, `out-${index}`];
@@ -63,15 +76,28 @@ describe('clips, decoded by the tools themselves', { skip }, () => {
       cases.push({ name, out, tracks, labels: frames.map((labels) => Buffer.from(labels).toString('base64')) });
     }
     writeFileSync(join(folder, 'cases.json'), JSON.stringify(cases));
-    report = decoded('decode_clips.py', folder);
-    assert.deepEqual(Object.keys(report), READ);
   });
 
-  for (const name of READ) {
-    test(name, () => {
-      assert.deepEqual(report[name]?.mistakes, []);
-      assert.equal(report[name].clips, clips.length);
-      assert.ok(report[name].shapes >= 80, `${report[name].shapes} shapes`);
+  for (const [title, skip, script, program, names] of [
+    ['decoded by the tools themselves', withoutDecoders, 'decode_clips.py', python, READ],
+    ['imported by FiftyOne', withoutFiftyone, 'read_fiftyone.py', fiftyone, ['coco', 'coco-polygon', 'cvat-polygon', 'cvat-video', 'yolo', 'masks']],
+  ]) {
+    describe(title, { skip }, () => {
+      let report = {};
+
+      test('all formats', () => {
+        report = decoded(script, folder, program);
+        assert.deepEqual(Object.keys(report), names);
+      });
+
+      for (const name of names) {
+        test(name, () => {
+          assert.deepEqual(report[name]?.mistakes, []);
+          const [count, shapes] = name.endsWith('ultralytics') ? [1, 17] : [clips.length, 80];
+          assert.equal(report[name].clips, count);
+          assert.ok(report[name].shapes >= shapes, `${report[name].shapes} shapes`);
+        });
+      }
     });
   }
 });

@@ -5,6 +5,7 @@ import base64
 import contextlib
 import importlib.util
 import io
+import os
 import sys
 import types
 import uuid
@@ -15,7 +16,6 @@ import cv2
 import numpy as np
 import PIL.Image
 from PIL import Image
-from pycocotools import mask as coco_mask
 from pycocotools.coco import COCO
 
 
@@ -31,38 +31,33 @@ bare("cvat_sdk", "label_studio_sdk")
 bare("label_studio_sdk.converter")
 
 from cvat_sdk.masks import decode_mask  # noqa: E402
-from datumaro.plugins.data_formats.cvat.base import CvatBase  # noqa: E402
-from datumaro.plugins.data_formats.mots import MotsPngExtractor  # noqa: E402
 from label_studio_sdk.converter import brush  # noqa: E402
 
 
-def taken(package, place, *functions):
-    """Functions of an installed file that cannot be imported without servers or windows."""
+def taken(package, place, *wanted, **given):
+    """Functions and constants of an installed file that cannot be imported without servers, windows or much else; `given` is what they use."""
     file = Path(importlib.util.find_spec(package).submodule_search_locations[0], *place)
-    names = {"np": np, "cv2": cv2, "zlib": zlib, "base64": base64, "io": io, "Image": Image, "PIL": PIL, "uuid": uuid}
-    tree = ast.parse(file.read_text(encoding="utf-8"))
-    found = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name in functions]
-    assert len(found) == len(functions), f"{file}: {[node.name for node in found]}"
-    for node in found:
-        node.decorator_list = []
-        node.returns = None
-        for argument in node.args.args:
-            argument.annotation = None
-    exec(compile(ast.Module(found, []), str(file), "exec"), names)
-    return names[functions[0]]
+    names = {"np": np, "cv2": cv2, "zlib": zlib, "base64": base64, "io": io, "os": os, "Image": Image, "PIL": PIL, "uuid": uuid, **given}
+    found = {}
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef):
+            node.decorator_list = []
+            node.returns = None
+            for argument in node.args.args:
+                argument.annotation = None
+            found.setdefault(node.name, node)
+        elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            found.setdefault(node.targets[0].id, node)
+    exec(compile(ast.Module([found[name] for name in wanted], []), str(file), "exec"), names)
+    return [names[name] for name in wanted]
 
 
-sly_decode = taken("supervisely", ["geometry", "bitmap.py"], "base64_2_data")
-img_b64_to_arr = taken("labelme", ["utils", "image.py"], "img_b64_to_arr", "img_data_to_arr", "img_data_to_pil")
-shapes_to_label = taken("labelme", ["utils", "shape.py"], "shapes_to_label", "shape_to_mask")
-
-
-def placed(small, left, top, shape):
-    full = np.zeros(shape, bool)
-    full[top : top + small.shape[0], left : left + small.shape[1]] = small
-    return full
-
-
-def rasterised(rings, shape):
-    """Polygons as COCO's own code and datumaro fill them."""
-    return coco_mask.decode(coco_mask.merge(coco_mask.frPyObjects(rings, *shape))).astype(bool)
+(sly_decode,) = taken("supervisely", ["geometry", "bitmap.py"], "base64_2_data")
+img_b64_to_arr, *_ = taken("labelme", ["utils", "image.py"], "img_b64_to_arr", "img_data_to_arr", "img_data_to_pil")
+shapes_to_label, *_ = taken("labelme", ["utils", "shape.py"], "shapes_to_label", "shape_to_mask")
+# Of Ultralytics what it does between a file and the masks of a batch; its functions take tensors too, and there are none.
+NO_TENSORS = types.SimpleNamespace(Tensor=())
+segments2boxes, resample_segments, *_ = taken("ultralytics", ["utils", "ops.py"], "segments2boxes", "resample_segments", "xyxy2xywh", "empty_like", torch=NO_TENSORS)
+verify_image_label, polygon2mask, img2label_paths, *_ = taken(
+    "ultralytics", ["data", "utils.py"], "verify_image_label", "polygon2mask", "img2label_paths", "check_image", "exif_size", "IMG_FORMATS", segments2boxes=segments2boxes
+)

@@ -1,18 +1,10 @@
-"""Decodes what `veronese convert` wrote of clips with the tools' own decoders, and compares with the labels.
-
-decode_clips.py FOLDER: reads FOLDER/cases.json, prints {"format": {"clips", "shapes", "mistakes"}} as JSON.
-
-Every decoder gives shapes by (frame, object): masks, or boxes as (left, top, width, height). Formats that do not say which object a shape
-is are compared in the order of the objects, or class by class.
-"""
+"""Decodes what `veronese convert` wrote of clips with the tools' own decoders, and compares with the labels: decode_clips.py FOLDER."""
 
 import configparser
-import json
+import shutil
 import sys
 import types
 import zipfile
-from collections import defaultdict
-from pathlib import Path
 
 # TrackEval imports a solver for its matching, which is not installed: reading needs none.
 sys.modules["scipy"] = types.ModuleType("scipy")
@@ -20,80 +12,20 @@ sys.modules["scipy.optimize"] = types.ModuleType("scipy.optimize")
 sys.modules["scipy.optimize"].linear_sum_assignment = None
 
 import numpy as np
+import yaml
 from PIL import Image
 
 import decode
-from decode import COCO, CvatBase, MotsPngExtractor, brush, coco_mask, decode_mask, img_b64_to_arr, placed, rasterised, shapes_to_label, sly_decode
+from clips import Clip, coco_mask, counted, placed, rasterised, report, united
+from decode import COCO, brush, decode_mask, img_b64_to_arr, shapes_to_label, sly_decode
 
 decode.bare("trackeval", "trackeval.datasets")
 
-from datumaro.plugins.data_formats.mot import MotSeqBase  # noqa: E402
+from datumaro import AnnotationType, Dataset  # noqa: E402
 from label_studio_sdk._extensions.label_studio_tools.postprocessing.video import extract_key_frames  # noqa: E402
 from trackeval.datasets.davis import DAVIS  # noqa: E402
 from trackeval.datasets.mot_challenge_2d_box import MotChallenge2DBox  # noqa: E402
 from trackeval.datasets.mots_challenge import MOTSChallenge  # noqa: E402
-
-
-class Clip:
-    """The converted clip, and what should be found."""
-
-    def __init__(self, case, folder):
-        self.folder = folder / case["out"]
-        self.name = case["name"]
-        self.tracks = case["tracks"]
-        self.shape = (self.tracks["height"], self.tracks["width"])
-        self.files = self.tracks["files"]
-        self.names = self.tracks["frames"]
-        self.labels = [np.frombuffer(decode.base64.b64decode(frame), np.uint8).reshape(self.shape) for frame in case["labels"]]
-        self.classes = {thing["id"]: thing.get("name", "object") for thing in self.tracks["objects"]}
-        self.masks = {(t, int(k)): frame == k for t, frame in enumerate(self.labels) for k in np.unique(frame) if 0 < k < 255}
-
-    def path(self, *names):
-        return self.folder.joinpath(*names)
-
-    def text(self, *names):
-        return self.path(*names).read_text(encoding="utf-8")
-
-    def json(self, *names):
-        return json.loads(self.text(*names))
-
-    def check_class(self, thing, name):
-        assert self.classes[thing] == name, f"object {thing} is {name!r}, not {self.classes[thing]!r}"
-
-    def boxes(self):
-        found = {}
-        for key, mask in self.masks.items():
-            (ys, xs) = np.nonzero(mask)
-            found[key] = (xs.min(), ys.min(), np.ptp(xs) + 1, np.ptp(ys) + 1)
-        return found
-
-    def in_order(self):
-        """Masks by (frame, how many come before)."""
-        found = {}
-        for t in range(len(self.labels)):
-            here = sorted(key for key in self.masks if key[0] == t)
-            found.update({(t, k): self.masks[key] for k, key in enumerate(here)})
-        return found
-
-    def by_class(self):
-        return united(((t, self.classes[thing]), mask) for (t, thing), mask in self.masks.items())
-
-
-def united(pairs):
-    masks = {}
-    for key, mask in pairs:
-        masks[key] = masks[key] | mask if key in masks else mask
-    return masks
-
-
-def counted(pairs):
-    """(frame, shape) in their order, by (frame, how many came before)."""
-    count = defaultdict(int)
-    found = {}
-    for t, shape in pairs:
-        found[(t, count[t])] = shape
-        count[t] += 1
-    return found
 
 
 def coco(clip, name):
@@ -127,22 +59,37 @@ def youtube_vis(clip):
     return masks
 
 
-def with_images(clip):
-    """CVAT's images have to be there: empty ones."""
-    (clip.folder / "images").mkdir(exist_ok=True)
-    for name in clip.files:
-        Image.new("L", clip.shape[::-1]).save(clip.folder / "images" / name)
+def datumaro(path, name):
+    """Items, the name of a class and an annotation, of a data set as Datumaro finds it."""
+    data = Dataset.import_from(str(path), name)
+    names = [label.name for label in data.categories()[AnnotationType.label]]
+    for item in data:
+        for annotation in item.annotations:
+            yield item, names[annotation.label], annotation
+
+
+def coco_datumaro(clip, name):
+    """Datumaro wants the file in a folder that is called so, and the images beside it."""
+    place = clip.path(f"{name}-datumaro", "annotations")
+    place.mkdir(parents=True)
+    clip.images(f"{name}-datumaro", "images")
+    shutil.copy(clip.path(f"{name}.json"), place / "instances_default.json")
+    pairs = []
+    for item, kind, a in datumaro(place.parent, "coco"):
+        thing = a.attributes["track_id"]
+        clip.check_class(thing, kind)
+        if a.type != AnnotationType.bbox:
+            mask = a.image if a.type == AnnotationType.mask else rasterised([a.points], clip.shape)
+            pairs.append(((clip.names.index(item.id), thing), np.asarray(mask, bool)))
+    return united(pairs)
 
 
 def cvat(clip, name):
-    with_images(clip)
-    data = CvatBase(str(clip.path(name)))
-    names = [label.name for label in list(data.categories().values())[0].items]
-    for item in data:
-        t = item.attributes["frame"]
-        assert item.id == clip.names[t]
-        for annotation in item.annotations:
-            yield t, names[annotation.label], annotation
+    """CVAT's images have to be there."""
+    clip.images("images")
+    for item, kind, a in datumaro(clip.path(name), "cvat"):
+        assert item.id == clip.names[item.attributes["frame"]]
+        yield item.attributes["frame"], kind, a
 
 
 def cvat_masks(clip):
@@ -155,20 +102,17 @@ def cvat_polygons(clip):
 
 def cvat_tracks(clip, name):
     """The shapes that are not outside. Those that are mark where a track leaves: once, in the frame after its last one."""
-    data = CvatBase(str(clip.path(name)))
-    names = [label.name for label in list(data.categories().values())[0].items]
     shapes, left = {}, set()
-    for item in data:
+    for item, kind, annotation in datumaro(clip.path(name), "cvat"):
         t = item.attributes["frame"]
         assert item.id == f"frame_{t:06}"
-        for annotation in item.annotations:
-            thing = annotation.attributes["track_id"]
-            clip.check_class(thing, names[annotation.label])
-            assert annotation.attributes["keyframe"]
-            if annotation.attributes["outside"]:
-                left.add((t, thing))
-            else:
-                shapes[(t, thing)] = annotation
+        thing = annotation.attributes["track_id"]
+        clip.check_class(thing, kind)
+        assert annotation.attributes["keyframe"]
+        if annotation.attributes["outside"]:
+            left.add((t, thing))
+        else:
+            shapes[(t, thing)] = annotation
     assert left == {(t + 1, k) for t, k in clip.masks if t + 1 < len(clip.files) and (t + 1, k) not in clip.masks}
     return shapes
 
@@ -189,14 +133,11 @@ def cvat_points(clip):
 def cvat_mots(clip):
     with zipfile.ZipFile(clip.path("cvat-mots.zip")) as files:
         files.extractall(clip.path("unzipped"))
-    data = MotsPngExtractor(str(clip.path("unzipped", "default")), subset="default")
-    names = [label.name for label in list(data.categories().values())[0].items]
     masks = {}
-    for item in data:
-        for annotation in item.annotations:
-            thing = int(annotation.attributes["track_id"])
-            clip.check_class(thing, names[annotation.label])
-            masks[(clip.names.index(item.id), thing)] = np.asarray(annotation.image).astype(bool)
+    for item, kind, annotation in datumaro(clip.path("unzipped"), "mots"):
+        thing = int(annotation.attributes["track_id"])
+        clip.check_class(thing, kind)
+        masks[(clip.names.index(item.id), thing)] = np.asarray(annotation.image).astype(bool)
     return masks
 
 
@@ -246,13 +187,10 @@ def mot(clip):
 
 def mot_datumaro(clip):
     boxes = {}
-    data = MotSeqBase(str(clip.path("mot", "gt", "gt.txt")))
-    names = [label.name for label in list(data.categories().values())[0].items]
-    for item in data:
-        for a in item.annotations:
-            clip.check_class(a.attributes["track_id"], names[a.label])
-            assert not a.attributes["ignored"] and not a.attributes["occluded"]
-            boxes[(int(item.id) - 1, a.attributes["track_id"])] = (a.x - 1, a.y - 1, a.w, a.h)
+    for item, kind, a in datumaro(clip.path("mot"), "mot_seq"):
+        clip.check_class(a.attributes["track_id"], kind)
+        assert not a.attributes["ignored"] and not a.attributes["occluded"]
+        boxes[(int(item.id) - 1, a.attributes["track_id"])] = (a.x - 1, a.y - 1, a.w, a.h)
     return boxes
 
 
@@ -319,6 +257,23 @@ def yolo(clip):
     return united(pairs)
 
 
+def yolo_ultralytics(clip):
+    """Of frames that are large enough: a line of one pixel from part to part is nothing in these, and below ten pixels nothing is read."""
+    if min(clip.shape) < 100:
+        return None
+    clip.images("yolo", "images")
+    data = yaml.safe_load(clip.text("yolo", "data.yaml"))
+    images = sorted(str(place) for place in clip.path("yolo", data["val"]).iterdir())
+    pairs = []
+    for t, (image, file) in enumerate(zip(images, decode.img2label_paths(images))):
+        _, rows, shape, rings, _, missing, _, _, _, problem = decode.verify_image_label((image, file, "", False, len(data["names"]), 0, 0, False))
+        assert (shape, missing, problem) == (clip.shape, 0, "")
+        for row, ring in zip(rows, decode.resample_segments(rings)):
+            pairs.append(((t, data["names"][int(row[0])]), decode.polygon2mask(shape, [ring * shape[::-1]]) > 0))
+    assert len(images) == len(clip.files)
+    return united(pairs)
+
+
 def davis(clip):
     reader = DAVIS.__new__(DAVIS)
     reader.gt_fol = str(clip.path("davis", "Annotations", "480p"))
@@ -351,10 +306,12 @@ def masks(clip):
     return found
 
 
-# The decoder, and the clip's own view of what it should find.
+# The decoder, the clip's own view of what it should find, and by how much of it at least, if not all.
 DECODERS = {
     "coco": (lambda clip: coco(clip, "coco.json"), lambda clip: clip.masks),
     "coco-polygon": (lambda clip: coco(clip, "coco-polygon.json"), lambda clip: clip.masks),
+    "coco, read by datumaro": (lambda clip: coco_datumaro(clip, "coco"), lambda clip: clip.masks),
+    "coco-polygon, read by datumaro": (lambda clip: coco_datumaro(clip, "coco-polygon"), lambda clip: clip.masks),
     "youtube-vis": (youtube_vis, lambda clip: clip.masks),
     "cvat": (cvat_masks, Clip.in_order),
     "cvat-polygon": (cvat_polygons, Clip.by_class),
@@ -370,30 +327,11 @@ DECODERS = {
     "label-studio-video": (label_studio_video, Clip.boxes),
     "labelme": (labelme, lambda clip: clip.masks),
     "yolo": (yolo, Clip.by_class),
+    "yolo, read by ultralytics": (yolo_ultralytics, Clip.by_class, 0.99),
     "davis": (davis, lambda clip: clip.masks),
     "supervisely": (supervisely, Clip.in_order),
     "masks": (masks, lambda clip: clip.masks),
 }
 
 
-def main(folder):
-    clips = [Clip(case, folder) for case in json.loads((folder / "cases.json").read_text())]
-    report = {}
-    for name, (decoder, truth) in DECODERS.items():
-        shapes, mistakes = 0, []
-        for index, clip in enumerate(clips):
-            try:
-                found, expected = decoder(clip), truth(clip)
-                if found.keys() != expected.keys():
-                    mistakes.append(f"clip {index}: {sorted(found)}, not {sorted(expected)}")
-                for key in found.keys() & expected.keys():
-                    shapes += 1
-                    if not np.array_equal(found[key], expected[key]):
-                        mistakes.append(f"clip {index}, {key}: not the same")
-            except Exception as error:
-                mistakes.append(f"clip {index}: {error!r}")
-        report[name] = {"clips": len(clips), "shapes": shapes, "mistakes": mistakes[:5]}
-    json.dump(report, sys.stdout)
-
-
-main(Path(sys.argv[1]))
+report(DECODERS)
