@@ -77,7 +77,7 @@ export async function files(t) {
   const origin = await listen(t, (incoming, response) => {
     const { url, headers } = incoming;
     asked.push({ url, token: headers.authorization });
-    const [, index] = /^\/(?:data\/)?(\d)\.png$/.exec(url) ?? [];
+    const [, index] = /^\/(?:data\/)?(?:upload\/.*-)?(\d)\.png$/.exec(url) ?? [];
     const upload = url.startsWith('/data/');
     if (upload && headers.authorization !== 'Token secret') response.writeHead(401).end();
     else if (upload && headers.accept !== '*/*') response.writeHead(406).end();
@@ -104,6 +104,16 @@ export function postAs(host, address, body, method = 'POST') {
     });
     asking.on('error', reject).end(body && JSON.stringify(body));
   });
+}
+
+/**
+ * The bodies of /setup and /predict that Label Studio 1.23.2 sent, word for word but for the token: `pairs` of a project with the first
+ * configuration of its page, `videos` with the second. `label-studio start` of PyPI's package sent them, when a model was connected and
+ * predictions were retrieved. Here Label Studio is at `origin`.
+ */
+export function recorded(origin) {
+  const text = readFileSync(new URL('label-studio.json', import.meta.url), 'utf8');
+  return JSON.parse(text.replaceAll('http://localhost:8097', origin));
 }
 
 /** A request of Label Studio for the masks of one task. */

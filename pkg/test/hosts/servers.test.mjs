@@ -7,7 +7,7 @@ import { segmentPair } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
 import { detect, end, handler, startFunction } from '../../../examples/hosts/cvat.mjs';
 import { png } from '../support/frames.mjs';
-import { CONFIG, backend, files, frames, post, task } from './asking.mjs';
+import { CONFIG, backend, files, frames, post, recorded, task } from './asking.mjs';
 
 describe('the Label Studio backend', () => {
   test('health, set-up, versions, webhook', async (t) => {
@@ -18,16 +18,22 @@ describe('the Label Studio backend', () => {
     assert.equal((await post(`${address}/webhook`, { action: 'START_TRAINING' })).status, 200);
   });
 
-  test('the configuration and the task of its page', async (t) => {
-    const { origin } = await files(t);
-    const address = await backend(t, { allow: [origin] });
+  test('what Label Studio sends for the configurations and tasks of its page', async (t) => {
+    const { origin, asked } = await files(t);
+    const { pairs, videos } = recorded(origin);
     const page = readFileSync(new URL('../../../examples/hosts/label-studio.md', import.meta.url), 'utf8');
-    const [, label_config] = /```xml\n([^]*?)```/.exec(page);
-    const data = JSON.parse(/`(\{"first": [^`]*\})`/.exec(page)[1].replaceAll('https://…/', `${origin}/`).replace('/1.png', '/0.png').replace('/2.png', '/1.png'));
-    assert.equal((await post(`${address}/setup`, { project: '1.2', schema: label_config, hostname: 'http://localhost:1', access_token: 'x' })).status, 200);
-    const { status, body } = await post(`${address}/predict`, { tasks: [{ id: 1, data }], label_config, project: '1.2' });
-    assert.equal(status, 200);
+    const on = (pattern) => Array.from(page.matchAll(pattern), ([, text]) => text);
+    assert.deepEqual(on(/```xml\n([^]*?)\n```/g), [pairs, videos].map(({ setup }) => setup.schema));
+    const keys = ({ predict }) => Object.keys(predict.tasks[0].data);
+    assert.deepEqual(on(/A task is `(\{[^`]*\})`/g).map((task) => Object.keys(JSON.parse(task))), [pairs, videos].map(keys));
+
+    const address = await backend(t, { studio: origin });
+    assert.equal((await post(`${address}/setup`, pairs.setup)).status, 200);
+    const { status, body } = await post(`${address}/predict`, pairs.predict);
+    assert.equal(status, 200, JSON.stringify(body));
     assert.deepEqual(body.results[0].result.map(({ value }) => value.brushlabels), [['moving-1']]);
+    const uploads = Object.values(pairs.predict.tasks[0].data);
+    assert.deepEqual(asked.sort((a, b) => uploads.indexOf(a.url) - uploads.indexOf(b.url)), uploads.map((url) => ({ url, token: 'Token secret' })));
   });
 
   test('predictions are the masks of segmentPair, one answer for each task', async (t) => {

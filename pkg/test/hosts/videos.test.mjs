@@ -9,7 +9,7 @@ import { segmentClip } from 'veronese';
 import { boxesOf, rateOf } from '../../../examples/hosts/boxes.mjs';
 import { createFollow } from '../../../examples/hosts/video.mjs';
 import { png } from '../support/frames.mjs';
-import { backend, clip, frames, listen, post, video, videoTask, withoutVideos } from './asking.mjs';
+import { backend, clip, frames, listen, post, recorded, video, videoTask, withoutVideos } from './asking.mjs';
 
 const film = clip();
 const bytes = withoutVideos ? undefined : video(film);
@@ -67,6 +67,22 @@ describe('a video', { skip: withoutVideos, timeout: 120_000 }, () => {
     assert.ok(score > 0 && score <= 1, String(score));
     assert.match(version, /^veronese-/);
     assert.deepEqual(folders(), []);
+  });
+
+  test('is fetched from Label Studio as its own request says', async (t) => {
+    const asked = [];
+    const origin = await listen(t, ({ url, headers }, response) => {
+      asked.push([url, headers.authorization]);
+      response.writeHead(200, { 'Content-Type': 'video/mp4' }).end(bytes);
+    });
+    const { setup, predict } = recorded(origin).videos;
+    const address = await backend(t, { studio: origin });
+    assert.equal((await post(`${address}/setup`, setup)).status, 200);
+    const { status, body } = await post(`${address}/predict`, predict);
+    assert.equal(status, 200, JSON.stringify(body));
+    const [{ from_name: from, to_name: to, value }] = body.results[0].result;
+    assert.deepEqual([from, to, value.labels, value.framesCount], ['box', 'video', ['moving'], film.length]);
+    assert.deepEqual(asked, [[predict.tasks[0].data.video, 'Token secret']]);
   });
 
   test('is counted as Label Studio counts, whatever the rate of the file', async () => {
