@@ -95,7 +95,7 @@ function path({ url }) {
 }
 
 /** Errors of Veronese are the request's fault (422), all others ours (500). */
-export function refusal(error) {
+function refusal(error) {
   if (error instanceof Refusal) return error;
   if (error.name !== 'VeroneseError') console.error(error);
   const ours = error.name !== 'VeroneseError' || ['internal', 'worker-failed', 'wasm-load-failed'].includes(error.code);
@@ -134,7 +134,7 @@ function received(request, budget, held) {
 }
 
 /** A JSON object: nothing that is asked here is anything else. */
-export function parse(bytes) {
+function parse(bytes) {
   let value;
   try {
     value = JSON.parse(bytes.toString());

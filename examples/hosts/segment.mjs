@@ -1,4 +1,4 @@
-// The one function behind every host: two image files in, labels and motions out. It holds a few pairs at a time, however many
+// The function behind the server: two image files in, labels and motions out. It holds a few pairs at a time, however many
 // are asked for.
 
 import { imageSize } from 'image-size';

@@ -5,7 +5,6 @@ import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
-import { detect, end, handler, startFunction } from '../../../examples/hosts/cvat.mjs';
 import { png } from '../support/frames.mjs';
 import { CONFIG, backend, files, frames, post, recorded, task } from './asking.mjs';
 
@@ -112,70 +111,5 @@ describe('the Label Studio backend', () => {
     for (const path of ['/setup', '/webhook']) assert.equal((await post(address + path, 'null')).status, 400, path);
     assert.equal((await fetch(`${address}/train`)).status, 404);
     assert.equal((await post(`${address}/predict`, task(`${origin}/0.png`, `${origin}/1.png`))).status, 200);
-  });
-});
-
-describe('the CVAT function', () => {
-  const request = () => ({ image: Buffer.from(png(frames[0])).toString('base64'), second: Buffer.from(png(frames[1])).toString('base64') });
-
-  async function check(found) {
-    const { labels, motions } = await segmentPair(...frames);
-    assert.equal(found.length, motions.length - 1);
-    for (const { confidence, label, type, points, mask } of found) {
-      const number = Number(label.replace('motion-', ''));
-      const [left, top, right, bottom] = mask.slice(-4);
-      assert.deepEqual([left, top, right - left + 1, bottom - top + 1], motions[number].bbox);
-      const pixels = mask.slice(0, -4);
-      assert.equal(pixels.length, motions[number].bbox[2] * motions[number].bbox[3]);
-      const whole = [...labels].map((_, at) => {
-        const [x, y] = [at % 64, Math.floor(at / 64)];
-        const inside = x >= left && x <= right && y >= top && y <= bottom;
-        return inside ? pixels[(y - top) * (right - left + 1) + x - left] : 0;
-      });
-      assert.deepEqual(whole, [...labels].map((label) => Number(label === number)));
-      assert.equal(type, 'mask');
-      assert.ok(points.length >= 6 && points.length % 2 === 0);
-      assert.ok(Number(confidence) > 0.5 && Number(confidence) <= 1);
-    }
-  }
-
-  test('over HTTP', async (t) => {
-    const server = await startFunction({ jobs: 1 });
-    t.after(() => server.close());
-    const { status, body } = await post(server.address, request());
-    assert.equal(status, 200);
-    await check(body);
-    assert.deepEqual((await post(server.address, { ...request(), threshold: 1 })).body, []);
-    for (const [bad, status, code] of [
-      ['null', 400, 'invalid-input'],
-      ['{', 400, 'invalid-json'],
-      [{}, 422, 'invalid-input'],
-      [{ image: request().image }, 422, 'invalid-input'],
-      [{ ...request(), threshold: 'half' }, 422, 'invalid-input'],
-      [{ ...request(), second: 'AAAA' }, 422, 'unreadable-image'],
-    ]) {
-      const answer = await post(server.address, bad);
-      assert.deepEqual([answer.status, answer.body.error.code], [status, code]);
-    }
-  });
-
-  test("as nuclio's handler", async (t) => {
-    t.after(end);
-    const call = (body) => new Promise((resolve) => {
-      class Response { constructor(body, headers, type, status) { Object.assign(this, { body, type, status }); } }
-      void handler({ Response, callback: resolve }, { body });
-    });
-    const { status, type, body } = await call(Buffer.from(JSON.stringify(request())));
-    assert.deepEqual([status, type], [200, 'application/json']);
-    await check(JSON.parse(body));
-    assert.equal((await call(request())).status, 200, 'or an object, as nuclio gives it');
-    assert.equal((await call({})).status, 422);
-    for (const bad of [Buffer.from('{'), Buffer.from('null'), null, undefined]) assert.equal((await call(bad)).status, 400, String(bad));
-  });
-
-  test('nothing moves: no masks', async (t) => {
-    t.after(end);
-    const segment = async () => segmentPair(frames[0], frames[0], { confidence: true });
-    assert.deepEqual(await detect(segment, request()), []);
   });
 });
