@@ -1,7 +1,8 @@
 """The part of CVAT that a task of one job needs: CVAT's REST interface in the words of its own SDK.
 
-cvat_server.py FRAMES prints its port. Requests are checked with the models of the real SDK, and more strictly than CVAT does: what its page
-cannot open is refused. As in CVAT, what is updated is deleted and created again, with other ids.
+cvat_server.py FRAMES prints its port. Requests and answers are checked with the models of the real SDK 2.80.0, which are made of the schema of
+CVAT's interface (cvat/schema.yml of that version), and requests more strictly than CVAT does: what its page cannot open is refused. As in CVAT
+(cvat/apps/dataset_manager/task.py), what is updated is deleted and created again, with other ids, which the answer has.
 
 Beside it, for tests: GET /test/masks gives the pixels of all tracks, as COCO's own code fills polygons, and GET /test/log what was asked.
 POST /test/settings changes SETTINGS, POST /test/tracks puts tracks in the place of all.
@@ -48,6 +49,19 @@ class Refused(Exception):
         self.status = status
 
 
+def valid(model, data):
+    """The data, if they have the types of the model."""
+    validate_and_convert_types(data, (model,), ["body"], True, True, Configuration())
+    return data
+
+
+def agreed(model, answer):
+    """An answer with the fields of CVAT's, and no others."""
+    unknown = set(answer) - set(model.attribute_map.values())
+    assert not unknown, f"CVAT's {model.__name__} has no {unknown}"
+    return valid(model, answer)
+
+
 def about():
     return {"name": "CVAT", "description": "", "version": "2.80.0", "logo_url": "", "subtitle": ""}
 
@@ -58,7 +72,7 @@ def task():
         "assignee": None, "bug_tracker": "", "created_date": WHEN, "updated_date": WHEN, "overlap": 0, "segment_size": SETTINGS["segment_size"],
         "status": "annotation", "data_chunk_size": 72, "data_compressed_chunk_type": "imageset", "guide_id": None, "data_original_chunk_type": "imageset",
         "size": SETTINGS["size"], "image_quality": 70, "data": 1, "dimension": "2d", "subset": "", "organization_id": None, "organization": None,
-        "target_storage": None, "source_storage": None, "assignee_updated_date": None, "validation_mode": None, "consensus_enabled": False,
+        "target_storage": None, "source_storage": None, "assignee_updated_date": None, "validation_mode": None, "initial_replicas": 0, "project_name": None, "data_cloud_storage_id": None,
         "jobs": {"url": "", "count": 1, "completed": 0, "validation": 0}, "labels": {"url": f"http://localhost/api/labels?task_id={TASK}"},
     }
 
@@ -77,13 +91,21 @@ def meta():
 
 
 def annotations():
-    return {"version": 0, "tags": [], "shapes": [], "tracks": list(tracks.values())}
+    return labelled(tracks.values())
+
+
+def labelled(found):
+    for track in found:
+        agreed(models.LabeledTrack, track)
+        for shape in track["shapes"]:
+            agreed(models.TrackedShape, shape)
+    return agreed(models.LabeledData, {"version": 0, "tags": [], "shapes": [], "tracks": list(found), "intervals": []})
 
 
 def checked(data):
     """Throws unless the body is what the SDK's own models say, and CVAT's page can show it."""
     try:
-        validate_and_convert_types(data, (models.PatchedLabeledDataRequest,), ["body"], True, True, Configuration())
+        valid(models.PatchedLabeledDataRequest, data)
     except exceptions.OpenApiException as error:
         raise Refused(400, str(error)) from error
     if data.get("tags") or data.get("shapes"):
@@ -118,12 +140,15 @@ def patch(action, data):
         for track in wanted:
             if tracks.pop(track.get("id"), None) is None:
                 raise Refused(400, f"there is no track {track.get('id')}")
-    for track in wanted if action != "delete" else []:
-        number = next(ids)
-        shapes = [{**shape, "id": next(ids), "points": [round(value, 2) for value in shape["points"]]} for shape in track["shapes"]]
-        tracks[number] = {**track, "id": number, "shapes": shapes, "elements": []}
     log.append({"action": action, "groups": [track.get("group") for track in wanted]})
-    return {**data, "version": 0, "tags": [], "shapes": []}
+    return labelled(wanted if action == "delete" else [created(track) for track in wanted])
+
+
+def created(track):
+    number = next(ids)
+    shapes = [{**shape, "id": next(ids), "points": [round(value, 2) for value in shape["points"]]} for shape in track["shapes"]]
+    tracks[number] = {**track, "id": number, "shapes": shapes, "elements": []}
+    return tracks[number]
 
 
 def put(wanted):
@@ -178,7 +203,7 @@ class Handler(BaseHTTPRequestHandler):
 
     def found(self, route, query, body):
         if route == "GET /api/server/about":
-            return about()
+            return agreed(models.About, about())
         if route == "POST /api/auth/login":
             given = json.loads(body)
             if (given.get("username"), given.get("password")) != (USER, PASSWORD):
@@ -195,18 +220,18 @@ class Handler(BaseHTTPRequestHandler):
         if self.headers.get("Authorization") != f"Bearer {TOKEN}" and not in_session:
             raise Refused(401, "Authentication credentials were not provided.")
         if route == "GET /api/users/self":
-            return USER_MODEL
+            return agreed(models.User, USER_MODEL)
         if route == "GET /api/labels":
-            return labels()
+            return agreed(models.PaginatedLabelList, labels())
         if (match := re.fullmatch(r"(\w+) /api/tasks/(\d+)(.*)", route)) and int(match[2]) == TASK:
             return self.of_task(match[1] + match[3], query, body)
         raise Refused(404, f"Not found: {route}")
 
     def of_task(self, route, query, body):
         if route == "GET":
-            return task()
+            return agreed(models.TaskRead, task())
         if route == "GET/data/meta":
-            return meta()
+            return agreed(models.DataMetaRead, meta())
         if route == "GET/data" and query.get("type") == "frame" and query.get("quality") == "original":
             return FILES[int(query["number"])].read_bytes()
         if route == "GET/annotations":
