@@ -3,7 +3,7 @@
 python cvat-clip.py annotate TASK --out DIR [--label NAME]
 python cvat-clip.py correct TASK --out DIR [--propagate both|forward|backward|none]
 
-Server and credentials are given as to CVAT's own command line: --server-host and the like, CVAT_ACCESS_TOKEN. See README.md.
+Server and credentials are given as to CVAT's own command line: --server-host and the like, CVAT_ACCESS_TOKEN. See cvat.md.
 """
 
 import argparse

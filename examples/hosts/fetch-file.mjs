@@ -51,7 +51,7 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
     let trusted = true;
     for (let hop = 0; hop <= REDIRECTS; hop++) {
       trusted &&= url.origin === home;
-      const response = await get(url, trusted ? token : undefined, signal);
+      const response = await get(url, trusted && token ? await authorization(token, address, signal) : undefined, signal);
       const next = [301, 302, 303, 307, 308].includes(response.statusCode) ? response.headers.location : undefined;
       if (next === undefined) return content(response, address, kind, url);
       response.destroy();
@@ -60,12 +60,22 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
     throw refused(address, `is redirected more than ${REDIRECTS} times`);
   }
 
-  function get(url, token, signal) {
+  /** Of a personal access token Label Studio makes one that opens its files for some minutes. Legacy tokens open them as they are. */
+  async function authorization(token, address, signal) {
+    if (!/^[^.]+\.[^.]+\.[^.]+$/.test(token)) return `Token ${token}`;
+    const headers = { 'Content-Type': 'application/json' };
+    const request = { method: 'POST', headers, body: JSON.stringify({ refresh: token }), redirect: 'error', signal };
+    const response = await fetch(new URL('/api/token/refresh', home), request);
+    if (!response.ok) throw refused(address, unopened(response.status));
+    return `Bearer ${(await response.json()).access}`;
+  }
+
+  function get(url, authorization, signal) {
     const host = url.hostname.replace(/^\[|\]$/g, '');
     const free = named.has(url.origin);
     if (!free && isIP(host)) checkAddress(host, url);
     // Label Studio answers 406 to who wants images alone.
-    const headers = { Accept: '*/*', 'Accept-Encoding': 'identity', ...(token && { Authorization: `Token ${token}` }) };
+    const headers = { Accept: '*/*', 'Accept-Encoding': 'identity', ...(authorization && { Authorization: authorization }) };
     const request = url.protocol === 'https:' ? secureRequest : plainRequest;
     const options = { agent: false, headers, signal, lookup: free ? lookup : checkedLookup(url) };
     return new Promise((resolve, reject) => request(url, options).once('response', resolve).on('error', reject).end());
@@ -89,7 +99,7 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
   async function content(response, address, kind, { origin }) {
     const { statusCode: status, headers } = response;
     const problem = () => {
-      if (origin === home && [401, 403].includes(status)) return `answered ${status}: see LABEL_STUDIO_API_KEY in README.md`;
+      if (origin === home && [401, 403].includes(status)) return unopened(status);
       if (status < 200 || status > 299) return `answered ${status}`;
       const type = headers['content-type'];
       if (type !== undefined && !TYPES[kind].test(type)) return `is ${type}, not ${kind === 'image' ? 'an image' : 'a video'}`;
@@ -116,6 +126,10 @@ export function originOf(text) {
   const url = URL.canParse(text) ? new URL(text) : undefined;
   if (!url || !/^https?:$/.test(url.protocol)) throw new Error(`'${text}' is not an address of http or https`);
   return url.origin;
+}
+
+function unopened(status) {
+  return `answered ${status}: see LABEL_STUDIO_API_KEY in label-studio.md`;
 }
 
 async function inline(address) {

@@ -6,7 +6,7 @@ import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
-import { CONFIG, backend, files, frames, post, recorded, task } from './asking.mjs';
+import { CONFIG, backend, files, frames, listen, post, recorded, task } from './asking.mjs';
 
 describe('the Label Studio backend', () => {
   test('health, set-up, versions, webhook', async (t) => {
@@ -75,6 +75,24 @@ describe('the Label Studio backend', () => {
     asked.length = 0;
     assert.equal((await post(`${address}/predict`, wanted)).status, 200);
     assert.deepEqual(asked.map(({ url }) => url).sort(), ['/data/0.png', '/data/1.png']);
+  });
+
+  test('a personal access token is exchanged for one that opens files', async (t) => {
+    const asked = [];
+    const origin = await listen(t, async (incoming, response) => {
+      const { method, url, headers } = incoming;
+      const body = Buffer.concat(await incoming.toArray()).toString();
+      asked.push([method, url]);
+      const [, index] = /^\/data\/(\d)\.png$/.exec(url) ?? [];
+      if (index !== undefined) response.writeHead(headers.authorization === 'Bearer brief' ? 200 : 401).end(png(frames[index]));
+      else response.writeHead(body === '{"refresh":"a.b.c"}' ? 200 : 401).end('{"access":"brief"}');
+    });
+    const ask = async (token) => post(`${await backend(t, { studio: origin, token })}/predict`, task('/data/0.png', '/data/1.png'));
+    assert.equal((await ask('a.b.c')).status, 200);
+    assert.deepEqual(asked.slice(0, 2), Array(2).fill(['POST', '/api/token/refresh']));
+    const { status, body } = await ask('a.b.d');
+    assert.deepEqual([status, body.error.code], [422, 'file-not-found']);
+    assert.match(body.error.message, /answered 401.*LABEL_STUDIO_API_KEY/);
   });
 
   test('origin and token of the environment', async (t) => {
