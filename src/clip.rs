@@ -1,6 +1,7 @@
 //! Clips: objects that keep their number from their first frame to their last.
 //!
-//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/tracker.rs`, `clip/evidence.rs`).
+//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/tracker.rs`, `clip/evidence.rs`), and
+//!    where these show no object with an earlier one (`clip/farther.rs`).
 //! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
 //!    first one's cut.
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
@@ -18,6 +19,7 @@ mod correction;
 mod description;
 mod edits;
 mod evidence;
+mod farther;
 mod frame_annotation;
 mod frame_state;
 mod grouping;

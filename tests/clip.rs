@@ -92,6 +92,16 @@ fn what_moves_is_seen_in_repeated_frames_too() {
 }
 
 #[test]
+fn what_neighbours_do_not_show_is_seen_in_frames_farther_apart() {
+    let things = [thing(2, [34.0, 30.0], |t| [50.0 + 0.1 * t as f32, 44.0])];
+    let (frames, truths) = noisy_scene(1, &things, 24);
+    one_number(&segment(&frames, options(Quality::Best, None)), &truths, 1, 0..24);
+    for (quality, look_ahead) in [(Quality::Best, Some(0)), (Quality::Fast, Some(0)), (Quality::Fast, Some(4))] {
+        one_number(&segment(&frames, options(quality, look_ahead)), &truths, 1, 16..24);
+    }
+}
+
+#[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];
     let (frames, truths) = scene(1, &things, 16);

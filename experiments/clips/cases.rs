@@ -68,7 +68,7 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// All clips, those of `shared` only if it is there; with `quick` every fourth of the generated clips and none of the real ones.
 pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
-    let mut cases = generated();
+    let mut cases = generated(1.0);
     if quick {
         cases = cases.into_iter().skip(2).step_by(4).collect();
     }
@@ -79,14 +79,20 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The generated clips.
-pub(crate) fn generated() -> Vec<Case> {
+/// The generated clips, at a share of the usual speed.
+pub(crate) fn generated(speed: f64) -> Vec<Case> {
     let mut cases = Vec::new();
     for (k, (events, objects)) in GENERATED.into_iter().enumerate() {
         let seed = SEED + k as u64;
         let frames = if events.contains(&Event::Cut) { FRAMES_WITH_CUT } else { FRAMES };
-        let options =
-            ClipSceneOptions { frames, objects, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
+        let options = ClipSceneOptions {
+            frames,
+            objects,
+            events: events.to_vec(),
+            speed,
+            seed,
+            ..ClipSceneOptions::default()
+        };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
         cases.push(Case::generated(name, options));

@@ -32,6 +32,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
+  --speed S          generated clips alone, at this share of the usual speed
   --methods A,B      only these methods: clip, stream, stream-fast, live, flow, mog2, knn
   --out DIR          output folder; default out/clips
   --pairs DIR        keeps what pairs of the real clips told, as the annotator benchmark does in out/annotator/pairs
@@ -43,6 +44,7 @@ struct Options {
     step: String,
     quick: bool,
     only: Vec<String>,
+    speed: Option<f64>,
     methods: Vec<String>,
     out: PathBuf,
     pairs: Option<PathBuf>,
@@ -61,6 +63,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         step: String::new(),
         quick: false,
         only: Vec::new(),
+        speed: None,
         methods: Vec::new(),
         out: PathBuf::from("out/clips"),
         pairs: None,
@@ -74,6 +77,10 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--quick" => options.quick = true,
             "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
+            "--speed" => {
+                let speed = value()?;
+                options.speed = Some(speed.parse().map_err(|_| format!("--speed must be a number, not '{speed}'."))?);
+            }
             "--out" => options.out = PathBuf::from(value()?),
             "--pairs" => options.pairs = Some(PathBuf::from(value()?)),
             "--shared" => options.shared = PathBuf::from(value()?),
@@ -87,7 +94,10 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    let mut cases = cases::all(&options.shared, options.quick)?;
+    let mut cases = match options.speed {
+        Some(speed) => cases::generated(speed),
+        None => cases::all(&options.shared, options.quick)?,
+    };
     if !options.only.is_empty() {
         cases.retain(|case| options.only.iter().any(|part| case.name.contains(part)));
     }
@@ -104,7 +114,7 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    if cases.iter().all(cases::Case::is_generated) && !options.quick && options.only.is_empty() {
+    if cases.iter().all(cases::Case::is_generated) && !options.quick && options.speed.is_none() && options.only.is_empty() {
         eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
     }
     let mut methods = Method::ALL.to_vec();

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use super::carry::continued_labels;
 use super::evidence::{Flow, Pairs, flow, odds};
+use super::farther::{FARTHEST, Farther, Told, shows_object};
 use super::identity::{Identities, Parting};
 use super::options::{ClipOptions, MAX_LOOK_AHEAD, model};
 use super::record::{Record, unit_borders};
@@ -37,6 +38,7 @@ pub(crate) struct Tracker {
     prior: Option<Prior>,
     /// The newest frames of a whole clip, which wait for what moves after them, and the odds of their own pairs.
     held: VecDeque<(Rc<Record>, Plane)>,
+    farther: Farther,
     /// Frames since something moved.
     still: usize,
     rounds: [Round; 2],
@@ -56,14 +58,17 @@ pub(crate) struct Latest {
 
 /// The newest frame.
 #[derive(Clone, Debug)]
-struct Newest {
+pub(super) struct Newest {
     frame: Rc<Frame>,
     pyramid: Rc<FramePyramid>,
     /// Whether it shows the frame before again.
-    repeats: bool,
+    pub(super) repeats: bool,
     /// Odds and flow of the pair with the frame before.
-    back: Option<(Plane, Flow)>,
+    pub(super) back: Option<(Plane, Flow)>,
+    /// Whether the odds are those of the pair with an earlier frame.
+    looked_farther: bool,
 }
+
 
 /// A frame whose objects are known.
 #[derive(Debug)]
@@ -99,6 +104,7 @@ impl Tracker {
             waits: false,
             prior: None,
             held: VecDeque::new(),
+            farther: Farther::new(),
             still: REACH,
             rounds,
             identities,
@@ -127,7 +133,7 @@ impl Tracker {
         self.size = Some(size);
         let settings = self.options.settings(size);
         let pyramid = Rc::new(settings.pyramid(&frame));
-        let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None };
+        let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None, looked_farther: false };
         let Some(last) = self.last.take() else {
             self.waits = self.options.look_ahead != Some(0);
             self.last = Some(newest.clone());
@@ -140,7 +146,7 @@ impl Tracker {
             None => both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
-        Ok((self.take(last, newest, pairs.clone()), pairs))
+        Ok((self.take(last, newest, pairs.clone(), &settings), pairs))
     }
 
     /// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
@@ -171,9 +177,18 @@ impl Tracker {
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.
-    fn take(&mut self, last: Newest, newest: Newest, Pairs { onward, back, prior }: Pairs) -> Option<Tracked> {
+    fn take(&mut self, mut last: Newest, newest: Newest, pairs: Pairs, settings: &Settings) -> Option<Tracked> {
+        let Pairs { mut onward, back, prior } = pairs;
         self.prior = prior;
-        let newest = Newest { back, ..newest };
+        let mut newest = Newest { back, ..newest };
+        if let Some(Told { odds, reach }) = self.farther.look(&last, &newest, settings) {
+            // Frames between in which nothing was seen are no evidence of ground.
+            let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(odds, _)| odds);
+            let between = self.held.iter_mut().rev().take(reach - 1).map(|(_, odds)| odds).chain(of_last);
+            between.filter(|odds| !shows_object(odds)).for_each(|odds| odds.values_mut().fill(0.0));
+            newest.back.iter_mut().for_each(|(near, _)| near.clone_from(&odds));
+            newest.looked_farther = true;
+        }
         self.last = Some(newest.clone());
         if self.options.look_ahead.is_none() {
             let (odds, onward) = onward.unzip();
@@ -207,6 +222,7 @@ impl Tracker {
             frames.push(self.tracked(foreground));
         }
         (self.count, self.size, self.waits, self.prior, self.still) = (0, None, false, None, REACH);
+        self.farther = Farther::new();
         frames
     }
 
@@ -228,11 +244,16 @@ impl Tracker {
     /// Hands a frame to the rounds, with what is known of its way to the next one.
     fn advance(
         &mut self,
-        Newest { frame, pyramid, repeats, back }: Newest,
+        Newest { frame, pyramid, repeats, back, looked_farther }: Newest,
         onward_odds: Option<Plane>,
         onward: Option<Flow>,
     ) -> Option<Tracked> {
-        let (back_odds, back) = back.unzip();
+        let (mut back_odds, back) = back.unzip();
+        let onward_odds = onward_odds.filter(|odds| !looked_farther || shows_object(odds));
+        // Both views of a lone pair make the same mistakes: the second one tells nothing new.
+        if onward.is_none() && self.held.back().is_some_and(|(record, _)| record.back.is_none()) {
+            back_odds.iter_mut().for_each(|odds| odds.values_mut().fill(0.0));
+        }
         let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
         // Of object against background from the frame's pairs, or from the one in which something moves; zero where there is no pair.
         let odds = match (onward_odds, back_odds) {
@@ -257,7 +278,7 @@ impl Tracker {
         self.count += 1;
         self.latest = Some(Latest { record: record.clone(), frame, odds: odds.clone() });
         self.held.push_back((record, odds));
-        let holds = if self.options.look_ahead.is_none() { REACH } else { 0 };
+        let holds = if self.options.look_ahead.is_none() { FARTHEST } else { 0 };
         if self.held.len() > holds { self.release() } else { None }
     }
 
@@ -267,8 +288,9 @@ impl Tracker {
         // A scene begins as if nothing had moved for long.
         let before = if record.back.is_none() { REACH } else { self.still };
         self.still = if record.is_still() { before.saturating_add(1) } else { 0 };
-        let mut after = self.held.iter().take_while(|(record, _)| record.back.is_some());
-        if (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still()) {
+        let mut after = self.held.iter().take(REACH).take_while(|(record, _)| record.back.is_some());
+        let is_near = (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still());
+        if is_near && !shows_object(&odds) {
             odds.values_mut().fill(0.0);
         }
         let foreground = self.rounds[0].push(record, odds)?;
@@ -320,6 +342,6 @@ fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
 }
 
 /// The motions of the first of two frames to the second.
-fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> FrameMotions {
+pub(super) fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> FrameMotions {
     frame_motions(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
 }
