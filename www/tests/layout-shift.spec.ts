@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { done, expect, openEmpty, shown, test, upload } from './support.js';
+import { done, expect, openEmpty, openSampleClip, shown, test, upload, withSmallSampleClip } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -55,4 +55,20 @@ test('three steps through a clip and choosing a tool shift nothing, on a desktop
       expect(await places()).toEqual(before);
     }
   }
+});
+
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+
+  test('the page keeps its layout while it opens, and while the clip is segmented', async ({ page }) => {
+    await withSmallSampleClip(page);
+    await page.addInitScript(() => {
+      const shifts: number[] = [];
+      new PerformanceObserver((list) => shifts.push(...list.getEntries().map((entry) => (entry as PerformanceEntry & { value: number }).value))).observe({ type: 'layout-shift' });
+      Object.assign(window, { shifts });
+    });
+    await openSampleClip(page);
+    const shifts = await page.evaluate(() => (window as unknown as { shifts: number[] }).shifts);
+    expect(shifts.reduce((sum, shift) => sum + shift, 0)).toBeLessThanOrEqual(0.05);
+  });
 });

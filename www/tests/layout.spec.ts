@@ -83,3 +83,41 @@ test('a sample that is clicked is in view, on a laptop and on a phone', async ({
     }
   }
 });
+
+for (const hasTouch of [false, true]) {
+  test.describe(`low and wide, ${hasTouch ? 'a phone on its side' : 'a page at 200 %'}`, () => {
+    test.use({ viewport: { width: 640, height: 360 }, hasTouch, isMobile: hasTouch });
+
+    test('nothing lies over the picture, all is in reach, and what went wrong covers no button', async ({ page }) => {
+      await openSegmentedClip(page);
+      for (const tool of ['look', 'brush']) {
+        await page.locator(`#tools [value=${tool}]`).check({ force: true });
+        const places = await page.evaluate(() => ['.masthead', '.layers', '#timeline', '#tools', '.panel'].map((part) => ({ part, ...(document.querySelector(part)!.getBoundingClientRect().toJSON() as DOMRect) })));
+        const over = places.flatMap((a, k) => places.slice(k + 1).filter((b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1).map((b) => `${a.part} ${b.part}`));
+        expect(over).toEqual([]);
+        for (const { part, bottom, right } of places) expect([part, bottom <= 361 && right <= 641]).toEqual([part, true]);
+      }
+      await expect(page.locator('#track')).toBeInViewport({ ratio: 0.5 });
+      await expect(page.locator('#objects')).toBeInViewport();
+      for (const part of ['#accept', '.lane-name >> nth=1', '#settings', '[name=radius]', '#undo', '#objects li >> nth=1']) {
+        await page.locator(part).scrollIntoViewIfNeeded();
+        await expect(page.locator(part)).toBeInViewport();
+      }
+      expect(await page.evaluate(() => [document.documentElement.scrollWidth, scrollY])).toEqual([640, 0]);
+
+      await upload(page, [{ name: `${'a long name '.repeat(18)}.png`, mimeType: 'image/png', buffer: Buffer.from('none') }]);
+      await expect(page.locator('#notice')).toBeVisible();
+      const covered = await page.evaluate(() => {
+        const at = (button: HTMLElement): Element | null => {
+          const { left, top, width, height } = button.getBoundingClientRect();
+          return document.elementFromPoint(left + width / 2, top + height / 2);
+        };
+        const notice = document.querySelector<HTMLElement>('#notice')!;
+        const under = [...document.querySelectorAll<HTMLElement>('button, label')].filter((button) => notice.contains(at(button)) && !notice.contains(button));
+        notice.style.display = 'none';
+        return under.filter((button) => button.contains(at(button))).map((button) => button.textContent);
+      });
+      expect(covered).toEqual([]);
+    });
+  });
+}

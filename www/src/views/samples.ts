@@ -7,9 +7,6 @@ import { timelineOf } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 
-/** Where the list of masks is beside the picture, not below it: there it needs the room. */
-const BESIDE = matchMedia('(min-width: 900px)');
-
 export function mountSamples(root: HTMLElement, store: Store, session: Session): void {
   const buttons = SAMPLES.map((sample) => ({ sample, button: buttonOf(sample, () => void session.open.sample(sample)) }));
   root.append(...buttons.map(({ button }) => button));
@@ -22,9 +19,8 @@ export function mountSamples(root: HTMLElement, store: Store, session: Session):
   find(details, 'summary', HTMLElement).addEventListener('click', () => (touched = true));
   const fold = (): void => {
     const { pair, live } = store.get();
-    if (!touched) details.open = !BESIDE.matches || pair.first === null || live !== null || open() !== undefined;
+    if (!touched) details.open = pair.first === null || live !== null || open() !== undefined;
   };
-  BESIDE.addEventListener('change', fold);
   store.subscribe(({ pair }, before) => {
     if (pair === before.pair) return;
     fold();

@@ -46,7 +46,8 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
       speeds.setAttribute('aria-label', strings.speedIs(speed));
     }
     if (timeline === before.timeline) return;
-    root.hidden = pair.hidden = timeline === null;
+    root.classList.toggle('empty', timeline === null);
+    pair.hidden = timeline === null;
     if (timeline === null) return;
     const { clip } = timeline;
     if (clip !== before.timeline?.clip) {

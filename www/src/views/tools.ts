@@ -13,6 +13,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const names = ['look', 'brush', 'eraser', 'polygon', 'box'] as const;
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
+  const sizeValue = find(form, '.size output', HTMLElement);
   const helps = names.map((name) => ({ name, help: find(document, `#tool-help [data-help=${name}]`, HTMLElement) }));
   const spread = find(form, '[name=spread]', HTMLSelectElement);
   const exact = find(form, '[name=exact]', HTMLInputElement);
@@ -38,7 +39,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       radio.disabled = !usable && radio.value !== 'look';
       if (radio.value === 'box') radio.parentElement!.hidden = clip === null;
     }
-    size.value = String(tool.radius);
+    size.value = sizeValue.textContent = String(tool.radius);
     spread.value = tool.spread;
     spread.parentElement!.hidden = clip === null;
     spread.disabled = exact.checked = tool.exact;
