@@ -124,6 +124,14 @@ test('accepted frames stay accepted and as they are when something is corrected 
   expect([1, 4].map((index) => differences(now[index]!, before[index]!))).toEqual([0, 0]);
   expect(differences(now[2]!, before[2]!)).toBeGreaterThan(0);
 
+  await test.step('only those are told that a correction may reach', async () => {
+    await undo(page);
+    await page.getByLabel('Frames that follow a correction').selectOption('forward');
+    await drag(page, at(32, 30), at(52, 30));
+    await expect(status(page)).toHaveText(/^Corrected: .* One accepted frame stays as it is\.$/);
+    await page.getByLabel('Frames that follow a correction').selectOption('both');
+  });
+
   await test.step('it is so after the clip is segmented again, and after a reload', async () => {
     await page.getByRole('button', { name: 'Segment the clip again' }).click();
     await expect(status(page)).toHaveText(/corrected as before/);

@@ -141,13 +141,13 @@ export const strings = {
     resume: 'Continue',
     pairs: (done: number, of: number, left: number | null): string => (done < of ? `${whole.format(done)} of ${frames(of)}${remaining(left)}` : 'Following the objects…'),
     corrections: 'Carrying your correction to other frames…',
-    changed: (count: number): string => `${whole.format(count)} so far`,
+    carried: (done: number, of: number, left: number | null): string => `${whole.format(done)} of ${frames(of)}${remaining(left)}`,
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
     started: 'Segmenting…',
     drafting: 'Segmenting… Drafts for now.',
-    /** `accepted`: frames that it may not change. */
-    corrected: (changed: number, accepted: number): string =>
-      `Corrected: the masks of ${frames(changed)} have changed.${changed > 1 && accepted > 0 ? ` ${accepted === 1 ? 'One accepted frame stays as it is' : `${whole.format(accepted)} accepted frames stay as they are`}.` : ''}`,
+    /** `kept`: accepted frames that it came to. */
+    corrected: (changed: number, kept: number): string =>
+      `Corrected: the masks of ${frames(changed)} have changed.${kept === 0 ? '' : kept === 1 ? ' One accepted frame stays as it is.' : ` ${whole.format(kept)} accepted frames stay as they are.`}`,
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     locked: (): string => 'Locked.',

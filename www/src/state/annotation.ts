@@ -33,6 +33,11 @@ export function isPrompt(one: Annotation): one is Prompt {
   return 'clicks' in one;
 }
 
+/** Whether it may change the masks of a frame. */
+export function reaches({ frame, propagate }: Annotation, index: number): boolean {
+  return index === frame || propagate === 'both' || propagate === (index < frame ? 'backward' : 'forward');
+}
+
 /** Whether it is a label map that names objects. */
 export function namesObjects({ labels: { labels } }: Painted): boolean {
   return labels.some((label) => label !== 0 && label !== UNLABELLED);

@@ -23,15 +23,16 @@ type ChangeCause = 'corrected' | 'undone' | 'redone';
 /** The run on the clip as a whole. */
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
-  /** `changed`: number of frames whose masks are others than before. `notes`: why nothing was found, or what is likely to be wrong. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number; readonly notes?: readonly Note[] }
+  /** `changed`: number of frames whose masks are others than before. `kept`: of accepted ones that a correction came to and left as they are. `notes`: why nothing was found, or what is likely to be wrong. */
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number; readonly kept?: number; readonly notes?: readonly Note[] }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
       /** Time left until all masks are there, seconds; `null` until it is known. */
       readonly left: number | null;
-      /** Number of frames that are labelled, or that a correction has changed. */
+      /** Number of frames that are labelled, or that a correction has come through, and of those that it may reach. */
       readonly labelled: number;
+      readonly of?: number;
     };
 
 /** The solved pairs of each frame, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */

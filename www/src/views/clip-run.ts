@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, acceptedIn, isDrafting, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
+import { type Tracked, isDrafting, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipRun(root: HTMLElement, store: Store, session: Session): void {
@@ -60,7 +60,7 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : isDrafting(tracked) ? tracking.drafting : tracking.started;
     case 'done':
-      if (run.cause === 'corrected') return tracking.corrected(run.changed, acceptedIn(tracked).length);
+      if (run.cause === 'corrected') return tracking.corrected(run.changed, run.kept ?? 0);
       if (run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
       return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)), run.notes);
     case 'cancelled':
@@ -71,13 +71,14 @@ function sentenceFor(tracked: Tracked): string {
 
 function detailOf({ run, solved, range }: Tracked): string {
   if (run.phase !== 'working') return '';
-  if (run.stage === 'corrections') return run.labelled === 0 ? '' : strings.tracking.changed(run.labelled);
+  if (run.stage === 'corrections') return run.of === undefined ? '' : strings.tracking.carried(run.labelled, run.of, run.left);
   return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(run.labelled, solved);
 }
 
 /** The share that is done, 0 to 1; `null` if it is not known. */
 export function shareOf({ run, solved, range }: Tracked): number | null {
-  if (run.phase !== 'working' || run.stage === 'corrections') return null;
+  if (run.phase !== 'working') return null;
+  if (run.stage === 'corrections') return run.of === undefined ? null : run.labelled / run.of;
   if (run.stage === 'labels') return run.labelled / Math.max(1, solved);
   const of = lengthOf(range);
   return solved < of ? solved / of : null;

@@ -5,8 +5,8 @@ import { strings } from '../../common/strings.js';
 import { type Correction, type Drawn, type Noted, withCorrection } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { isPrompt } from '../../state/annotation.js';
-import { type ClipRun, type Notes, type TrackedFrame, type Version, unchanged, versionOf } from '../../state/tracked.js';
+import { isPrompt, reaches } from '../../state/annotation.js';
+import { type ClipRun, type Notes, type TrackedFrame, type Version, acceptedIn, unchanged, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import type { Change, ClipRuns } from './runs.js';
 import type { Spans } from './spans.js';
@@ -134,7 +134,7 @@ export class Carrying {
     if (next === undefined) return;
     set({ run: CARRYING });
     corrections.now = withCorrection(before, next);
-    const after = unchanged(before, await this.#carried(before, next, corrections, signal));
+    const after = unchanged(before, await this.#carried(before, next, corrections, signal, set));
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;
     const annotations = 'annotations' in next ? next.annotations : [];
@@ -145,14 +145,16 @@ export class Carrying {
     corrections.settled = corrections.now = isNothing ? before : after;
     if (!isNothing) set({ past: [...now.past, before], future: [] });
     // Later corrections stay on screen.
-    const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(corrections.settled, before) } as const);
+    const kept = acceptedIn(corrections.settled).filter((index) => annotations.some((one) => reaches(one, index))).length;
+    const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(corrections.settled, before), kept } as const);
     this.#shown.version(waiting.reduce(withCorrection, corrections.settled), run);
   }
 
   /** The masks of all frames after a correction. */
-  async #carried(before: Version, correction: Correction, corrections: Corrections, signal: AbortSignal): Promise<Version> {
+  async #carried(before: Version, correction: Correction, corrections: Corrections, signal: AbortSignal, set: Change): Promise<Version> {
     const { now } = corrections;
     if (!('edits' in correction || 'annotations' in correction)) return now;
+    const progress = (labelled: number, of: number, left: number | null): void => set({ run: { ...CARRYING, labelled, of, left } });
     const changes = this.#shows(corrections);
     // Frames that do not change are as they were.
     let after: Version = 'edits' in correction ? now : { ...now, frames: before.frames, largest: before.largest };
@@ -161,23 +163,22 @@ export class Carrying {
     for (const span of before.spans) {
       const own = annotations.filter(({ frame }) => spanAt(before.spans, frame) === span);
       const isAbout = own.length > 0 || [...span.numbers.values()].some((id) => objects.has(id));
-      if (isAbout) after = await this.#spans.corrected(after, span, own, signal, changes);
+      if (isAbout) after = await this.#spans.corrected(after, span, own, signal, { changes, progress });
     }
     return after;
   }
 
   /** Shows frames as a correction changes them: those on screen at once, others soon. */
   #shows(corrections: Corrections): (index: number, masks: TrackedFrame) => void {
-    const changed = new Set<number>();
     let shown = -Infinity;
     return (index, masks) => {
       const { now, settled, waiting } = corrections;
-      changed.add(index);
       corrections.now = { ...now, frames: unchanged(settled, { frames: now.frames.with(index, masks) }).frames, largest: Math.max(now.largest, ...masks.objects.map(({ id }) => id)) };
-      const { timeline } = this.#store.get();
+      const { timeline, tracked } = this.#store.get();
+      if (tracked === null) return;
       if (index !== timeline?.first && index !== timeline?.second && performance.now() - shown < OFTEN) return;
       shown = performance.now();
-      this.#shown.version(waiting.reduce(withCorrection, corrections.now), { ...CARRYING, labelled: changed.size });
+      this.#shown.version(waiting.reduce(withCorrection, corrections.now), tracked.run);
     };
   }
 }

@@ -1,19 +1,28 @@
 //! Corrections of frames that were segmented together, as the package answers them: the next version of the masks. It shows nothing.
 
-import type { ClipEdits, ClipFrame, ClipOptions, Segmenter } from 'veronese';
+import type { ClipEdits, ClipFrame, ClipOptions, ClipProgress, Segmenter } from 'veronese';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { exactly, overlaid } from '../../state/exact.js';
 import { contains, fromSpan, spanAt } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
-import type { Annotation } from '../../state/annotation.js';
+import { type Annotation, reaches } from '../../state/annotation.js';
 import { editsIn, namesIn, annotationAtSize, packageNumbers, toSpan, forPackage } from '../../state/package-numbers.js';
-import { type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
+import { type Range, type Span, type Tracked, type TrackedFrame, type Version, acceptedIn } from '../../state/tracked.js';
 import { ClipFrames, blobOf, bytesOf, masksOf } from './frames.js';
+import { TimeLeft } from './time-left.js';
 
 /** Memory for frames that a correction reads again, bytes. */
 const ROOM = 64 << 20;
+
+/** What is told while a correction spreads. */
+interface Told {
+  /** Frames as they change, perhaps not for the last time. */
+  readonly changes: (index: number, masks: TrackedFrame) => void;
+  /** The number of frames that it has come through, of those that it may reach, and the seconds left; `null` until they are known. */
+  readonly progress: (done: number, of: number, left: number | null) => void;
+}
 
 export class Spans {
   readonly #store: Store;
@@ -24,10 +33,11 @@ export class Spans {
     this.#segmenter = segmenter;
   }
 
-  /** Tells the package what is new in a span, and what became of objects. `changes` takes frames as they change, perhaps not for the last time. */
-  corrected(version: Version, span: Span, annotations: readonly Annotation[], signal: AbortSignal, changes: (index: number, masks: TrackedFrame) => void): Promise<Version> {
+  /** Tells the package what is new in a span, and what became of objects. */
+  corrected(version: Version, span: Span, annotations: readonly Annotation[], signal: AbortSignal, telling: Told): Promise<Version> {
     const accepted = acceptedIn(version).filter((index) => spanAt(version.spans, index) === span);
-    return this.#answer(version, span, signal, changes, (numbers) => ({
+    const told = { ...telling, of: reachOf(annotations, span.range) };
+    return this.#answer(version, span, signal, told, (numbers) => ({
       ...forPackage(annotations, span.range, numbers),
       accepted: accepted.map((index) => index - span.range.first),
       locked: packageNumbers(numbers, version.became, (id) => version.locked.has(id)),
@@ -61,7 +71,7 @@ export class Spans {
     version: Version,
     span: Span,
     signal: AbortSignal,
-    changes: ((index: number, masks: TrackedFrame) => void) | null,
+    told: (Told & { readonly of: number }) | null,
     tell: (numbers: Map<number, number>) => Pick<ClipOptions, 'corrections' | 'prompts' | 'accepted' | 'locked'> & Pick<ClipEdits, 'names'>,
   ): Promise<Version> {
     const { tracked, settings, pair } = this.#store.get();
@@ -79,9 +89,18 @@ export class Spans {
     const onChange = async (index: number, segmented: () => Promise<ClipFrame>): Promise<void> => {
       if (!isOwn(first + index)) return;
       const frame = await segmented();
-      if (!signal.aborted) changes?.(first + index, numbered(frame));
+      if (!signal.aborted) told?.changes(first + index, numbered(frame));
     };
     const { names, ...asked } = tell(numbers);
+    // A frame may be read again: first it tells what objects look like.
+    const reached = new Set<number>();
+    const time = new TimeLeft(0, told?.of ?? 0);
+    const onProgress = ({ stage, frame }: ClipProgress): void => {
+      if (told === null || stage !== 'corrections' || signal.aborted) return;
+      reached.add(frame);
+      const done = Math.min(reached.size, told.of);
+      told.progress(done, told.of, time.at(done));
+    };
     const found = this.#segmenter.segmentClip(frames, {
       ...asked,
       state: await bytesOf(span.state),
@@ -90,7 +109,7 @@ export class Spans {
       signal,
       transfer: true,
       edits: { ...editsIn(numbers, version.became), names },
-      ...(changes && { onChange }),
+      ...(told && { onChange, onProgress }),
     });
     const masks = [...version.frames];
     for await (const frame of found) {
@@ -102,6 +121,13 @@ export class Spans {
     const spans = version.spans.map((other) => (other === span ? { ...span, state: blobOf(state), numbers } : other));
     return exactly({ ...version, frames: masks, spans, largest });
   }
+}
+
+/** The number of frames in a range that annotations may reach. */
+function reachOf(annotations: readonly Annotation[], { first, last }: Range): number {
+  let count = 0;
+  for (let index = first; index <= last; index++) if (annotations.some((one) => reaches(one, index))) count += 1;
+  return count;
 }
 
 /** The frames of a span as a correction reads them, several times: those on screen need no decoding. */
