@@ -185,8 +185,14 @@ test('only the frames from the in point to the out point are segmented and expor
   await openClip(page, files);
   const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
   await expect(to).toHaveAttribute('aria-valuetext', 'Frame 6');
-  // The in point by key, the out point by its handle.
   const track = page.getByRole('slider', { name: 'Current frame' });
+  // The handles cover no frame, from its first pixel to its last.
+  const free = await track.evaluate((track) => {
+    const { left, right, top } = track.getBoundingClientRect();
+    return [left + 1, right - 1].every((x) => track.contains(document.elementFromPoint(x, top + 10)));
+  });
+  expect(free).toBe(true);
+  // The in point by key, the out point by its handle.
   for (const index of [1, 2]) {
     await track.press('ArrowRight');
     await expect(track).toHaveAttribute('aria-valuenow', String(index));
