@@ -2,7 +2,6 @@
 
 import { SAMPLES, type Sample, sampleCalled } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
-import { timelineOf } from '../state/pair.js';
 import { DEFAULT_SETTINGS, type Settings, settingFrom } from '../state/settings.js';
 import type { State } from '../state/state.js';
 
@@ -27,9 +26,9 @@ export function settingsFromHash(hash: string): Linked {
 }
 
 /** The page's address with the sample and the settings after the `#`, which is never sent to a server. */
-export function linkFor({ settings, forced, look: { kind }, pair, automatic }: Pick<State, 'settings' | 'forced' | 'look' | 'pair' | 'automatic'>, address: string): string {
+export function linkFor({ settings, forced, look: { kind }, tracked, automatic }: Pick<State, 'settings' | 'forced' | 'look' | 'tracked' | 'automatic'>, address: string): string {
   const values = new URLSearchParams();
-  const sample = timelineOf(pair)?.clip.sample;
+  const sample = tracked?.clip.sample;
   // The first needs none: the page opens with it.
   if (sample !== undefined && sample !== SAMPLES[0]) values.set('sample', sample.id);
   for (const [name, value] of Object.entries({ ...settings, motions: forced ?? settings.motions })) {

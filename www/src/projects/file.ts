@@ -3,7 +3,6 @@
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import type { Runs } from '../correction/runs.js';
-import type { Subject } from '../state/pair.js';
 import type { TrackedFrame } from '../state/tracked.js';
 import { isContent, isRuns } from './content.js';
 import type { Project } from './project.js';
@@ -17,7 +16,7 @@ const MEDIA_TYPE = 'application/gzip';
 const PLACES = ['masks', 'image', 'bytes'] as const;
 
 /** The first line: what a list of projects shows. */
-export interface Header extends Subject, Pick<Project, 'thumbnail'> {
+export interface Header extends Pick<Project, 'of' | 'name' | 'frames' | 'sample' | 'thumbnail'> {
   readonly format: typeof FORMAT;
   readonly version: typeof VERSION;
   /** When it was written, as an ISO 8601 date. */

@@ -1,7 +1,7 @@
 //! A project: the work on one clip, without the frames. It is gathered from the state, and put back into it when the same frames are opened
 //! again.
 
-import { type FramePair, type Subject, subjectOfClip, timelineOf } from '../state/pair.js';
+import { type FramePair, timelineOf } from '../state/pair.js';
 import type { State } from '../state/state.js';
 import { isPrompt } from '../state/annotation.js';
 import { type SolvedPairs, type Tracked, type TrackedFrame, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
@@ -15,7 +15,12 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'past' | '
   readonly solved: SolvedPairs | null;
 }
 
-export interface Project extends Subject, Pick<State, 'settings' | 'classList'> {
+export interface Project extends Pick<State, 'settings' | 'classList'> {
+  /** The clip: its fingerprint, its name, the number of its frames, and the sample that it is, if it is one. */
+  readonly of: string;
+  readonly name: string;
+  readonly frames: number;
+  readonly sample?: string;
   /** A small picture of the frame on screen and its masks, as a `data:` address. */
   readonly thumbnail?: string | undefined;
   readonly clip: ProjectClip;
@@ -26,7 +31,8 @@ export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<s
   const { settings, classList } = state;
   const tracked = trackedOf(state, of);
   if (tracked === null || (tracked.clip.sample && tracked.solved === 0 && !isTracked(tracked))) return null;
-  return { ...subjectOfClip(tracked.clip), classList, settings, clip: partOf(tracked, state, solvedPairs.get(of) ?? null) };
+  const { name, count, sample } = tracked.clip;
+  return { of, name, frames: count, ...(sample && { sample: sample.id }), classList, settings, clip: partOf(tracked, state, solvedPairs.get(of) ?? null) };
 }
 
 function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {

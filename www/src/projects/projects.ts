@@ -5,7 +5,7 @@ import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { type Sample, sampleCalled } from '../frames/samples.js';
-import { type FramePair, subjectOf } from '../state/pair.js';
+import { type FramePair, timelineOf } from '../state/pair.js';
 import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
@@ -84,26 +84,27 @@ export class Projects {
 
   /** The open clip was opened from these files. */
   comeFrom(files: readonly File[]): void {
-    const subject = subjectOf(this.#store.get().pair);
-    if (subject === null) return;
-    this.#files.set(subject.of, files);
+    const of = openIn(this.#store.get());
+    if (of === undefined) return;
+    this.#files.set(of, files);
     // It is kept from the first moment, so that a reload finds it.
-    this.#touch(subject.of, SOON);
+    this.#touch(of, SOON);
   }
 
   /** The project of these frames, if it is not in the state already. */
   async find(pair: FramePair): Promise<Project | null> {
-    const subject = subjectOf(pair);
-    if (subject === null) return null;
-    const opened = this.#opened.get(subject.of);
-    if (opened === undefined && this.#known.has(subject.of)) return null;
-    this.#lookedFor.set(subject.of, new Date().toISOString());
+    const clip = timelineOf(pair)?.clip;
+    if (clip === undefined) return null;
+    const { fingerprint: of, name, count } = clip;
+    const opened = this.#opened.get(of);
+    if (opened === undefined && this.#known.has(of)) return null;
+    this.#lookedFor.set(of, new Date().toISOString());
     if (opened === undefined && (await isNothingKept())) return null;
     try {
-      const project = opened ?? (await (await this.#load()).get(subject.of, subject.name));
+      const project = opened ?? (await (await this.#load()).get(of, name));
       // Browsers that read a video approximately may count other frames.
-      if (project === null || project.frames === subject.frames) return project;
-      this.#store.say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
+      if (project === null || project.frames === count) return project;
+      this.#store.say(strings.projects.otherFrames(name, project.frames, count), 'frame-count-mismatch');
     } catch (error) {
       const code = codeOf(error);
       // What has no code comes from the browser.
@@ -115,8 +116,8 @@ export class Projects {
 
   /** Puts what was found for these frames, which are about to be shown, into the state. */
   restore(project: Project | null, pair: FramePair): void {
-    const subject = subjectOf(pair);
-    if (subject !== null) this.#known.add(subject.of);
+    const clip = timelineOf(pair)?.clip;
+    if (clip !== undefined) this.#known.add(clip.fingerprint);
     if (project === null || this.#shelf === null) return;
     const { withProject } = this.#shelf;
     this.#opened.delete(project.of);
@@ -131,7 +132,7 @@ export class Projects {
   async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
     const shelf = await this.#load();
     const { fileOf, withSaved } = shelf;
-    const project = await this.#projectOf(subjectOf(this.#store.get().pair)?.of ?? '', shelf);
+    const project = await this.#projectOf(openIn(this.#store.get()) ?? '', shelf);
     if (project === null) return null;
     const content = await fileOf(project, new Date());
     this.#store.set(withSaved(this.#store.get(), project));
@@ -143,7 +144,7 @@ export class Projects {
     const state = this.#store.get();
     const project = projectFrom(state, of, this.#pairs);
     if (project === null) return null;
-    const seen = subjectOf(state.pair)?.of === of ? await thumbnailOf(state).catch(() => null) : null;
+    const seen = openIn(state) === of ? await thumbnailOf(state).catch(() => null) : null;
     const thumbnail = seen ?? this.#thumbnails.get(of);
     if (thumbnail !== undefined) this.#thumbnails.set(of, thumbnail);
     return { ...project, thumbnail };
@@ -165,7 +166,7 @@ export class Projects {
   }
 
   #watch(now: State, before: State): void {
-    const keeping = now.pair === before.pair ? now.keeping : (this.#keeping.get(subjectOf(now.pair)?.of ?? '') ?? NOTHING_KEPT);
+    const keeping = openIn(now) === openIn(before) ? now.keeping : (this.#keeping.get(openIn(now) ?? '') ?? NOTHING_KEPT);
     if (keeping !== now.keeping) this.#store.set({ keeping });
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (clip === null || clip.clip !== clipBefore?.clip) return;
@@ -259,8 +260,13 @@ export class Projects {
 
   #tell(of: string, keeping: Keeping): void {
     this.#keeping.set(of, keeping);
-    if (subjectOf(this.#store.get().pair)?.of === of) this.#store.set({ keeping });
+    if (openIn(this.#store.get()) === of) this.#store.set({ keeping });
   }
+}
+
+/** The fingerprint of the clip that is open. */
+function openIn({ tracked }: State): string | undefined {
+  return tracked?.clip.fingerprint;
 }
 
 /** Whether nothing can be found, so that a first visit need not look. */

@@ -14,27 +14,6 @@ export interface LoadedFrame extends DecodedFrame {
 /** The two frames; `null` until a frame is opened. */
 export type FramePair = Readonly<Record<Slot, LoadedFrame | null>>;
 
-/** The clip that work is about. */
-export interface Subject {
-  /** Its fingerprint. */
-  readonly of: string;
-  readonly name: string;
-  /** Number of frames. */
-  readonly frames: number;
-  /** The sample that it is, if it is one. */
-  readonly sample?: string;
-}
-
-/** The subject of the work on this pair; `null` if it is of no clip. */
-export function subjectOf(pair: FramePair): Subject | null {
-  const clip = timelineOf(pair)?.clip;
-  return clip === undefined ? null : subjectOfClip(clip);
-}
-
-export function subjectOfClip({ fingerprint, name, count, sample }: Clip): Subject {
-  return { of: fingerprint, name, frames: count, ...(sample && { sample: sample.id }) };
-}
-
 /** The open clip and the indices of the two frames in it. */
 export interface Timeline {
   readonly clip: Clip;

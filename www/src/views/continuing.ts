@@ -4,7 +4,6 @@ import { strings } from '../common/strings.js';
 import { sampleCalled } from '../frames/samples.js';
 import { type Listed, framesOf, list, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
-import { subjectOf } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 import { showRows } from './rows.js';
@@ -17,7 +16,7 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
   const section = find(root, '#continue', HTMLElement);
   const [newest, others] = section.querySelectorAll('ul');
   const more = find(section, 'details', HTMLDetailsElement);
-  const open = (): string | undefined => subjectOf(store.get().pair)?.of;
+  const open = (): string | undefined => store.get().tracked?.clip.fingerprint;
 
   const update = async (): Promise<void> => {
     const listed = await list().catch((): Listed[] => []);
@@ -35,8 +34,8 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
 
   watch(refresh);
   let of = open();
-  store.subscribe((now, before) => {
-    if (now.pair === before.pair || open() === of) return;
+  store.subscribe(() => {
+    if (open() === of) return;
     of = open();
     refresh();
   });

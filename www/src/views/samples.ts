@@ -3,7 +3,6 @@
 
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
-import { timelineOf } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 
@@ -12,7 +11,7 @@ export function mountSamples(root: HTMLElement, store: Store, session: Session):
   root.append(...buttons.map(({ button }) => button));
   new IntersectionObserver((changes) => root.classList.toggle('seen', changes.at(-1)!.isIntersecting)).observe(root);
 
-  const open = (): Sample | undefined => timelineOf(store.get().pair)?.clip.sample;
+  const open = (): Sample | undefined => store.get().tracked?.clip.sample;
   const details = find(document, '#welcome', HTMLDetailsElement);
   // Whoever folds or unfolds them has the last word.
   let touched = false;
