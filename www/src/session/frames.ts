@@ -155,10 +155,7 @@ export class Frames {
     const { clip } = timeline;
     const wanted: Timeline = { ...timeline, ...places };
     const shown = timelineOf(pair);
-    const missing = (['first', 'second'] as const).flatMap((slot) => {
-      const index = wanted[slot];
-      return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
-    });
+    const missing = (['first', 'second'] as const).filter((slot) => wanted[slot] !== shown?.[slot]).map((slot) => ({ slot, index: wanted[slot] }));
     if (missing.length === 0) {
       this.#parts.opening.stay();
       return Promise.resolve();

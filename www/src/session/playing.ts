@@ -28,7 +28,7 @@ export class Playing {
     this.#store.set({ playing: !playing });
     if (playing || timeline === null) return;
     const { clip, first } = timeline;
-    let next = first === null || first >= clip.count - 1 ? 0 : first + 1;
+    let next = first >= clip.count - 1 ? 0 : first + 1;
     let end = performance.now(); // of the time of the frame before
     while (this.#store.get().playing && next < clip.count) {
       await this.#frames.goTo(next);

@@ -53,7 +53,7 @@ function captionOf(state: State): string {
   if (slot === null) return '';
   if (state.live !== null) return strings.camera;
   const { look, timeline } = state;
-  if (look.kind === 'objects' && look.view !== 'split' && timeline !== null) return strings.frameNumber(timeline[slot] ?? 0);
+  if (look.kind === 'objects' && look.view !== 'split' && timeline !== null) return strings.frameNumber(timeline[slot]);
   const held = look.stabilised === null || (look.view === 'first' && !look.blinking) ? '' : strings.stabilised(nameOf(look, look.stabilised));
   return `${look.view === 'split' ? strings.split : strings.slot[slot]}${held}`;
 }
