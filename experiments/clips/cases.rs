@@ -85,14 +85,8 @@ pub(crate) fn generated(speed: f64) -> Vec<Case> {
     for (k, (events, objects)) in GENERATED.into_iter().enumerate() {
         let seed = SEED + k as u64;
         let frames = if events.contains(&Event::Cut) { FRAMES_WITH_CUT } else { FRAMES };
-        let options = ClipSceneOptions {
-            frames,
-            objects,
-            events: events.to_vec(),
-            speed,
-            seed,
-            ..ClipSceneOptions::default()
-        };
+        let options =
+            ClipSceneOptions { frames, objects, events: events.to_vec(), speed, seed, ..ClipSceneOptions::default() };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
         cases.push(Case::generated(name, options));

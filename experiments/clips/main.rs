@@ -114,7 +114,11 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    if cases.iter().all(cases::Case::is_generated) && !options.quick && options.speed.is_none() && options.only.is_empty() {
+    if cases.iter().all(cases::Case::is_generated)
+        && !options.quick
+        && options.speed.is_none()
+        && options.only.is_empty()
+    {
         eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
     }
     let mut methods = Method::ALL.to_vec();

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use super::evidence::odds;
-use super::tracker::{Newest, solve_view};
+use super::record::Newest;
 use crate::frame::Plane;
 use crate::pair::frame_motions::Expected;
 use crate::pair::settings::Settings;
@@ -53,7 +53,7 @@ impl Farther {
             self.earlier.pop_front();
         }
         let earlier = &self.earlier[self.earlier.len().checked_sub(self.reach)?];
-        let view = solve_view([newest, earlier], settings, Expected::Nothing);
+        let view = newest.motions_to(earlier, settings, Expected::Nothing);
         let told = Told { odds: odds(&view), reach: self.reach };
         if !view.is_cut() && shows_object(&told.odds) {
             return Some(told);

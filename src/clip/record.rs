@@ -3,12 +3,34 @@
 use std::rc::Rc;
 
 use super::evidence::Flow;
-use crate::frame::Frame;
 use crate::frame::palette::Palette;
-use crate::frame::pyramid::Appearance;
+use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
+use crate::pair::frame_motions::{Expected, FrameMotions, frame_motions};
+use crate::pair::settings::Settings;
 use crate::view::cost::SMALLEST_NOISE;
+
+/// The newest frame of a clip.
+#[derive(Clone, Debug)]
+pub(crate) struct Newest {
+    pub(crate) frame: Rc<Frame>,
+    pub(crate) pyramid: Rc<FramePyramid>,
+    /// Whether it shows the frame before again.
+    pub(crate) repeats: bool,
+    /// Odds and flow of the pair with the frame before.
+    pub(crate) back: Option<(Plane, Flow)>,
+    /// Whether the odds are those of the pair with an earlier frame.
+    pub(crate) looked_farther: bool,
+}
+
+impl Newest {
+    /// The motions of its pixels to another frame.
+    pub(crate) fn motions_to(&self, other: &Newest, settings: &Settings, expected: Expected<'_>) -> FrameMotions {
+        frame_motions(&self.frame, &self.pyramid, &other.pyramid, settings, expected)
+    }
+}
 
 /// A frame with the evidence of its pairs. Rounds over the clip share it.
 #[derive(Debug)]

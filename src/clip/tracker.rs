@@ -8,13 +8,12 @@ use super::evidence::{Flow, Pairs, flow, odds};
 use super::farther::{FARTHEST, Farther, Told, shows_object};
 use super::identity::{Identities, Parting};
 use super::options::{ClipOptions, MAX_LOOK_AHEAD, model};
-use super::record::{Record, unit_borders};
+use super::record::{Newest, Record, unit_borders};
 use super::round::{Foreground, Round};
 use crate::error::{Error, Result};
-use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::options::Quality;
-use crate::pair::frame_motions::{Expected, FrameMotions, Prior, frame_motions};
+use crate::pair::frame_motions::{Expected, Prior};
 use crate::pair::settings::Settings;
 
 /// A frame in which nothing moves is no evidence of ground if something moves in one so near to it: frames may be shown several times, as
@@ -55,20 +54,6 @@ pub(crate) struct Latest {
     /// Odds of object against background, nats.
     pub(crate) odds: Plane,
 }
-
-/// The newest frame.
-#[derive(Clone, Debug)]
-pub(super) struct Newest {
-    frame: Rc<Frame>,
-    pyramid: Rc<FramePyramid>,
-    /// Whether it shows the frame before again.
-    pub(super) repeats: bool,
-    /// Odds and flow of the pair with the frame before.
-    pub(super) back: Option<(Plane, Flow)>,
-    /// Whether the odds are those of the pair with an earlier frame.
-    looked_farther: bool,
-}
-
 
 /// A frame whose objects are known.
 #[derive(Debug)]
@@ -166,11 +151,11 @@ impl Tracker {
             (Some(prior), Some(labels)) => Expected::Labels(prior, labels),
             _ => Expected::Nothing,
         };
-        let back = solve_view([newest, last], settings, expected);
+        let back = newest.motions_to(last, settings, expected);
         if back.is_cut() {
             return Pairs::default();
         }
-        let onward = self.waits.then(|| solve_view([last, newest], settings, Expected::Nothing));
+        let onward = self.waits.then(|| last.motions_to(newest, settings, Expected::Nothing));
         let prior = back.prior();
         let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
@@ -186,7 +171,9 @@ impl Tracker {
             let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(odds, _)| odds);
             let between = self.held.iter_mut().rev().take(reach - 1).map(|(_, odds)| odds).chain(of_last);
             between.filter(|odds| !shows_object(odds)).for_each(|odds| odds.values_mut().fill(0.0));
-            newest.back.iter_mut().for_each(|(near, _)| near.clone_from(&odds));
+            if let Some((near, _)) = &mut newest.back {
+                *near = odds;
+            }
             newest.looked_farther = true;
         }
         self.last = Some(newest.clone());
@@ -289,7 +276,8 @@ impl Tracker {
         let before = if record.back.is_none() { REACH } else { self.still };
         self.still = if record.is_still() { before.saturating_add(1) } else { 0 };
         let mut after = self.held.iter().take(REACH).take_while(|(record, _)| record.back.is_some());
-        let is_near = (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still());
+        let is_near =
+            (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still());
         if is_near && !shows_object(&odds) {
             odds.values_mut().fill(0.0);
         }
@@ -330,18 +318,13 @@ impl Tracker {
 
 /// In a whole clip a frame has a pair with each of its neighbours.
 fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-    let onward = solve_view([last, newest], settings, Expected::Nothing);
+    let onward = last.motions_to(newest, settings, Expected::Nothing);
     let inverse = flow(onward.clone()).continued();
     let labels = continued_labels(&inverse);
-    let back = solve_view([newest, last], settings, Expected::Inverse { motions: &inverse.motions, labels });
+    let back = newest.motions_to(last, settings, Expected::Inverse { motions: &inverse.motions, labels });
     if onward.is_cut() && back.is_cut() {
         return Pairs::default();
     }
     let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
     Pairs { onward, back, prior: None }
-}
-
-/// The motions of the first of two frames to the second.
-pub(super) fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> FrameMotions {
-    frame_motions(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
 }
