@@ -102,6 +102,24 @@ fn what_neighbours_do_not_show_is_seen_in_frames_farther_apart() {
 }
 
 #[test]
+fn two_frames_alone_are_a_clip() {
+    let things = [thing(2, [34.0, 30.0], |t| [50.0 + 3.0 * t as f32, 44.0])];
+    let (frames, truths) = noisy_scene(1, &things, 2);
+    for quality in [Quality::Best, Quality::Fast] {
+        let done = segment(&frames, options(quality, None));
+        one_number(&done, &truths, 1, 0..2);
+        let [mut first, mut again] = [(); 2].map(|()| ClipSegmenter::new(options(quality, None)).unwrap());
+        for frame in &frames {
+            let pairs = first.push(frame.clone()).unwrap();
+            again.push_known(frame.clone(), &pairs).unwrap();
+        }
+        let labels = |clip: &SegmentedClip| frames_of(clip, &frames).into_iter().map(|frame| frame.labels).collect();
+        let all: [Vec<Vec<u8>>; 2] = [first, again].map(|segmenter| labels(&segmenter.conclude()));
+        assert!(all.iter().flatten().zip(done.iter().chain(&done)).all(|(labels, frame)| *labels == frame.labels));
+    }
+}
+
+#[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];
     let (frames, truths) = scene(1, &things, 16);

@@ -31,6 +31,8 @@ pub(crate) struct Tracker {
     /// Frames so far.
     count: usize,
     last: Option<Newest>,
+    /// The first frame of a whole clip, until there are three.
+    first: Option<Newest>,
     /// Whether the newest frame waits for its pair with the next one.
     waits: bool,
     /// The expectation of a fast stream for the next pair.
@@ -86,6 +88,7 @@ impl Tracker {
             size: None,
             count: 0,
             last: None,
+            first: None,
             waits: false,
             prior: None,
             held: VecDeque::new(),
@@ -122,9 +125,13 @@ impl Tracker {
         let Some(last) = self.last.take() else {
             self.waits = self.options.look_ahead != Some(0);
             self.last = Some(newest.clone());
+            self.first = Some(newest.clone()).filter(|_| self.options.look_ahead.is_none());
             let tracked = if self.waits { None } else { self.advance(newest, None, None) };
             return Ok((tracked, Pairs::default()));
         };
+        if self.count > 0 {
+            self.first = None;
+        }
         newest.repeats = last.frame.colours() == newest.frame.colours();
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
             _ if newest.repeats => self.repeated(&newest, &settings),
@@ -193,8 +200,18 @@ impl Tracker {
 
     /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
     pub(crate) fn finish(&mut self) -> Vec<Tracked> {
-        self.latest = None;
-        let Some(last) = self.last.take() else { return Vec::new() };
+        let Some(mut last) = self.last.take() else { return Vec::new() };
+        // Two frames alone are looked at more closely, as those of a pair are; with quality fast neither are.
+        let closely = self.options.pair.quality == Quality::Best && last.back.is_some() && !last.repeats;
+        if let Some(first) = self.first.take().filter(|_| closely) {
+            let settings = Settings::of_lone_pair(&self.options.pair, [last.frame.width(), last.frame.height()]);
+            let Pairs { onward, back, .. } = both_ways(&first, &last, &settings);
+            last.back = back;
+            self.held.clear();
+            self.count = 0;
+            let (odds, onward) = onward.unzip();
+            self.advance(first, odds, onward);
+        }
         let mut frames = Vec::new();
         if self.waits {
             frames.extend(self.advance(last, None, None));
@@ -208,6 +225,7 @@ impl Tracker {
         while let Some(foreground) = self.rounds[1].next() {
             frames.push(self.tracked(foreground));
         }
+        self.latest = None;
         (self.count, self.size, self.waits, self.prior, self.still) = (0, None, false, None, REACH);
         self.farther = Farther::new();
         frames

@@ -37,6 +37,15 @@ impl Settings {
         refit(level, selected, self.model.refit_rounds, self.refinement);
     }
 
+    /// Refines motions that come from a sample of the working pixels on all of them.
+    fn complete(&self, pair: &Pair, selected: &mut Vec<ScoredMotion>) {
+        if self.completes {
+            let level = pair.finest();
+            *selected = scored_on(level, &motions_of(selected));
+            refit(level, selected, 1, self.refinement);
+        }
+    }
+
     /// Takes motions away that do not pay for themselves, unless their number is given.
     fn prune(&self, level: &Level, selected: &mut Vec<ScoredMotion>) {
         if self.least == 1 {
@@ -82,6 +91,9 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
         let level = &level.thinned();
         *selected = scored_on(level, &motions_of(selected));
         rejected = add_fine(level, selected, settings).or(rejected);
+    }
+    if pair.selection > 0 {
+        settings.complete(pair, selected);
     }
     rejected
 }
@@ -145,6 +157,7 @@ pub(super) fn follow(
     let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
     labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
     let cost = smallest_cost(&selected).total();
+    settings.complete(pair, &mut selected);
     (motions_of(&selected), cost)
 }
 
