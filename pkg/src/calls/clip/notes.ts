@@ -9,8 +9,8 @@ import type { ClipResults, Ground, SeenPair } from './tracks.js';
 
 /** Pairs of neighbouring frames that are looked at, all over the clip. */
 const PAIRS = 5;
-/** Distances at which frames are compared where neighbours show nothing. */
-const STEPS = [2, 4, 8, 16];
+/** Distances at which frames are compared where those up to eight apart, which a clip compares itself, show nothing. */
+const STEPS = [16, 32];
 
 /** The frames of a clip that can be read once more. */
 interface SeenFrames {
@@ -48,7 +48,7 @@ async function whyEmpty(tracks: ClipTracks, frames: SeenFrames): Promise<Note> {
   if (reason.code === 'no-contrast' || reason.code === 'cut') return { ...reason, message: `${reason.message}, in ${count(reason.code)} of ${some.length} pairs that were looked at` };
   const step = await tellingStep(frames);
   if (step === undefined) return reason;
-  const message = `between neighbouring frames nothing moves far enough to be told; between frames that are ${step} apart something does`;
+  const message = `between frames that are up to 8 apart nothing moves far enough to be told; between frames that are ${step} apart something does`;
   return { code: 'small-steps', message, step };
 }
 
