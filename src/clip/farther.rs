@@ -4,10 +4,12 @@
 //! so slow is carried along it as well.
 
 use std::collections::VecDeque;
+use std::rc::Rc;
 
 use super::evidence::odds;
 use super::record::Newest;
 use crate::frame::Plane;
+use crate::frame::pyramid::FramePyramid;
 use crate::pair::frame_motions::Expected;
 use crate::pair::settings::Settings;
 
@@ -20,7 +22,7 @@ pub(super) const FARTHEST: usize = 8;
 #[derive(Debug)]
 pub(super) struct Farther {
     /// Those since an object was seen to move between neighbours, the newest last.
-    earlier: VecDeque<Newest>,
+    earlier: VecDeque<Rc<FramePyramid>>,
     /// How far back the next frame looks.
     reach: usize,
 }
@@ -48,7 +50,7 @@ impl Farther {
         if newest.repeats {
             return None;
         }
-        self.earlier.push_back(last.clone());
+        self.earlier.push_back(last.pyramid.clone());
         if self.earlier.len() > FARTHEST {
             self.earlier.pop_front();
         }

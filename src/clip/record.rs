@@ -27,8 +27,8 @@ pub(crate) struct Newest {
 
 impl Newest {
     /// The motions of its pixels to another frame.
-    pub(crate) fn motions_to(&self, other: &Newest, settings: &Settings, expected: Expected<'_>) -> FrameMotions {
-        frame_motions(&self.frame, &self.pyramid, &other.pyramid, settings, expected)
+    pub(crate) fn motions_to(&self, other: &FramePyramid, settings: &Settings, expected: Expected<'_>) -> FrameMotions {
+        frame_motions(&self.frame, &self.pyramid, other, settings, expected)
     }
 }
 

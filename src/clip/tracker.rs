@@ -158,11 +158,11 @@ impl Tracker {
             (Some(prior), Some(labels)) => Expected::Labels(prior, labels),
             _ => Expected::Nothing,
         };
-        let back = newest.motions_to(last, settings, expected);
+        let back = newest.motions_to(&last.pyramid, settings, expected);
         if back.is_cut() {
             return Pairs::default();
         }
-        let onward = self.waits.then(|| last.motions_to(newest, settings, Expected::Nothing));
+        let onward = self.waits.then(|| last.motions_to(&newest.pyramid, settings, Expected::Nothing));
         let prior = back.prior();
         let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
@@ -336,10 +336,10 @@ impl Tracker {
 
 /// In a whole clip a frame has a pair with each of its neighbours.
 fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-    let onward = last.motions_to(newest, settings, Expected::Nothing);
+    let onward = last.motions_to(&newest.pyramid, settings, Expected::Nothing);
     let inverse = flow(onward.clone()).continued();
     let labels = continued_labels(&inverse);
-    let back = newest.motions_to(last, settings, Expected::Inverse { motions: &inverse.motions, labels });
+    let back = newest.motions_to(&last.pyramid, settings, Expected::Inverse { motions: &inverse.motions, labels });
     if onward.is_cut() && back.is_cut() {
         return Pairs::default();
     }
