@@ -243,15 +243,25 @@ model! {
     joint_enough: f64 = 0.02;
 
     /// Weight of how central a figure is. Fit to real pairs and generated scenes.
-    figure_centre: f64 = 17.7;
+    figure_centre: f64 = 18.5;
     /// Weight of how far its flow is from that of a plane. Fit.
-    figure_plane: f64 = 2.75;
-    /// Weight of its share of the jumps of the flow. Fit.
-    figure_jump: f64 = 7.45;
+    figure_plane: f64 = 2.56;
+    /// Weight of the edges along its border. Fit.
+    figure_edge: f64 = 6.9;
     /// Weight of its share of what motions explain better. Fit.
-    figure_gain: f64 = 3.6;
+    figure_gain: f64 = 5.95;
     /// Weight of its share of what is not in the largest group. Fit.
-    figure_kept: f64 = 9.1;
+    figure_kept: f64 = 12.55;
+    /// Weight of the overlap of the main subject and the figure. Fit to real pairs.
+    subject_like: f64 = 10.1;
+    /// Weight of the jumps of the flow along its border. Fit.
+    subject_jump: f64 = 12.7;
+    /// Weight of how central it is. Fit.
+    subject_centre: f64 = 9.3;
+    /// Weight of the edges along its border. Fit.
+    subject_edge: f64 = 6.2;
+    /// Weight of the share of its outline on the frame's border. Fit.
+    subject_frame: f64 = 5.92;
 
     /// Share by which the costs of followed motions may rise without a look at others. Real clips.
     follow_tolerance: f64 = 0.02;

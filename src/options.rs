@@ -191,6 +191,9 @@ pub struct SegmentOptions {
     /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
     /// default `false`.
     pub confidence: bool,
+    /// Take the main subject for the one object, as for a cut-out, and all else for ground: what else moves is not told apart from it;
+    /// default `false`.
+    pub subject: bool,
 }
 
 impl SegmentOptions {
@@ -216,5 +219,11 @@ impl SegmentOptions {
     #[must_use]
     pub const fn with_confidence(self, confidence: bool) -> SegmentOptions {
         SegmentOptions { confidence, ..self }
+    }
+
+    /// The same with another [`subject`](Self::subject).
+    #[must_use]
+    pub const fn with_subject(self, subject: bool) -> SegmentOptions {
+        SegmentOptions { subject, ..self }
     }
 }

@@ -14,6 +14,8 @@ use super::cases::{Data, labels};
 pub(crate) enum Method {
     /// The clip segmenter.
     Clip,
+    /// The same, for the main subject.
+    Subject,
     /// The stream segmenter with a look-ahead.
     Stream(Quality, usize),
     /// OpenCV: DIS flow, the dominant affine motion, a threshold.
@@ -24,8 +26,9 @@ pub(crate) enum Method {
 }
 
 impl Method {
-    pub(crate) const ALL: [Method; 7] = [
+    pub(crate) const ALL: [Method; 8] = [
         Method::Clip,
+        Method::Subject,
         Method::Stream(Quality::Best, 4),
         Method::Stream(Quality::Fast, 4),
         Method::Stream(Quality::Fast, 0),
@@ -37,6 +40,7 @@ impl Method {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Method::Clip => "clip",
+            Method::Subject => "subject",
             Method::Stream(Quality::Best, _) => "stream",
             Method::Stream(_, 0) => "live",
             Method::Stream(..) => "stream-fast",
@@ -49,6 +53,7 @@ impl Method {
     pub(crate) fn title(self) -> &'static str {
         match self {
             Method::Clip => "clip",
+            Method::Subject => "clip, main subject",
             Method::Stream(Quality::Best, _) => "stream, look-ahead 4",
             Method::Stream(_, 0) => "stream, fast, look-ahead 0",
             Method::Stream(..) => "stream, fast, look-ahead 4",
@@ -109,6 +114,10 @@ pub(crate) fn found(
     let start = Instant::now();
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames, kept)?),
+        Method::Subject => {
+            let options = ClipOptions::default().with_pair(SegmentOptions::default().with_subject(true));
+            Some(clip_labels(ClipSegmenter::new(options)?, &data.frames, None)?)
+        }
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
         Method::Flow | Method::Mog2 | Method::Knn => None,
     };

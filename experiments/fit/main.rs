@@ -35,6 +35,7 @@ Fits the constants of src/model.rs. The 30 sequences of real pairs beside the pr
   --all              all pairs of a sequence; otherwise a third of them
   --mirrored         the mean over the four mirror images of each case, which tells smaller changes from chance
   --quality Q        try with best, fast or both; default both
+  --subject          the main subject of each pair
   --out DIR          folder of what was found; default out/fit
   --shared DIR       folder with the pairs; default ../shared
 ";
@@ -47,6 +48,7 @@ struct Options {
     whole: bool,
     images: usize,
     methods: Vec<Method>,
+    subject: bool,
     out: PathBuf,
     shared: PathBuf,
 }
@@ -67,6 +69,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         whole: false,
         images: 1,
         methods: vec![Method::Best, Method::Fast],
+        subject: false,
         out: PathBuf::from("out/fit"),
         shared: PathBuf::from("../shared"),
     };
@@ -82,6 +85,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--all" => options.whole = true,
             "--mirrored" => options.images = 4,
             "--quality" => options.methods = methods(&value()?)?,
+            "--subject" => options.subject = true,
             "--out" => options.out = PathBuf::from(value()?),
             "--shared" => options.shared = PathBuf::from(value()?),
             "try" | "search" | "report" if options.step.is_empty() => options.step = name,
@@ -120,7 +124,7 @@ fn constants(text: &str) -> Result<BTreeMap<String, f64>, String> {
 
 fn run(options: &Options) -> Result<(), Failure> {
     let path = |fold: Part| options.out.join(format!("{}.json", fold.name()));
-    let load = |parts: &[Part]| measure::load(&options.shared, parts, options.whole);
+    let load = |parts: &[Part]| measure::load(&options.shared, parts, options.whole, options.subject);
     let images = options.images;
     match options.step.as_str() {
         "try" => report::tried(&load(&Part::ALL)?, &options.tried, &options.methods, images),

@@ -45,6 +45,8 @@ pub(crate) struct Loaded {
     /// The sequence of a pair, the name of a scene.
     pub(crate) sequence: String,
     data: Data,
+    /// Whether the main subject of a pair is wanted.
+    subject: bool,
 }
 
 /// The scores of a case. Those of a scene: mean IoU, and 1 where the number of motions is right.
@@ -59,7 +61,7 @@ pub(crate) struct Scored {
 }
 
 /// The cases of these parts; of the pairs a third unless all are wanted.
-pub(crate) fn load(shared: &Path, parts: &[Part], whole: bool) -> Result<Vec<Loaded>, Failure> {
+pub(crate) fn load(shared: &Path, parts: &[Part], whole: bool, subject: bool) -> Result<Vec<Loaded>, Failure> {
     let all = cases::all(shared, false).map_err(|error| error.to_string())?;
     let (pairs, scenes): (Vec<Case>, Vec<Case>) = all.into_iter().partition(|case| case.set == Set::Sequences);
     let mut sequences: Vec<String> = pairs.iter().map(|case| case.sequence().to_owned()).collect();
@@ -78,7 +80,7 @@ pub(crate) fn load(shared: &Path, parts: &[Part], whole: bool) -> Result<Vec<Loa
     in_parallel(&chosen, |(part, case)| {
         let data = case.load().map_err(|error| error.to_string())?;
         let sequence = if part.is_fold() { case.sequence().to_owned() } else { case.name.clone() };
-        Ok(Loaded { part: *part, sequence, data })
+        Ok(Loaded { part: *part, sequence, data, subject })
     })
 }
 
@@ -116,9 +118,9 @@ pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method, images: u
         Scored { j: of(|s| s.j), hand: of(|s| s.hand), f: of(|s| s.f) }
     };
     let one = |case: &Loaded, image: [bool; 2]| -> Result<Scored, Failure> {
-        let Loaded { part, data, .. } = case;
+        let Loaded { part, data, subject, .. } = case;
         let data = &mirrored(data, image)?;
-        let options = SegmentOptions::default().with_quality(quality);
+        let options = SegmentOptions::default().with_quality(quality).with_subject(*subject);
         let found = segment_pair_with(model, &data.first, &data.second, &options)?;
         let scores = outcome(method, data, &found.labels, &grouped(&found), 0.0);
         let (Some(single), Some(groups)) = (scores.single, scores.grouped) else {

@@ -38,6 +38,8 @@ pub(crate) struct Parting {
 /// The objects of a clip so far.
 #[derive(Debug)]
 pub(crate) struct Identities {
+    /// Whether all that is found is one object, the main subject.
+    subject: bool,
     objects: Vec<Object>,
     /// In order.
     pub(crate) parted: Vec<Parting>,
@@ -50,14 +52,20 @@ pub(crate) struct Identities {
 }
 
 impl Identities {
-    pub(crate) fn new() -> Identities {
-        Identities { objects: Vec::new(), parted: Vec::new(), last: None, next: 1, dropped: 0 }
+    pub(crate) fn new(subject: bool) -> Identities {
+        Identities { subject, objects: Vec::new(), parted: Vec::new(), last: None, next: 1, dropped: 0 }
     }
 
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
     pub(crate) fn assign(&mut self, record: &Rc<Record>, mask: &[u8]) -> Vec<u8> {
-        let mut carried = self.carried(record, mask);
         let smallest = (Model::DEFAULT.smallest_share * mask.len() as f64) as usize / 2;
+        if self.subject {
+            let mut labels = vec![0u8; mask.len()];
+            let found = components(mask, record.size()[0], Connectivity::Eight);
+            regions(&found, smallest).iter().flatten().for_each(|&p| labels[p] = 1);
+            return labels;
+        }
+        let mut carried = self.carried(record, mask);
         let emerged = self.emerge(record, mask, smallest, &mut carried);
         let mut labels = vec![0u8; mask.len()];
         let mut unclaimed = Vec::new();

@@ -86,11 +86,11 @@ impl ClipSegmenter {
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
         let tracker = Tracker::new(options, false)?;
         // The options that decide how pairs are solved.
-        let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
+        let ClipOptions { pair: SegmentOptions { motions, quality, subject, .. }, look_ahead } = *tracker.options();
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
         let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
-        let options = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
-        let (frames, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(), None));
+        let options = hash(0, &[motions, u8::from(quality == Quality::Best), u8::from(subject), look_ahead]);
+        let (frames, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(subject), None));
         Ok(ClipSegmenter { tracker, frames, hashes, options, origin: options, previews })
     }
 
@@ -117,13 +117,13 @@ impl ClipSegmenter {
     /// previews are those of all frames but the last, and objects keep their number from one to the next.
     pub fn preview(&mut self) -> Option<ClipFrame> {
         let Latest { record, frame, odds } = self.tracker.latest()?;
+        let SegmentOptions { subject, mark_unknown, .. } = self.tracker.options().pair;
         let (objects, last) = &mut self.previews;
         if last.replace(record.index) != record.index.checked_sub(1) {
-            *objects = Identities::new();
+            *objects = Identities::new(subject);
         }
         let mask: Vec<u8> = odds.values().iter().map(|&odds| u8::from(odds > 0.0)).collect();
         let labels = objects.assign(&record, &mask);
-        let mark_unknown = self.tracker.options().pair.mark_unknown;
         let onward = record.onward.as_ref();
         let preview = WorkingFrame { index: record.index, labels: &labels, odds: &odds, onward, mark_unknown };
         Some(preview.described(frame.luminance()))

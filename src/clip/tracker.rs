@@ -81,7 +81,7 @@ impl Tracker {
         let delays = options.look_ahead.map_or([MAX_LOOK_AHEAD; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
         let rounds = [0, 1].map(|k| Round::new(delays[k], solver));
-        let identities = Identities::new();
+        let identities = Identities::new(options.pair.subject);
         Ok(Tracker {
             options,
             keeps_frames,

@@ -3,21 +3,30 @@
 //! Every subset S of the regions could be the figure. The one with the highest score is:
 //!
 //! ```text
-//! score(S) = a centre + b plane + c jump + d gain + e kept
+//! score(S) = a centre + b plane + c edge + d gain + e kept
 //! ```
 //! *centre* is how central the pixels of S are, and *plane* the logarithm of how far their flow is from that of one plane: both are means
-//! over S less means over the rest. The others are shares of all there is, so that two objects score higher than one of them: *jump* of the
-//! jumps of the flow along borders, *gain* of what motions explain better than that of the background, *kept* of what is left when the
-//! largest [group](Regions::groups) is the ground.
+//! over S less means over the rest. *edge* is the mean, along the border of S, of the logarithm of the gradient there against that of the
+//! whole picture: objects end at edges, parts of the ground seldom do. The others are shares of all there is, so that two objects score
+//! higher than one of them: *gain* of what motions explain better than that of the background, *kept* of what is left when the largest
+//! [group](Regions::groups) is the ground.
 //!
-//! The weights make the figure overlap the true one most on real pairs with one object, with a second one pasted in, and on generated scenes.
-//! Each feature wins on sequences that it was not fitted to. Edges of the image along the border won less than chance; depth order at
-//! borders, focus, residuals, shapes, deformation, colours and sizes nothing.
+//! The main subject, where that is asked for, is one thing:
+//!
+//! ```text
+//! score(S) = a like + b jump + c centre + d edge − e frame
+//! ```
+//! *like* is the overlap of S and the figure, *jump* the mean jump of the flow along the border of S against the largest motion, *frame* the
+//! root of the share of its outline that lies on the border of the frame. Where several things move, most of them are lost by it.
+//!
+//! The weights make the figure overlap the true one most on real pairs with one object, with a second one pasted in, and on generated scenes;
+//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. The share of all jumps, depth
+//! order at borders, focus, residuals, shapes, deformation, colours and sizes won nothing beside them.
 
 use super::groups::Regions;
 use super::planar_flow::distances_to_plane;
 use crate::labelling::regions::description::counts;
-use crate::labelling::{BACKGROUND, thinned};
+use crate::labelling::{BACKGROUND, across_borders, thinned};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, costs};
@@ -29,13 +38,28 @@ pub(crate) const GROUND: usize = 0;
 const MOST_OF_FRAME: f64 = 0.5;
 /// Distance to the plane, pixels of the working size, below which all are alike.
 const NEAR: f64 = 0.1;
+/// Motion that every border is measured against at least, pixels of the working size.
+const LEAST_MOTION: f64 = 0.5;
+/// Mean squared gradient below which edges are noise, squared grey levels per pixel.
+const LEAST_GRADIENT: f64 = 0.25;
 /// How fast centrality falls: 1/e at .35 of the frame's sides from its middle.
 const CENTRAL: f64 = 8.0;
 
-/// The groups of the regions of a pair: [`GROUND`], and those of the figure in order of their first region.
-pub(super) fn groups(mut regions: Regions<'_>, motions: &[AffineMotion], labels: &[u8], level: &Level) -> Vec<usize> {
+/// The groups of the regions of a pair: [`GROUND`], and those of the figure in order of their first region. The main subject is one.
+pub(super) fn groups(
+    mut regions: Regions<'_>,
+    motions: &[AffineMotion],
+    labels: &[u8],
+    level: &Level,
+    subject: bool,
+) -> Vec<usize> {
     let joined = regions.clone().groups();
-    let figure = Known::new(&mut regions, &joined, motions, labels, level).figure(level.model);
+    let known = Known::new(&mut regions, &joined, motions, labels, level);
+    let figure = known.figure(level.model);
+    if subject {
+        let subject = known.subject(figure, level.model);
+        return (0..motions.len()).map(|region| if subject >> region & 1 == 0 { GROUND } else { 1 }).collect();
+    }
     let mut found: Vec<usize> = Vec::new();
     let number = |(region, group): (usize, usize)| {
         if figure >> region & 1 == 0 {
@@ -55,13 +79,20 @@ struct Known {
     areas: Vec<f64>,
     /// Share of the frame's border.
     frame: Vec<f64>,
+    /// Length of that border, pixels.
+    around: f64,
     centres: Vec<f64>,
     planes: Vec<f64>,
     gains: Vec<f64>,
     /// Zero of what the largest group is made of.
     kept: Vec<f64>,
-    /// Jump along the border of every two regions times its length.
+    /// Length of the border of every two regions …
+    borders: Vec<f64>,
+    /// … the sum of its edges, and its median jump times the length.
+    edges: Vec<f64>,
     jumps: Vec<f64>,
+    /// The largest motion of a region against the background.
+    largest: f64,
 }
 
 impl Known {
@@ -86,10 +117,14 @@ impl Known {
         let mean = told.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
         Known {
             frame: regions.shares_of_frame(),
+            around: 2.0 * (level.width() + level.height()) as f64,
             centres: centres(labels, level.width(), &areas),
             planes: planes.into_iter().map(|plane| plane.unwrap_or(mean)).collect(),
             gains: gains(motions, labels, level),
+            borders: (0..n * n).map(|k| regions.border([k / n, k % n]) as f64).collect(),
+            edges: edges(labels, n, level),
             jumps: (0..n * n).map(|k| regions.total_jump([k / n, k % n])).collect(),
+            largest: regions.largest_motion(),
             areas,
             kept,
         }
@@ -97,37 +132,66 @@ impl Known {
 
     /// The subset with the highest score, a bit for each region; where there is one group it is ground.
     fn figure(&self, model: &Model) -> u32 {
-        let n = self.areas.len();
-        let kept = (0..n).filter(|&k| self.kept[k] > 0.0).map(|k| 1 << k).sum();
-        let possible = |subset: &u32| self.within(*subset, &self.frame) <= MOST_OF_FRAME;
-        let subsets = (1..(1 << n) - 1).filter(|subset| kept != 0 && possible(subset));
-        let mut best = (f64::NEG_INFINITY, kept);
-        for subset in subsets {
-            let score = self.score(subset, model);
-            if score > best.0 {
-                best = (score, subset);
+        let kept = (0..self.areas.len()).filter(|&k| self.kept[k] > 0.0).map(|k| 1 << k).sum();
+        self.best(kept, |subset| (self.within(subset, &self.frame) <= MOST_OF_FRAME).then(|| self.score(subset, model)))
+    }
+
+    /// The main subject, where something is the figure.
+    fn subject(&self, figure: u32, model: &Model) -> u32 {
+        self.best(figure, |subset| Some(self.score_of_subject(subset, figure, model)))
+    }
+
+    /// The subset with the highest score, the other one where none has any.
+    fn best(&self, otherwise: u32, score: impl Fn(u32) -> Option<f64>) -> u32 {
+        let mut best = (f64::NEG_INFINITY, otherwise);
+        for subset in (1..(1 << self.areas.len()) - 1).filter(|_| otherwise != 0) {
+            match score(subset) {
+                Some(score) if score > best.0 => best = (score, subset),
+                _ => {}
             }
         }
         best.1
     }
 
     fn score(&self, subset: u32, model: &Model) -> f64 {
-        let n = self.areas.len();
-        let rest = !subset;
         let share = |of: &[f64]| self.within(subset, of) / of.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        let mean = |subset: u32, of: &[f64]| {
-            let weighted: f64 = members(subset, n).map(|k| self.areas[k] * of[k]).sum();
-            weighted / self.within(subset, &self.areas).max(LEAST_AREA)
-        };
-        let excess = |of: &[f64]| mean(subset, of) - mean(rest, of);
-        let across: f64 =
-            members(subset, n).flat_map(|i| members(rest, n).map(move |j| i * n + j)).map(|k| self.jumps[k]).sum();
-        let jumps = self.jumps.iter().sum::<f64>() / 2.0;
-        model.figure_centre * excess(&self.centres)
-            + model.figure_plane * excess(&self.planes)
-            + model.figure_jump * across / jumps.max(f64::MIN_POSITIVE)
+        model.figure_centre * self.excess(subset, &self.centres)
+            + model.figure_plane * self.excess(subset, &self.planes)
+            + model.figure_edge * self.along(subset, &self.edges)
             + model.figure_gain * share(&self.gains)
             + model.figure_kept * share(&self.kept)
+    }
+
+    fn score_of_subject(&self, subset: u32, figure: u32, model: &Model) -> f64 {
+        let area = |subset: u32| self.within(subset, &self.areas);
+        let like = area(subset & figure) / area(subset | figure).max(LEAST_AREA);
+        let on_frame = self.around * self.within(subset, &self.frame);
+        let outline = on_frame + self.across(subset, &self.borders);
+        model.subject_like * like
+            + model.subject_jump * self.along(subset, &self.jumps) / (self.largest + LEAST_MOTION)
+            + model.subject_centre * self.excess(subset, &self.centres)
+            + model.subject_edge * self.along(subset, &self.edges)
+            - model.subject_frame * (on_frame / outline.max(1.0)).sqrt()
+    }
+
+    /// The mean over a subset less that over the rest.
+    fn excess(&self, subset: u32, of: &[f64]) -> f64 {
+        let mean = |subset: u32| {
+            let weighted: f64 = members(subset, of.len()).map(|k| self.areas[k] * of[k]).sum();
+            weighted / self.within(subset, &self.areas).max(LEAST_AREA)
+        };
+        mean(subset) - mean(!subset)
+    }
+
+    /// The mean along the border of a subset.
+    fn along(&self, subset: u32, of: &[f64]) -> f64 {
+        self.across(subset, of) / self.across(subset, &self.borders).max(1.0)
+    }
+
+    /// The sum over all pairs of a region in a subset and one in the rest.
+    fn across(&self, subset: u32, of: &[f64]) -> f64 {
+        let n = self.areas.len();
+        members(subset, n).flat_map(|i| members(!subset, n).map(move |j| of[i * n + j])).sum()
     }
 
     fn within(&self, subset: u32, of: &[f64]) -> f64 {
@@ -166,6 +230,21 @@ fn centres(labels: &[u8], width: usize, areas: &[f64]) -> Vec<f64> {
     centres.iter().zip(areas).map(|(centre, area)| centre / (area * pixels).max(1.0)).collect()
 }
 
+/// The sum along the border of every two regions of the logarithm of the gradient against that of the whole picture.
+fn edges(labels: &[u8], n: usize, level: &Level) -> Vec<f64> {
+    let energy = level.energy.values();
+    let mean = energy.iter().map(|&energy| f64::from(energy)).sum::<f64>() / energy.len() as f64;
+    let mut edges = vec![0.0; n * n];
+    across_borders(labels, level.width(), |p, q| {
+        let here = f64::from(energy[p].max(energy[q]));
+        let edge = 0.5 * libm::log((here + LEAST_GRADIENT) / (mean + LEAST_GRADIENT));
+        let [i, j] = [p, q].map(|p| usize::from(labels[p]));
+        edges[i * n + j] += edge;
+        edges[j * n + i] += edge;
+    });
+    edges
+}
+
 /// By how much the motion of every region lowers the costs that its pixels have under the motion of the background, on a sample.
 fn gains(motions: &[AffineMotion], labels: &[u8], level: &Level) -> Vec<f64> {
     let sample = level.thinned();
@@ -186,15 +265,29 @@ mod tests {
 
     /// The ground, a slope in front of it that reaches the border of the frame, and two objects.
     fn known() -> Known {
-        let jumps = [[0.0, 40.0, 300.0, 250.0], [40.0, 0.0, 0.0, 0.0], [300.0, 0.0, 0.0, 0.0], [250.0, 0.0, 0.0, 0.0]];
+        let borders =
+            [[0.0, 200.0, 120.0, 100.0], [200.0, 0.0, 0.0, 0.0], [120.0, 0.0, 0.0, 0.0], [100.0, 0.0, 0.0, 0.0]]
+                .concat();
+        let times = |factors: [f64; 3]| {
+            let of = |k: usize| match k {
+                1 | 4 => factors[0],
+                2 | 8 => factors[1],
+                _ => factors[2],
+            };
+            borders.iter().enumerate().map(|(k, border)| border * of(k)).collect()
+        };
         Known {
             areas: vec![0.6, 0.2, 0.12, 0.08],
             frame: vec![0.7, 0.3, 0.0, 0.0],
-            centres: vec![0.4, 0.1, 0.8, 0.6],
+            around: 1000.0,
+            centres: vec![0.4, 0.1, 0.8, 0.5],
             planes: vec![-2.0, -1.8, 1.0, 0.8],
             gains: vec![0.0, 100.0, 800.0, 600.0],
             kept: vec![0.0, 0.45, 0.35, 0.28],
-            jumps: jumps.concat(),
+            edges: times([-0.3, 0.8, 0.7]),
+            jumps: times([0.2, 2.5, 2.5]),
+            largest: 3.0,
+            borders,
         }
     }
 
@@ -204,9 +297,17 @@ mod tests {
     }
 
     #[test]
+    fn the_main_subject_is_the_central_one_of_two() {
+        let known = Known { centres: vec![0.3, 0.1, 0.9, 0.2], frame: vec![0.6, 0.3, 0.0, 0.1], ..known() };
+        assert_eq!(known.figure(&Model::DEFAULT), 0b1100);
+        assert_eq!(known.subject(0b1100, &Model::DEFAULT), 0b0100);
+    }
+
+    #[test]
     fn where_there_is_one_group_it_is_ground() {
         let one = Known { kept: vec![0.0; 4], ..known() };
         assert_eq!(one.figure(&Model::DEFAULT), 0);
+        assert_eq!(one.subject(0, &Model::DEFAULT), 0);
     }
 
     #[test]
@@ -240,7 +341,7 @@ mod tests {
         });
         let level = &build(first, second, 24)[0];
         let of = |motions: &[AffineMotion], labels: &[u8]| {
-            groups(Regions::new(motions, labels, width, &Model::DEFAULT), motions, labels, level)
+            groups(Regions::new(motions, labels, width, &Model::DEFAULT), motions, labels, level, false)
         };
         assert_eq!(of(&motions, &labels), [GROUND, 1]);
         let swapped: Vec<u8> = labels.iter().map(|label| 1 - label).collect();

@@ -118,7 +118,7 @@ pub(crate) fn frame_motions(
     }
     let probabilities = probabilities(&costs, &labels, model);
     let regions = Regions::new(&motions, &labels, level.width(), model);
-    let groups = figure::groups(regions, &motions, &labels, level);
+    let groups = figure::groups(regions, &motions, &labels, level, settings.subject);
     let [enough, searched] = limits;
     let prior = settings.follows.then(|| Prior { motions: motions.clone(), enough, searched });
     FrameMotions { motions, labels, probabilities, groups, prior, unexplained }

@@ -82,6 +82,11 @@ impl<'a> Regions<'a> {
         along.len() as f64 * median_f64(along).unwrap_or(0.0)
     }
 
+    /// The largest motion of a region against the background, pixels of the labels.
+    pub(super) fn largest_motion(&self) -> f64 {
+        self.largest
+    }
+
     /// Share of the border of the frame of every region.
     pub(super) fn shares_of_frame(&self) -> Vec<f64> {
         let all: usize = self.regions.iter().map(|region| region.outer).sum();

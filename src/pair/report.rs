@@ -113,7 +113,7 @@ pub(super) fn report(
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
     let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);
-    let group_of = figure::groups(regions, &labelled.motions, &labelled.labels, level);
+    let group_of = figure::groups(regions, &labelled.motions, &labelled.labels, level, settings.subject);
     let groups: Vec<usize> = order.iter().map(|&k| group_of[k]).collect();
     let mut confidence = options.confidence.then(|| {
         doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);

@@ -46,6 +46,8 @@ pub(crate) struct Settings {
     pub(crate) returns_shadows: bool,
     /// Whether a pair starts from the labels of the one before, where there is one.
     pub(crate) follows: bool,
+    /// Whether the main subject alone is figure.
+    pub(crate) subject: bool,
     /// The numbers that never change.
     pub(crate) model: &'static Model,
 }
@@ -106,6 +108,7 @@ impl Settings {
             },
             returns_shadows: true,
             follows: false,
+            subject: options.subject,
             model,
         };
         let mut settings = match options.quality {
