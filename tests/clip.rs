@@ -44,6 +44,26 @@ fn two_that_cross_keep_their_numbers() {
     assert_ne!(one_number(&done, &truths, 1, 0..20), one_number(&done, &truths, 2, 0..20));
 }
 
+#[test]
+fn the_main_subject_is_one_object() {
+    let things = [
+        thing(2, [36.0, 30.0], |t| [10.0 + 5.0 * t as f32, 30.0]),
+        thing(3, [30.0, 34.0], |t| [115.0 - 5.0 * t as f32, 72.0]),
+    ];
+    let (frames, truths) = scene(1, &things, 8);
+    for look_ahead in [None, Some(2)] {
+        let all = options(Quality::Best, look_ahead);
+        let done = segment(&frames, all.with_pair(all.pair.with_subject(true)));
+        let seen = done.iter().zip(&truths).filter(|(frame, truth)| {
+            let overlap = frame.labels.iter().zip(*truth).filter(|(label, thing)| **label == 1 && **thing > 0).count();
+            frame.objects.iter().map(|object| object.id).eq([1]) && 10 * overlap > 9 * frame.objects[0].pixels
+        });
+        assert!(seen.count() >= 7, "{look_ahead:?}");
+        let usual = segment(&frames, all);
+        assert!(usual.iter().any(|frame| frame.objects.len() == 2), "{look_ahead:?}");
+    }
+}
+
 /// Two that cross, the first of which is wholly behind the other for a while: checks that it has the same number again.
 fn assert_covered_and_back(things: [Thing; 2], count: usize) {
     let (frames, truths) = scene(1, &things, count);
@@ -380,7 +400,10 @@ fn pairs_are_known_for_their_frames_and_options_alone() {
     let marked = own.pair.with_mark_unknown(true);
     assert!(takes(&known[1]) && takes(&pairs_of(own.with_pair(marked), &frames[..2])[1]));
     assert!(!takes(&known[0]) && !takes(&known[2]) && !takes(&pairs_of(own, &frames[1..4])[1]));
-    for other in [options(Quality::Fast, Some(1)), options(Quality::Best, None), own.with_pair(two)] {
+    let subject = own.pair.with_subject(true);
+    for other in
+        [options(Quality::Fast, Some(1)), options(Quality::Best, None), own.with_pair(two), own.with_pair(subject)]
+    {
         assert!(!takes(&pairs_of(other, &frames[..2])[1]));
     }
 }

@@ -60,6 +60,7 @@ fn pair_options(options: &Value) -> SegmentOptions {
         .with_motions(count(options))
         .with_mark_unknown(flag("markUnknown"))
         .with_confidence(flag("confidence"))
+        .with_subject(flag("subject"))
 }
 
 /// `inside` at the pixels of a box, `outside` elsewhere.

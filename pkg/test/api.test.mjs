@@ -15,12 +15,12 @@ describe('segmentPair', () => {
     assert.equal(result.labels.byteOffset, 0);
     assert.equal(result.labels.buffer.byteLength, 64 * 48, 'a copy of its own, not a view of the module');
     const { software, ...settings } = result.settings;
-    assert.deepEqual(settings, { motions: 'auto', quality: 'best', markUnknown: false });
+    assert.deepEqual(settings, { motions: 'auto', quality: 'best', markUnknown: false, subject: false });
     assert.equal(result.unlabelled, 0, 'nothing is unlabelled unless asked for');
   });
 
   test('takes every option and says so in settings', async () => {
-    const options = { motions: 1, quality: 'fast', markUnknown: true };
+    const options = { motions: 1, quality: 'fast', markUnknown: true, subject: true };
     const result = await segmentPair(...pair(), options);
     checkPair(result, 64, 48);
     const { software, ...settings } = result.settings;

@@ -46,23 +46,24 @@ describe('veronese pair', () => {
 
   test('hands every option on', async (t) => {
     const { first, second } = frames(t);
-    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown'];
+    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown', '--subject'];
     const found = json(await veronese(['pair', ...options, first, second]));
     const { software, ...settings } = found.settings;
-    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true });
-    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true });
+    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true, subject: true });
+    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true, subject: true });
     assert.deepEqual(timeless(found), timeless(withoutLabels(direct)));
     assert.equal(json(await veronese(['pair', first, second, '--motions=auto'])).settings.motions, 'auto');
   });
 
-  for (const grouped of [false, true]) {
-    test(`--out writes files that read back${grouped ? ', --grouped by groups' : ''}`, async (t) => {
+  for (const option of [undefined, '--grouped', '--subject']) {
+    const grouped = option !== undefined;
+    test(`--out writes files that read back${grouped ? `, ${option} by groups` : ''}`, async (t) => {
       const { folder, first, second } = frames(t);
       const out = folder.path('a', 'b');
-      const args = ['pair', first, second, '--out', out, '--overlay', ...(grouped ? ['--grouped'] : [])];
+      const args = ['pair', first, second, '--out', out, '--overlay', ...(option ? [option] : [])];
       const run = await veronese(args);
       const found = json(run);
-      const direct = await segmentPair(...pair());
+      const direct = await segmentPair(...pair(), { subject: option === '--subject' });
       const labels = grouped ? groupLabels(direct) : direct.labels;
       const numbers = [...new Set(direct.motions.map(({ label, group }) => (grouped ? group : label)))];
       const masks = numbers.map((number) => `mask-${number}.png`);

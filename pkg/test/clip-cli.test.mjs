@@ -59,7 +59,7 @@ describe('veronese clip', () => {
 
     const { job, settings, ...tracks } = tracksOf(out);
     assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...direct.tracks() })));
-    assert.deepEqual(settings, { motions: 3, quality: 'fast', lookAhead: 'all', markUnknown: false, every: 1, overlay: true, software: `veronese ${version}` });
+    assert.deepEqual(settings, { motions: 3, quality: 'fast', lookAhead: 'all', markUnknown: false, subject: false, every: 1, overlay: true, software: `veronese ${version}` });
   });
 
   test('writes the same files with any number of jobs, also where it was killed with others', async (t) => {

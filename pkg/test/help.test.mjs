@@ -9,12 +9,12 @@ import { frame, pair, png } from './support/frames.mjs';
 import { entries, program, temporaryFolder, veronese } from './support/program.mjs';
 
 const OF_ALL = ['quiet', 'help', 'version'];
-const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'out', 'overlay', 'max-size', 'allow-damaged', 'force'];
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'subject', 'mark-unknown', 'confidence', 'out', 'overlay', 'max-size', 'allow-damaged', 'force'];
 const OPTIONS = {
   pair: OF_PAIRS,
   batch: [...OF_PAIRS, 'list', 'every', 'shard', 'jobs'],
   video: [...OF_PAIRS, 'every', 'shard', 'jobs'],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'max-size', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'subject', 'mark-unknown', 'max-size', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
   convert: ['to', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'],
   points: ['motions', 'method', 'seed'],
   completion: [],

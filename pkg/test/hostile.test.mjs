@@ -220,8 +220,8 @@ describe('pictures and labels', () => {
         assert.ok(message.includes(`'${name}'`), message);
       }
     }
-    assert.deepEqual(optionsOf(() => ''), {});
-    assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'name', 'quality', 'required', 'second', 'src']);
+    assert.deepEqual(optionsOf(() => ''), { subject: true }, 'what is set without a value is on, or as if it were not there');
+    assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'name', 'quality', 'required', 'second', 'src', 'subject']);
   });
 });
 

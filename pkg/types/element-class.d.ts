@@ -74,8 +74,9 @@ export type ElementPrompt =
  * Segments two frames or a clip, and shows the masks over the frames.
  *
  * Attributes: `first` and `second` (image URLs), or `src` (URL of a video, which takes precedence); `motions` (`auto` or 1 to 10),
- * `quality` (`fast` or `best`), `grouped` (masks of two frames are groups of motions); `controls` (any of `play`, `legend` and `zoom`); `name`, `disabled` and `required`. The element
- * segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
+ * `quality` (`fast` or `best`), `subject` (only the main subject is an object), `grouped` (masks of two frames are groups of motions);
+ * `controls` (any of `play`, `legend` and `zoom`); `name`, `disabled` and `required`. The element segments when it is connected and
+ * whenever an attribute changes, and stops when it is disconnected.
  *
  * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
  * `detail`. They do not bubble. Where nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
@@ -145,7 +146,7 @@ export class VeroneseSegmenterElement extends HTMLElement {
   accept(frames: readonly number[]): void;
   /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */
   abort(): void;
-  /** One number per pixel of what is shown: labels, or groups if the element is `grouped`; of a clip, objects. 255 is unlabelled. */
+  /** One number per pixel of what is shown: labels, or groups if the element is `grouped` or shows the `subject`; of a clip, objects. 255 is unlabelled. */
   labels(): Uint8Array | undefined;
   /** 255 where the label (group, object) is, 0 elsewhere. */
   mask(wanted: number): Uint8Array | undefined;

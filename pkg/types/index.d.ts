@@ -56,6 +56,11 @@ export interface SegmentOptions extends CallOptions {
    * likely be wrong than right; default `false`.
    */
   markUnknown?: boolean | undefined;
+  /**
+   * Takes the main subject for the one object, as for a cut-out, and all else for ground: what else moves is not told apart from it. Of a
+   * pair, `group` is then 1 for its motions. Default `false`.
+   */
+  subject?: boolean | undefined;
   /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
   /**
@@ -162,6 +167,7 @@ export interface Segmentation {
     motions: 'auto' | number;
     quality: 'fast' | 'best';
     markUnknown: boolean;
+    subject: boolean;
     software: string;
   };
   /** Where there is one motion and more were possible: why. */
@@ -390,7 +396,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   locked?: readonly number[] | undefined;
   /**
    * The bytes that {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
-   * `motions`, `quality` and `lookAhead` are those of the state. Annotations stay until they are replaced or taken back;
+   * `motions`, `quality`, `subject` and `lookAhead` are those of the state. Annotations stay until they are replaced or taken back;
    * corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */

@@ -14,6 +14,8 @@ export interface VeroneseSegmenterAttributes {
   motions?: 'auto' | number | `${number}` | undefined;
   /** `best` for accuracy, which is usual, or `fast` for live use. */
   quality?: 'fast' | 'best' | undefined;
+  /** Whether only the main subject is an object, as for a cut-out. */
+  subject?: boolean | undefined;
   /** Whether masks of two frames are groups of motions. */
   grouped?: boolean | undefined;
   /** What else a person may do, any of `play`, `legend` and `zoom`, with spaces between. */

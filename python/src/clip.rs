@@ -35,6 +35,7 @@ pub(crate) fn segment_clip(
     motions: &Bound<'_, PyAny>,
     quality: &Bound<'_, PyAny>,
     mark_unknown: bool,
+    subject: bool,
     look_ahead: Option<&Bound<'_, PyAny>>,
     masks: Option<&Bound<'_, PyAny>>,
     corrections: Option<&Bound<'_, PyAny>>,
@@ -49,7 +50,7 @@ pub(crate) fn segment_clip(
         .with_motions(options::motions(motions)?)
         .with_quality(options::quality(quality)?)
         .with_mark_unknown(mark_unknown)
-        .with_confidence(false);
+        .with_subject(subject);
     let look_ahead = options::look_ahead(look_ahead)?;
     let source = Source::of(frames)?;
     // These need frames that can be read again.

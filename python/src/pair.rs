@@ -21,13 +21,15 @@ pub(crate) fn segment_pair<'py>(
     quality: &Bound<'py, PyAny>,
     mark_unknown: bool,
     confidence: bool,
+    subject: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let options = SegmentOptions::default()
         .with_motions(options::motions(motions)?)
         .with_quality(options::quality(quality)?)
         .with_mark_unknown(mark_unknown)
-        .with_confidence(confidence);
+        .with_confidence(confidence)
+        .with_subject(subject);
     let (first, second) = (given("the first frame", first)?, given("the second frame", second)?);
     let segmentation = alone(py, progress, move |progress| {
         Ok(veronese::segment_pair(&first.frame()?, &second.frame()?, &options, progress)?)

@@ -155,6 +155,7 @@ def test_ten_pairs(tmp_path: Path) -> None:
             "quality": ["best", "fast"][k % 2],
             "mark_unknown": k % 4 == 1,
             "confidence": k % 3 == 0,
+            "subject": k % 4 == 2,
             **({"motions": 2 + k % 2} if k % 4 == 3 else {}),
         }
         asked.pairs.append((pair[0], pair[1], options))
@@ -201,7 +202,7 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
         (generated, True, {"quality": "fast", "look_ahead": 2, "mark_unknown": True}),
         (moving(10, (120, 90)), True, {"quality": "fast"}),
         (real, False, {"quality": "fast", "mark_unknown": True}),
-        (real, True, {"quality": "fast", "look_ahead": 0}),
+        (real, True, {"quality": "fast", "look_ahead": 0, "subject": True}),
     ]
     found = [of_clip(*one) for one in asked.clips]
     assert found == asked.of_node()["clips"]

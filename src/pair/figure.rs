@@ -53,12 +53,12 @@ pub(super) fn groups(
     level: &Level,
     subject: bool,
 ) -> Vec<usize> {
-    let joined = regions.clone().groups();
+    let mut joined = regions.clone().groups();
     let known = Known::new(&mut regions, &joined, motions, labels, level);
-    let figure = known.figure(level.model);
+    let mut figure = known.figure(level.model);
     if subject {
-        let subject = known.subject(figure, level.model);
-        return (0..motions.len()).map(|region| if subject >> region & 1 == 0 { GROUND } else { 1 }).collect();
+        figure = known.subject(figure, level.model);
+        joined.fill(0);
     }
     let mut found: Vec<usize> = Vec::new();
     let number = |(region, group): (usize, usize)| {
@@ -115,15 +115,20 @@ impl Known {
             planes.iter().zip(&areas).filter_map(|(plane, area)| plane.zip(Some(*area))).collect();
         let area = told.iter().map(|(_, area)| area).sum::<f64>();
         let mean = told.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
+        let (mut borders, mut jumps) = (vec![0.0; n * n], vec![0.0; n * n]);
+        for k in 0..n * n {
+            let pair = [k / n, k % n];
+            (borders[k], jumps[k]) = (regions.border(pair) as f64, regions.total_jump(pair));
+        }
         Known {
             frame: regions.shares_of_frame(),
             around: 2.0 * (level.width() + level.height()) as f64,
             centres: centres(labels, level.width(), &areas),
             planes: planes.into_iter().map(|plane| plane.unwrap_or(mean)).collect(),
             gains: gains(motions, labels, level),
-            borders: (0..n * n).map(|k| regions.border([k / n, k % n]) as f64).collect(),
+            borders,
             edges: edges(labels, n, level),
-            jumps: (0..n * n).map(|k| regions.total_jump([k / n, k % n])).collect(),
+            jumps,
             largest: regions.largest_motion(),
             areas,
             kept,
@@ -133,16 +138,18 @@ impl Known {
     /// The subset with the highest score, a bit for each region; where there is one group it is ground.
     fn figure(&self, model: &Model) -> u32 {
         let kept = (0..self.areas.len()).filter(|&k| self.kept[k] > 0.0).map(|k| 1 << k).sum();
-        self.best(kept, |subset| (self.within(subset, &self.frame) <= MOST_OF_FRAME).then(|| self.score(subset, model)))
+        self.best(kept, &|subset| {
+            (self.within(subset, &self.frame) <= MOST_OF_FRAME).then(|| self.score(subset, model))
+        })
     }
 
     /// The main subject, where something is the figure.
     fn subject(&self, figure: u32, model: &Model) -> u32 {
-        self.best(figure, |subset| Some(self.score_of_subject(subset, figure, model)))
+        self.best(figure, &|subset| Some(self.score_of_subject(subset, figure, model)))
     }
 
     /// The subset with the highest score, the other one where none has any.
-    fn best(&self, otherwise: u32, score: impl Fn(u32) -> Option<f64>) -> u32 {
+    fn best(&self, otherwise: u32, score: &dyn Fn(u32) -> Option<f64>) -> u32 {
         let mut best = (f64::NEG_INFINITY, otherwise);
         for subset in (1..(1 << self.areas.len()) - 1).filter(|_| otherwise != 0) {
             match score(subset) {
@@ -189,11 +196,13 @@ impl Known {
     }
 
     /// The sum over all pairs of a region in a subset and one in the rest.
+    #[inline(never)]
     fn across(&self, subset: u32, of: &[f64]) -> f64 {
         let n = self.areas.len();
-        members(subset, n).flat_map(|i| members(!subset, n).map(move |j| of[i * n + j])).sum()
+        members(subset, n).map(|i| self.within(!subset, &of[i * n..][..n])).sum()
     }
 
+    #[inline(never)]
     fn within(&self, subset: u32, of: &[f64]) -> f64 {
         members(subset, of.len()).map(|k| of[k]).sum()
     }
@@ -202,7 +211,7 @@ impl Known {
 /// Area below which a mean is none, share of the frame.
 const LEAST_AREA: f64 = 1e-6;
 
-fn members(subset: u32, of: usize) -> impl Iterator<Item = usize> + Clone {
+fn members(subset: u32, of: usize) -> impl Iterator<Item = usize> {
     (0..of).filter(move |k| subset >> k & 1 == 1)
 }
 

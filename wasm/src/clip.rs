@@ -37,8 +37,8 @@ enum Clip {
     },
 }
 
-/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `markUnknown` and `lookAhead`
-/// (`'all'`, the default, stands for as many frames as matter).
+/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `markUnknown`, `subject` and
+/// `lookAhead` (`'all'`, the default, stands for as many frames as matter).
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
@@ -340,7 +340,7 @@ fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
     for (name, value) in entries(value)? {
         match name.as_str() {
             "lookAhead" => options.look_ahead = look_ahead(&value)?,
-            _ => pair_option(&mut options.pair, &name, &value, "motions, quality, markUnknown, lookAhead")?,
+            _ => pair_option(&mut options.pair, &name, &value, "motions, quality, markUnknown, subject, lookAhead")?,
         }
     }
     Ok(options)

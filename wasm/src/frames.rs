@@ -42,6 +42,7 @@ pub(super) fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptio
         .set("motions", &motions_asked(options.motions))
         .text("quality", options.quality.name())
         .set("markUnknown", &options.mark_unknown.into())
+        .set("subject", &options.subject.into())
         .text("software", SOFTWARE);
     let report = add_segmentation(Record::new().number("version", REPORT_VERSION), segmentation)
         .set("settings", &settings.into_value())
@@ -188,7 +189,7 @@ pub(super) fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure
     for (name, value) in entries(value)? {
         match name.as_str() {
             "confidence" => options.confidence = flag("confidence", &value)?,
-            _ => pair_option(&mut options, &name, &value, "motions, quality, markUnknown, confidence")?,
+            _ => pair_option(&mut options, &name, &value, "motions, quality, markUnknown, subject, confidence")?,
         }
     }
     Ok(options)
@@ -206,6 +207,7 @@ pub(super) fn pair_option(
         "motions" => options.motions = motions(value)?,
         "quality" => options.quality = quality(value)?,
         "markUnknown" => options.mark_unknown = flag("markUnknown", value)?,
+        "subject" => options.subject = flag("subject", value)?,
         _ => return Err(unknown(name, known)),
     }
     Ok(())

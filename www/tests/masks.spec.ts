@@ -88,7 +88,7 @@ test('frames, masks and files of two uploaded files are those of Node, and are s
   await done(page);
   await openExport(page);
   const report: unknown = JSON.parse((await saved(page, page.getByRole('button', { name: 'Result JSON' }))).bytes.toString());
-  expect(report).toMatchObject({ version: 1, width: 161, height: 97, settings: { motions: 2, quality: 'best', markUnknown: false } });
+  expect(report).toMatchObject({ version: 1, width: 161, height: 97, settings: { motions: 2, quality: 'best', subject: false, markUnknown: false } });
   expect(report).not.toHaveProperty('labels');
   const two = await segmentedInNode(second, first, { motions: 2, quality: 'best' });
   expect(differences(await labelsOnCanvas(page), two.labels)).toBe(0);

@@ -28,7 +28,7 @@ function blobs(): Segmentation {
     bbox: [0, 0, WIDTH, HEIGHT] as [number, number, number, number],
     group: label < 2 ? label : label - 1,
   }));
-  const settings = { motions: 'auto', quality: 'best', markUnknown: true, software: '' } as const;
+  const settings = { motions: 'auto', quality: 'best', markUnknown: true, subject: false, software: '' } as const;
   return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
 }
 

@@ -41,7 +41,7 @@ function scene(): Segmentation {
     bbox: [2 * label, 0, 2, 4] as [number, number, number, number],
     group: [0, 1, 1, 2][label]!,
   }));
-  const settings = { motions: 'auto', quality: 'best', markUnknown: false, software: '' } as const;
+  const settings = { motions: 'auto', quality: 'best', markUnknown: false, subject: false, software: '' } as const;
   return { version: 1, width: 8, height: 4, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
 }
 

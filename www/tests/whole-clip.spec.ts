@@ -346,6 +346,27 @@ test('a stroke in one frame is carried through the clip and undone; objects are 
   await expect(rows).toHaveCount(3);
 });
 
+test('the main subject alone is one object, also on the next visit', async ({ page }) => {
+  const files = await smallFrames(6);
+  await openSegmented(page, files);
+  const status = page.locator('#clip-status');
+  await expect(status).toHaveText('2 objects in 6 frames.');
+  const subject = page.getByRole('checkbox', { name: 'Main subject only' });
+  await subject.check();
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(status).toHaveText('One object in 6 frames.');
+  const found = await clipInNode(files, { quality: 'fast', subject: true });
+  const masks = await masksOf(page, [0, 3, 5]);
+  [0, 3, 5].forEach((index, k) => expect(differences(masks[k]!, found[index]!)).toBe(0));
+  await kept(page);
+  await reopen(page, files);
+  await expect(subject).toBeChecked();
+  await expect(page.locator('#objects > li:not([data-mask="0"])')).toHaveCount(1);
+  await subject.uncheck();
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(status).toHaveText('2 objects in 6 frames.');
+});
+
 test('corrections are applied again when the clip is segmented again, which leaves the masks until it is done', async ({ page }) => {
   const files = await largerFrames(5);
   await openSegmented(page, files);

@@ -61,7 +61,7 @@ export function start<T>(prepare: () => Call<T>, perform: Perform): Promise<T> {
 }
 
 export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOptions): Call<Segmentation> {
-  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence', 'maxSize']);
+  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'subject', 'confidence', 'maxSize']);
   const { maxSize } = asked;
   const frames = checkedFrames(first, second, maxSize);
   const own = takenFor(asked, dataOf(frames));

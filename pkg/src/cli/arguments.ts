@@ -109,6 +109,7 @@ function clip(values: Values, files: string[]) {
     quality: quality(values),
     lookAhead: lookAhead === undefined ? ('all' as const) : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
     markUnknown: values['mark-unknown'],
+    subject: values.subject,
   };
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
   const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
@@ -134,12 +135,13 @@ function video(values: Values, files: string[]) {
 }
 
 function ofPairs(values: Values) {
-  const { out, grouped, overlay, confidence, force } = values;
+  const { out, subject, overlay, confidence, force } = values;
   for (const name of ['overlay', 'confidence', 'force'] as const) {
     if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], confidence };
-  return { options, grouped, overlay, allowDamaged: values['allow-damaged'], maxSize: maxSize(values['max-size']), out, force };
+  const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], subject, confidence };
+  // The subject's masks are of the whole of it.
+  return { options, grouped: values.grouped || subject, overlay, allowDamaged: values['allow-damaged'], maxSize: maxSize(values['max-size']), out, force };
 }
 
 /** The part of all pairs to process is counted from 0. */

@@ -49,6 +49,7 @@ export const OPTIONS = {
       '{"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}, "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"',
   },
   grouped: { type: 'boolean', default: false, text: 'groups instead of motions in labels.png and mask-K.png; one rigid background is one group' },
+  subject: { type: 'boolean', default: false, text: 'only the main subject is an object, as for a cut-out: the one thing that the pictures are about' },
   'mark-unknown': { type: 'boolean', default: false, text: 'use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous' },
   confidence: { type: 'boolean', default: false, text: "also write confidence.png: 255 times the probability that each pixel's label is right" },
   overlay: { type: 'boolean', default: false, text: 'also write overlay.png: the first frame with each motion in its colour' },
@@ -102,7 +103,7 @@ export interface CommandText {
 /** Options of all commands. */
 export const ALWAYS: readonly OptionName[] = ['quiet', 'help', 'version'];
 
-const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'overlay', 'max-size'];
+const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'subject', 'mark-unknown', 'confidence', 'overlay', 'max-size'];
 const OF_SEQUENCES: readonly OptionName[] = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 const AT_THE_END: readonly OptionName[] = ['allow-damaged', 'force'];
 const FOLDERS = { out: 'write a folder for each pair to DIR, with the files of pair; skip finished pairs' };
@@ -142,7 +143,7 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
+    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'subject', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',
@@ -153,7 +154,7 @@ export const COMMANDS = {
     examples: [
       ['Masks of a folder of frames', 'veronese clip frames -o masks'],
       ['Masks of a video, and a film of them to show', 'veronese clip film.mp4 -o masks --show overlay.mp4'],
-      ['Object 1 alone, on transparent ground', 'veronese clip film.mp4 -o masks --show cutout-1.mov'],
+      ['The main subject, on transparent ground', 'veronese clip film.mp4 -o masks --subject --show cutout-1.mov'],
       ['The same again, after painting over some labels', 'veronese clip film.mp4 -o masks --corrections painted'],
     ],
   },

@@ -10,7 +10,7 @@ import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng, isT
 import type { OutputFile } from './files.js';
 
 export interface PairSettings {
-  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean };
+  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; subject: boolean; confidence: boolean };
   /** Whether the images show groups instead of motions. */
   grouped: boolean;
   overlay: boolean;

@@ -24,7 +24,7 @@ export class VeroneseSegmenterElement extends Base {
   static source: WasmSource | Promise<WasmSource> | undefined;
   static Pool: typeof SegmenterPool = SegmenterPool;
   static readonly formAssociated = true;
-  static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'grouped', 'name', 'required'];
+  static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'subject', 'grouped', 'name', 'required'];
 
   readonly #internals: ElementInternals;
   readonly #view: View;
@@ -175,11 +175,11 @@ export class VeroneseSegmenterElement extends Base {
     void this.#carry();
   }
 
-  /** One number per pixel of what is shown: labels, or groups where the element is `grouped`; 255 is unlabelled. */
+  /** One number per pixel of what is shown: labels, or groups where the element is `grouped` or shows the main subject; 255 is unlabelled. */
   labels(): Uint8Array | undefined {
     if (this.#clip) return this.#shown;
     if (this.#result === undefined) return undefined;
-    return this.hasAttribute('grouped') ? groupLabels(this.#result) : this.#result.labels;
+    return this.hasAttribute('grouped') || this.#result.settings.subject ? groupLabels(this.#result) : this.#result.labels;
   }
 
   /** 255 where the label (or group) is, 0 elsewhere. */
@@ -293,7 +293,7 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   #has(slot: 'first' | 'second'): boolean {
-    return this.#given[slot] !== undefined || (this.getAttribute(slot) ?? '') !== '';
+    return this.#given[slot] !== undefined || Boolean(this.getAttribute(slot));
   }
 
   #isClip(): boolean {

@@ -6,7 +6,8 @@ export function optionsOf(attribute: (name: string) => string | null): SegmentOp
   const options: Record<string, unknown> = {};
   for (const name of ['motions', 'quality']) {
     const value = attribute(name);
-    if (value !== null && value !== '') options[name] = /^\d+$/.test(value) ? Number(value) : value;
+    if (value) options[name] = /^\d+$/.test(value) ? Number(value) : value;
   }
+  if (attribute('subject') !== null) options['subject'] = true;
   return options;
 }

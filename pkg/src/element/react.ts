@@ -9,7 +9,7 @@ import type { VeroneseSegmenterElement } from './element-class.js';
 
 export { VeroneseSegmenterElement } from './element.js';
 
-const ATTRIBUTES = ['src', 'motions', 'quality', 'grouped', 'name', 'disabled', 'required'] as const;
+const ATTRIBUTES = ['src', 'motions', 'quality', 'subject', 'grouped', 'name', 'disabled', 'required'] as const;
 const PROPERTIES = ['messages', 'frames', 'currentFrame', 'selected'] as const;
 /** Listeners and the events that they hear. */
 const EVENTS = {

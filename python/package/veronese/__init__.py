@@ -99,6 +99,7 @@ def segment_pair(
     quality: Literal["best", "fast"] = "best",
     mark_unknown: bool = False,
     confidence: bool = False,
+    subject: bool = False,
     progress: Optional[Progress] = None,
 ) -> Segmentation:
     """Segments two frames: how many things move, how each one moves, and which pixels belong to it.
@@ -108,8 +109,10 @@ def segment_pair(
     :param mark_unknown: gives label 255 to a pixel that is hidden or outside in the second frame, has no texture around it, or whose label
         would more likely be wrong than right.
     :param confidence: adds the confidence of every label.
+    :param subject: takes the main subject for the one object, as for a cut-out, and all else for ground: what else moves is not told apart
+        from it. The group of its motions is 1.
     """
-    return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, progress)
+    return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, subject, progress)
 
 
 def relabel(
@@ -141,6 +144,7 @@ def segment_clip(
     motions: Union[int, Literal["auto"]] = "auto",
     quality: Literal["best", "fast"] = "best",
     mark_unknown: bool = False,
+    subject: bool = False,
     look_ahead: Union[int, Literal["all"], None] = None,
     masks: Optional[Sequence[Mask]] = None,
     corrections: Optional[Sequence[Union[Correction, Prompt]]] = None,
@@ -164,6 +168,7 @@ def segment_clip(
 
     :param motions: the number of motions in each pair of consecutive frames.
     :param mark_unknown: gives label 255 to pixels whose evidence does not tell an object from the background.
+    :param subject: takes the main subject for the one object, as for a cut-out, and all else for background.
     :param look_ahead: the number of frames that each frame waits for, 0 to 8, or ``"all"``: as many as matter, of a whole clip. Default: 8
         for a stream, ``"all"`` for a whole clip. A number makes a stream of a sequence, unless one of the options below is given.
     :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. An object that was found
@@ -177,11 +182,11 @@ def segment_clip(
     :param accepted: indices of frames that are right, or :class:`Accepted` with their labels. Only what is painted or pointed to in such a
         frame changes labels there, and the objects in it are followed from it as from a correction. Without labels it has those of now: as masks
         and a ``state`` have it, before corrections.
-    :param state: what :meth:`Clip.state` gave for the same frames: no pair is solved again. ``motions``, ``quality`` and ``look_ahead`` are
-        those of the state then.
+    :param state: what :meth:`Clip.state` gave for the same frames: no pair is solved again. ``motions``, ``quality``, ``subject`` and ``look_ahead``
+        are those of the state then.
     """
     said = (masks, corrections, prompts, locked, named, accepted)
-    return _veronese.segment_clip(frames, motions, quality, mark_unknown, look_ahead, *said, state, progress)
+    return _veronese.segment_clip(frames, motions, quality, mark_unknown, subject, look_ahead, *said, state, progress)
 
 
 def fit_points(

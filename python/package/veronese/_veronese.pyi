@@ -16,6 +16,7 @@ def segment_pair(
     quality: object,
     mark_unknown: bool,
     confidence: bool,
+    subject: bool,
     progress: Optional[Any],
 ) -> Segmentation: ...
 def relabel(
@@ -41,6 +42,7 @@ def segment_clip(
     motions: object,
     quality: object,
     mark_unknown: bool,
+    subject: bool,
     look_ahead: object,
     masks: object,
     corrections: object,

@@ -30,10 +30,11 @@ function selecting({ exact, times }: Clip, index: number): string {
 
 export function commandFor({ pair }: Result, settings: Settings, look: Look): string {
   const [first, second] = [found(pair.first), found(pair.second)];
-  const { motions, quality, markUnknown } = changed(settings);
+  const { motions, quality, subject, markUnknown } = changed(settings);
   const options = [
     motions === undefined ? '' : `--motions ${motions}`,
     quality === undefined ? '' : `--quality ${quality}`,
+    subject ? '--subject' : '',
     look.kind === 'groups' ? '--grouped' : '',
     markUnknown ? '--mark-unknown' : '',
   ];

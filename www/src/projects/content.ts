@@ -4,7 +4,7 @@ import type { Runs } from '../correction/runs.js';
 import { type Click, type Annotation, isPrompt, points } from '../state/annotation.js';
 import type { Range, Version } from '../state/tracked.js';
 import type { Project } from './project.js';
-import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, objectOf, orNull, recordOf } from './schema.js';
+import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, objectOf, optional, orNull, recordOf } from './schema.js';
 
 export type Content = Pick<Project, 'settings' | 'classList' | 'clip'>;
 
@@ -55,7 +55,7 @@ function setOf(isOne: Check<unknown>): Check<unknown> {
 const isSide = isFrom(1);
 const isIndex = isFrom(0);
 const isMotions = either(isOne('auto'), isFrom(1, 10));
-const isSettings = objectOf({ motions: isMotions, quality: isOne('fast', 'best'), markUnknown: isFlag, longestSide: isSide });
+const isSettings = objectOf({ motions: isMotions, quality: isOne('fast', 'best'), subject: optional(isFlag), markUnknown: isFlag, longestSide: isSide });
 const isMatrix = listOf(isNumber, 6);
 const isBox = listOf(isNumber, 4);
 const isColour = listOf(isFrom(0, 255), 3);

@@ -2,6 +2,7 @@
 //! again.
 
 import { type FramePair, timelineOf } from '../state/pair.js';
+import { DEFAULT_SETTINGS } from '../state/settings.js';
 import type { State } from '../state/state.js';
 import { isPrompt } from '../state/annotation.js';
 import { type SolvedPairs, type Tracked, type TrackedFrame, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
@@ -101,7 +102,7 @@ export function withoutSaved(state: State, of: string): Partial<State> {
 /** The state with the work of the project, which is of the clip of this pair. */
 export function withProject(state: State, { of, settings, classList: saved, clip }: Project, pair: FramePair): Partial<State> {
   // The project's classes keep their numbers.
-  const common = { settings, classList: [...new Set([...saved, ...state.classList])] };
+  const common = { settings: { ...DEFAULT_SETTINGS, ...settings }, classList: [...new Set([...saved, ...state.classList])] };
   const opened = timelineOf(pair)?.clip;
   if (opened === undefined) return common;
   const { tracked, keptClips } = state;

@@ -48,7 +48,7 @@ export function segmentationFrom(
     evidence: { candidates: [] },
     unlabelled,
     milliseconds: { total: 0 },
-    settings: { motions: 'auto', quality: 'best', markUnknown: false, software: '' },
+    settings: { motions: 'auto', quality: 'best', subject: false, markUnknown: false, software: '' },
     labels,
   };
 }

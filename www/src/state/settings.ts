@@ -3,13 +3,13 @@
 import type { SegmentOptions } from 'veronese';
 
 /** The options of the package that the page offers, and the working size. */
-export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown'>>> & {
+export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'subject' | 'markUnknown'>>> & {
   /** Frames with a longer side are scaled down to it when they are opened, pixels. Masks are exported at the size of the file. */
   readonly longestSide: number;
 };
 
 /** In the order of a link. */
-export const DEFAULT_SETTINGS: Settings = { motions: 'auto', quality: 'best', markUnknown: false, longestSide: 2048 };
+export const DEFAULT_SETTINGS: Settings = { motions: 'auto', quality: 'best', subject: false, markUnknown: false, longestSide: 2048 };
 
 /** The paper's limit on the number of motions. */
 const MOST_MOTIONS = 10;
@@ -17,6 +17,7 @@ const MOST_MOTIONS = 10;
 const CHOICES: { readonly [K in keyof Settings]: readonly Settings[K][] } = {
   motions: ['auto', ...Array.from({ length: MOST_MOTIONS }, (_, k) => k + 1)],
   quality: ['fast', 'best'],
+  subject: [false, true],
   markUnknown: [false, true],
   longestSide: [640, 1024, 2048, 4096],
 };

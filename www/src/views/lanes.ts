@@ -44,10 +44,11 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
-    if (!sameFrames) {
+    if (!sameFrames || look.kind !== before.look.kind) {
       lives = livesOf({ frames });
       root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, lives.length)));
-      names.replaceChildren(...lives.map(({ id }) => nameButton(id, session)));
+      // Only then they are drawn, and have names.
+      names.replaceChildren(...(look.kind === 'objects' ? lives : []).map(({ id }) => nameButton(id, session)));
     }
     render(now);
   });

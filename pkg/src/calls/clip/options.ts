@@ -13,7 +13,7 @@ import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './anno
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
-const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead', 'maxSize'];
+const OF_ALL = ['motions', 'quality', 'markUnknown', 'subject', 'lookAhead', 'maxSize'];
 /** Options that need frames which can be read again. */
 const OF_WHOLE = ['masks', 'corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
 

@@ -127,10 +127,10 @@ export class LiveView {
         }
       };
       const wanted = (): boolean => current() && most <= LAST_NUMBER && this.#store.get().settings === settings;
-      const { motions, markUnknown } = settings;
+      const { motions, subject, markUnknown } = settings;
       let before: { readonly frame: LoadedFrame; readonly segmentation: Segmentation } | null = null;
       try {
-        for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, markUnknown, quality: 'fast', lookAhead: 0 })) {
+        for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, subject, markUnknown, quality: 'fast', lookAhead: 0 })) {
           answered();
           if (!current()) return;
           const frame = taken.shift()!;

@@ -201,7 +201,7 @@ export class ClipSegmenting {
 
   /** The pairs that were solved with these settings: other settings and another first frame begin anew. */
   #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
-    const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
+    const key = JSON.stringify([first, settings.motions, settings.quality, settings.subject, settings.longestSide]);
     const before = this.solvedPairs.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
     this.solvedPairs.set(fingerprint, known);
