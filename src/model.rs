@@ -243,15 +243,17 @@ model! {
     joint_enough: f64 = 0.02;
 
     /// Weight of how central a figure is. Fit to real pairs and generated scenes.
-    figure_centre: f64 = 18.5;
+    figure_centre: f64 = 20.5;
     /// Weight of how far its flow is from that of a plane. Fit.
-    figure_plane: f64 = 2.56;
+    figure_plane: f64 = 2.1;
     /// Weight of the edges along its border. Fit.
-    figure_edge: f64 = 6.9;
+    figure_edge: f64 = 7.3;
+    /// Weight of its share of the jumps of the flow. Fit.
+    figure_jump: f64 = 7.0;
     /// Weight of its share of what motions explain better. Fit.
-    figure_gain: f64 = 5.95;
+    figure_gain: f64 = 4.7;
     /// Weight of its share of what is not in the largest group. Fit.
-    figure_kept: f64 = 12.55;
+    figure_kept: f64 = 9.85;
     /// Weight of the overlap of the main subject and the figure. Fit to real pairs.
     subject_like: f64 = 10.1;
     /// Weight of the jumps of the flow along its border. Fit.

@@ -3,13 +3,13 @@
 //! Every subset S of the regions could be the figure. The one with the highest score is:
 //!
 //! ```text
-//! score(S) = a centre + b plane + c edge + d gain + e kept
+//! score(S) = a centre + b plane + c edge + d jump + e gain + f kept
 //! ```
 //! *centre* is how central the pixels of S are, and *plane* the logarithm of how far their flow is from that of one plane: both are means
 //! over S less means over the rest. *edge* is the mean, along the border of S, of the logarithm of the gradient there against that of the
 //! whole picture: objects end at edges, parts of the ground seldom do. The others are shares of all there is, so that two objects score
-//! higher than one of them: *gain* of what motions explain better than that of the background, *kept* of what is left when the largest
-//! [group](Regions::groups) is the ground.
+//! higher than one of them: *jump* of the jumps of the flow along borders, *gain* of what motions explain better than that of the background,
+//! *kept* of what is left when the largest [group](Regions::groups) is the ground.
 //!
 //! The main subject, where that is asked for, is one thing:
 //!
@@ -20,8 +20,7 @@
 //! root of the share of its outline that lies on the border of the frame. Where several things move, most of them are lost by it.
 //!
 //! The weights make the figure overlap the true one most on real pairs with one object, with a second one pasted in, and on generated scenes;
-//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. The share of all jumps, depth
-//! order at borders, focus, residuals, shapes, deformation, colours and sizes won nothing beside them.
+//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. Depth order at borders, focus, residuals, shapes, deformation, colours and sizes won nothing beside them.
 
 use super::groups::Regions;
 use super::planar_flow::distances_to_plane;
@@ -162,9 +161,11 @@ impl Known {
 
     fn score(&self, subset: u32, model: &Model) -> f64 {
         let share = |of: &[f64]| self.within(subset, of) / of.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let jumps = self.jumps.iter().sum::<f64>() / 2.0;
         model.figure_centre * self.excess(subset, &self.centres)
             + model.figure_plane * self.excess(subset, &self.planes)
             + model.figure_edge * self.along(subset, &self.edges)
+            + model.figure_jump * self.across(subset, &self.jumps) / jumps.max(f64::MIN_POSITIVE)
             + model.figure_gain * share(&self.gains)
             + model.figure_kept * share(&self.kept)
     }
