@@ -20,7 +20,8 @@
 //! root of the share of its outline that lies on the border of the frame. Where several things move, most of them are lost by it.
 //!
 //! The weights make the figure overlap the true one most on real pairs with one object, with a second one pasted in, and on generated scenes;
-//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. Depth order at borders, focus, residuals, shapes, deformation, colours and sizes won nothing beside them.
+//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. Depth order at borders, focus,
+//! residuals, shapes, deformation, colours and sizes won nothing beside them.
 
 use super::groups::Regions;
 use super::planar_flow::distances_to_plane;
@@ -35,6 +36,8 @@ use crate::view::level::Level;
 pub(crate) const GROUND: usize = 0;
 /// Largest share of the border of the frame in the figure. Guard: scenes without objects have none that surrounds them.
 const MOST_OF_FRAME: f64 = 0.5;
+/// Largest share of the picture. Guard: an object may fill half of it; in scenes without objects far more would be figure.
+const MOST_OF_PICTURE: f64 = 0.6;
 /// Distance to the plane, pixels of the working size, below which all are alike.
 const NEAR: f64 = 0.1;
 /// Motion that every border is measured against at least, pixels of the working size.
@@ -138,7 +141,9 @@ impl Known {
     fn figure(&self, model: &Model) -> u32 {
         let kept = (0..self.areas.len()).filter(|&k| self.kept[k] > 0.0).map(|k| 1 << k).sum();
         self.best(kept, &|subset| {
-            (self.within(subset, &self.frame) <= MOST_OF_FRAME).then(|| self.score(subset, model))
+            let possible = self.within(subset, &self.frame) <= MOST_OF_FRAME
+                && self.within(subset, &self.areas) <= MOST_OF_PICTURE;
+            possible.then(|| self.score(subset, model))
         })
     }
 
@@ -324,6 +329,13 @@ mod tests {
     fn what_surrounds_the_scene_is_no_figure() {
         let around = Known { frame: vec![0.0, 0.1, 0.6, 0.3], ..known() };
         assert_eq!(around.figure(&Model::DEFAULT) & 0b100, 0);
+    }
+
+    #[test]
+    fn an_enclosed_object_may_fill_half_of_the_picture_and_not_most_of_it() {
+        let filling = |share: f64| Known { areas: vec![0.9 - share, 0.05, share, 0.05], ..known() };
+        assert_eq!(filling(0.5).figure(&Model::DEFAULT) & 0b100, 0b100);
+        assert_eq!(filling(0.65).figure(&Model::DEFAULT) & 0b100, 0);
     }
 
     #[test]
