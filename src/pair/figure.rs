@@ -202,13 +202,11 @@ impl Known {
     }
 
     /// The sum over all pairs of a region in a subset and one in the rest.
-    #[inline(never)]
     fn across(&self, subset: u32, of: &[f64]) -> f64 {
         let n = self.areas.len();
         members(subset, n).map(|i| self.within(!subset, &of[i * n..][..n])).sum()
     }
 
-    #[inline(never)]
     fn within(&self, subset: u32, of: &[f64]) -> f64 {
         members(subset, of.len()).map(|k| of[k]).sum()
     }
