@@ -1,5 +1,7 @@
 import { defineConfig } from '@playwright/test';
 
+/** `npm test -- --stress`: a slow page, or tests that are slow and find the page ahead of them. */
+const stress = process.env.VERONESE_STRESS;
 const PORT = Number(process.env.VERONESE_TEST_PORT ?? 4817);
 
 export default defineConfig({
@@ -8,7 +10,7 @@ export default defineConfig({
   fullyParallel: true,
   workers: 2,
   // Only a failure takes so long: cargo may have most of the machine.
-  timeout: 240_000,
+  timeout: stress === undefined ? 240_000 : 900_000,
   expect: { timeout: 60_000 },
   forbidOnly: process.env.CI !== undefined,
   // Sweeps over many settings, and what measures more than it tests: npm run soak.
@@ -20,6 +22,7 @@ export default defineConfig({
     serviceWorkers: 'block',
     viewport: { width: 1280, height: 860 },
     launchOptions: {
+      ...(stress === 'slow-test' && { slowMo: 150 }),
       executablePath: process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium',
       args: [
         '--no-sandbox',

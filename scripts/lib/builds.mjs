@@ -1,21 +1,21 @@
 // Builds the WebAssembly modules, the npm package, the page and the wheel. What has not changed is skipped.
 
 import { copyFileSync, existsSync, readdirSync, rmSync } from 'node:fs';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
 import { NOTICES, writeNotices, writeNoticesOfWheel } from './notices.mjs';
-import { cargoHome, root, which } from './project.mjs';
+import { cargoHome, projectText, root, which } from './project.mjs';
 import { Stop, must, run, say } from './run.mjs';
-import { pinnedRust } from './rust.mjs';
+import { pinnedRust, versionOfRust, wasmTools } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 /** Texts in the package and on the page. */
 const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', NOTICES];
-const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
+const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo', 'scripts/wasm-tools'];
 
 /**
- * The modules that wasm-pack builds. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
+ * The modules. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
  * The module with codecs has everything and reads image files in Node.
  */
 export const MODULES = [
@@ -34,33 +34,20 @@ export const buildModules = once(() => buildEach(MODULES));
 export const buildStagesModule = once(() => buildEach([STAGES]));
 
 async function buildEach(modules) {
-  const versions = await Promise.all(
-    [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
-      async ([program, flag]) => (await run(program, [flag], { output: 'collect', env: pinnedRust() })).text,
-    ),
-  );
-  // wasm-pack skips this step without an error if there is no wasm-opt, and takes any wasm-opt on the path.
+  const optimiser = await run('wasm-opt', ['--version'], { output: 'collect' });
   if (!which('wasm-opt')?.startsWith(join(root, 'node_modules'))) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
+  const versions = [await versionOfRust(pinnedRust()), optimiser.text];
   for (const { name, folder, title, features } of modules) {
     const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
-    await step(`${title} (one to three minutes when everything is new)`, folder, outputs, RUST_SOURCES, versions, () =>
-      wasmPack(name, folder, features),
-    );
+    await step(`${title} (a minute or two when everything is new)`, folder, outputs, RUST_SOURCES, versions, () => buildModule(name, folder, features));
   }
 }
 
-/**
- * Compiles the modules while the tools that make them are being installed. Without it they take longer, and nothing else. The arguments are
- * those of wasm-pack: cargo compiles even what they depend on in another way for a library that is no module.
- */
+/** Compiles the modules while the program that writes them is being compiled itself. Without it they take longer, and nothing else. */
 export async function compileAhead() {
-  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
-  for (const { features } of MODULES) {
-    const args = ['build', '--lib', '--release', '--target', TARGET, '--package', 'veronese-wasm', ...ofModule(features)];
-    await run('cargo', args, { output: 'collect', env: ofProject() });
-  }
+  for (const { features } of MODULES) await compile(features, { output: 'collect' }).catch(() => undefined);
 }
 
 /** Builds the modules, then the npm package: their JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
@@ -89,7 +76,7 @@ export const buildPage = once(async () => {
 
 /** Builds the wheel of the Python package, with the maturin of an environment. Returns its path. Cargo knows what is up to date. */
 export function buildWheel(python) {
-  return makeWheel(python, ['--release'], { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') });
+  return makeWheel(python, ['--release'], { CARGO_PROFILE_RELEASE_LTO: 'fat', RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') });
 }
 
 /** The same wheel compiled as tests are, so that the native tests and it share the crate. */
@@ -123,30 +110,35 @@ async function step(title, folder, outputs, inputs, versions, build) {
   if (!built) say(`${folder} is up to date.`);
 }
 
-async function wasmPack(name, folder, features) {
+/** Compiles a module, writes its JavaScript and types, and has wasm-opt make it smaller, as wasm-pack does and with its settings. */
+async function buildModule(name, folder, features) {
+  await compile(features);
+  rmSync(join(root, folder, `${name}_bg.wasm`), { force: true });
+  await must('The JavaScript of the module could not be written.', wasmTools, ['module', `target/${TARGET}/release/veronese_wasm.wasm`, folder, name]);
+  const module = `${folder}/${name}_bg.wasm`;
+  // Set-up installs it.
+  const { parse } = await import('smol-toml');
+  const { metadata } = parse(projectText('wasm/Cargo.toml')).package;
+  await must('The module could not be made smaller.', 'wasm-opt', [module, '-o', module, ...metadata['wasm-pack'].profile.release['wasm-opt']]);
+}
+
+async function compile(features, options = {}) {
   // The dependencies' sources must be downloaded before the flags below can name their folders.
-  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
-  // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
-  // because wasm-pack optimises every module in the folder.
-  const pack = ['build', 'wasm', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
-  await must(
-    'The WebAssembly module could not be built.',
-    'wasm-pack',
-    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...ofModule(features)],
-    { env: ofProject() },
-  );
+  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
+  const args = ['build', '--lib', '--release', '--target-dir', 'target', '--target', TARGET, '--package', 'veronese-wasm', ...ofModule(features)];
+  await must('The WebAssembly module could not be compiled.', 'cargo', args, { ...options, env: ofProject() });
 }
 
 /** Cargo's arguments for a module with these features. */
-function ofModule(features) {
+export function ofModule(features) {
   const config = `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`;
   return ['--locked', '--config', config, '--no-default-features', '--features', features.join(',')];
 }
 
 /** Cargo's arguments for a test of the modules' own crate, and the environment: with these, the libraries are those that the modules have. */
 export function testOfModules(name) {
-  const args = ['test', '--package', 'veronese-wasm', '--test', name, '--release', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
-  return { args, env: { ...ofProject(), CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: 'wasm-bindgen-test-runner' } };
+  const args = ['test', '--package', 'veronese-wasm', '--test', name, '--release', '--target-dir', 'target', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
+  return { args, env: { ...ofProject(), CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `node ${join(root, 'scripts', 'lib', 'wasm-test-runner.mjs')}`, VERONESE_WASM_TOOLS: wasmTools } };
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */
@@ -157,6 +149,6 @@ function pathFlags() {
 }
 
 /** The pinned compiler, without the variables that would override the flags of .cargo/config.toml, which enable SIMD. */
-function ofProject() {
+export function ofProject() {
   return { ...pinnedRust(), RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined };
 }

@@ -10,15 +10,17 @@ import { versionProblem, versions } from './versions.mjs';
 
 const DENY = ['--', '-D', 'warnings'];
 const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
-const ALL = ['--features', 'codecs,stages,ablation,plot'];
+
+/** Those that compile. */
+const LINTS = [
+  // What the tests have compiled anyway, so the benchmarks and the modules of Python and WebAssembly are left to RARE.
+  ['clippy', 'cargo', ['clippy', '--locked', '--package', 'veronese', '--package', 'scenes', '--package', 'experiments', '--all-targets', '--features', 'codecs,stages,ablation', ...DENY]],
+];
 
 const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],
-  // They compile with a nightly toolchain only.
-  ['formatting of the fuzz targets', 'cargo', ['fmt', '--manifest-path', 'fuzz/Cargo.toml', '--check']],
-  // Natively, everything at once. The Python package needs no Python for it.
-  ['clippy', 'cargo', ['clippy', '--locked', '--workspace', '--all-targets', ...ALL, ...DENY]],
-  ['documentation', 'cargo', ['doc', '--locked', '--no-deps', '--package', 'veronese', '--features', 'codecs,stages'], DENY_IN_DOCS],
+  // They are no members of the workspace.
+  ...['fuzz', 'scripts/wasm-tools'].map((folder) => [`formatting of ${folder}`, 'cargo', ['fmt', '--manifest-path', `${folder}/Cargo.toml`, '--check']]),
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
   // After the builds: it asks the types of the package too.
@@ -33,6 +35,8 @@ const only = (features) => ['--no-default-features', '--features', features];
 
 /** The crates as users and modules have them: features leave out parts. */
 const RARE = [
+  // Natively, everything at once. The Python package needs no Python for it.
+  ['clippy of the workspace', 'cargo', ['clippy', '--locked', '--workspace', '--all-targets', '--features', 'codecs,stages,ablation,plot', ...DENY]],
   ['clippy without features', 'cargo', ['clippy', '--locked', '--lib', '--package', 'veronese', ...DENY]],
   ['clippy for wasm', 'cargo', ['clippy', '--locked', '--all-targets', ...MODULES, '--features', 'codecs,stages', ...DENY]],
   ...['frames', 'points', 'frames,points', 'frames,points,stages'].map((features) => [
@@ -42,7 +46,12 @@ const RARE = [
   ['documentation for wasm', 'cargo', ['doc', '--locked', '--no-deps', ...MODULES, '--features', 'codecs,stages'], DENY_IN_DOCS],
 ];
 
-/** Runs every check, even after a failure. Returns counts, as tests.mjs. */
+/** Runs the checks that compile. Returns counts, as tests.mjs. */
+export async function runLints() {
+  return counted(await outcomesOf(LINTS));
+}
+
+/** Runs every other check, even after a failure. Returns counts, as tests.mjs. */
 export async function runChecks() {
   const results = [
     ['one version everywhere', nothing(versionProblem(await versions()))],

@@ -24,7 +24,8 @@ export async function buildIfChanged(name, { inputs, outputs, versions = [] }, b
   return true;
 }
 
-function fingerprint(inputs, versions) {
+/** The contents of files and folders of the project and the versions of programs, as one text. */
+export function fingerprint(inputs, versions) {
   const hash = createHash('sha256');
   hash.update(JSON.stringify(versions));
   for (const path of inputs.flatMap(filesIn)) {

@@ -1,22 +1,25 @@
 // The parts of the tests. DAILY is what `npm test` runs: what users rely on, once. RARE is for `npm run soak`: what downloads much, needs
 // other programs, or looks at the same things in many more ways.
 //
-// Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs. Parts with `named` can run
-// those tests alone whose file or name has `word`.
+// Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs. Of daily ones also the lane,
+// the `budget` in seconds of processor, and `inputs`: what a part depends on, for unchanged.mjs. Parts with `named` can run those tests alone whose
+// file or name has `word`; `stressed` has the ways in which stress.mjs runs them.
 
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 
 import { findBrowsers, testInBrowsers } from './browsers.mjs';
-import { buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
-import { runChecks, runRareChecks } from './checks.mjs';
+import { MODULES, buildModules, buildPackage, buildPage, buildTestWheel, buildWheel, testOfModules } from './builds.mjs';
+import { runChecks, runLints, runRareChecks } from './checks.mjs';
 import { root } from './project.mjs';
 import { OWN, installWheel } from './python-packages.mjs';
 import { Stop, must, say } from './run.mjs';
 import { buildSite } from './site.mjs';
+import { stressed } from './stress.mjs';
 import { cargo, node, playwright, pytest } from './test-programs.mjs';
 import { NOTHING, added, tests } from './tests.mjs';
+import { testWithWasmPack } from './wasm-pack.mjs';
 
 /**
  * The crates that have native tests, and that of the Python package, which has none: named beside them, it asks for the same features of
@@ -26,12 +29,34 @@ const CRATES = ['veronese', 'scenes', 'experiments', 'veronese-python'].flatMap(
 const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs,stages', ...CRATES];
 const SOAK = { VERONESE_SOAK: '1' };
 
-/** Parts of one lane run one after another, because they would wait for each other: for cargo's lock, for ports, for cores. */
+/** What nothing but their own checks depends on. */
+const NOTES = ['ARCHITECTURE.md', 'CODE_OF_CONDUCT.md', 'CONTRIBUTING.md', 'SECURITY.md', 'VERSIONING.md', '.github', 'cspell.json', 'deny.toml', 'fuzz', 'benches', 'docs/figures', 'docs/images'];
+/** The sources of the modules: what depends on the modules depends on the built ones. */
+const CRATES_OF_MODULES = ['src', 'wasm', 'scenes', 'experiments', 'Cargo.toml', 'Cargo.lock', '.cargo', 'clippy.toml', 'rustfmt.toml', 'scripts/wasm-tools'];
+const BUILT = MODULES.map(({ folder, name }) => `${folder}/${name}_bg.wasm`);
+const PAGE = ['www/src', 'www/tests', 'www/browsers', 'www/screens', 'www/index.html'];
+const PACKAGE = ['pkg/src', 'pkg/test', 'pkg/types', 'pkg/scripts', 'pkg/bin', 'pkg/schemas'];
+
+/**
+ * Parts of one lane run one after another, because they would wait for each other: for cargo's lock, for ports, for cores. What is for `either`
+ * fills the lane that is ready first.
+ */
 export const DAILY = {
+  compile: {
+    lane: 'cargo',
+    title: 'compiling the native tests',
+    budget: 300,
+    run: async () => {
+      await must('The native tests could not be compiled.', 'cargo', [...NATIVE, '--tests', '--no-run']);
+      return NOTHING;
+    },
+  },
   native: {
     lane: 'cargo',
     title: 'native tests',
     named: true,
+    budget: 200,
+    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs', 'python/tests', 'python/package'] },
     // The names of these tests begin with their files, as modules or paths.
     run: async ({ word }) => {
       const own = word === undefined ? [] : ['--', word];
@@ -42,6 +67,8 @@ export const DAILY = {
     lane: 'cargo',
     title: 'the algebra in WebAssembly, under Node',
     named: true,
+    budget: 100,
+    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs', 'examples', 'experiments', 'python'] },
     // Its library is that of the modules, compiled once.
     run: async ({ word }) => {
       await buildModules();
@@ -50,28 +77,49 @@ export const DAILY = {
       return tests(cargo, 'cargo', [...args, ...own], env, word);
     },
   },
-  check: { lane: 'cargo', title: 'checks', needs: { checks: true }, run: runChecks },
   python: {
     lane: 'cargo',
     title: 'the Python package',
     named: true,
     needs: { ownPython: true },
+    budget: 100,
+    inputs: { build: buildPackage, apart: [...NOTES, ...PAGE, 'pkg/test', 'experiments'] },
     run: async (setup) => added(await ofPython('python', setup, buildTestWheel), await ofStart(setup, ['start-python'])),
+    stressed: { busy: (setup) => ofPython('python', setup, buildTestWheel) },
+  },
+  clippy: {
+    lane: 'cargo',
+    title: 'lints of Rust',
+    needs: { checks: true },
+    budget: 150,
+    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs'] },
+    run: runLints,
   },
   builds: {
     lane: 'node',
     title: 'the modules, the package and the page',
+    budget: 200,
     run: async () => {
       await buildPage();
-      return { passed: 0, failed: 0, skipped: 0, failures: [] };
+      return NOTHING;
     },
   },
-  package: { lane: 'node', title: 'package tests', named: true, run: ({ word }) => ofPackage('test', {}, word) },
+  package: {
+    lane: 'node',
+    title: 'package tests',
+    named: true,
+    budget: 300,
+    inputs: { build: buildPackage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, ...PAGE, 'site', 'python'] },
+    run: ({ word }) => ofPackage('test', {}, word),
+    stressed: { busy: ({ word }) => ofPackage('test', {}, word, ['--test-concurrency=1']) },
+  },
   packed: {
     lane: 'node',
     title: 'the packed package, in Node and with Vite',
     named: true,
     needs: { browser: true },
+    budget: 60,
+    inputs: { build: buildPackage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, ...PAGE, 'tests', 'python'] },
     run: (setup) =>
       withInstalled(async (env) => {
         const packed = await ofPackage('test:packed', { ...inBrowser(setup), ...env }, setup.word);
@@ -83,8 +131,23 @@ export const DAILY = {
     title: 'page tests in Chromium',
     named: true,
     needs: { browser: true },
+    budget: 700,
+    inputs: { build: buildPage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, 'pkg/test', 'tests', 'site', 'python', 'docs'] },
     // Playwright looks for it in files and names alike.
-    run: (setup) => ofPage('test', setup, {}, setup.word === undefined ? [] : ['--pass-with-no-tests', '--grep', literal(setup.word)]),
+    run: (setup) => ofPage('test', setup, {}, named(setup.word)),
+    stressed: {
+      busy: (setup) => ofPage('test', setup, {}, ['--workers=1', ...named(setup.word)]),
+      'slow-page': (setup) => ofPage('test', setup, { VERONESE_STRESS: 'slow-page' }, named(setup.word)),
+      'slow-test': (setup) => ofPage('test', setup, { VERONESE_STRESS: 'slow-test' }, named(setup.word)),
+    },
+  },
+  check: {
+    lane: 'either',
+    title: 'checks',
+    budget: 80,
+    // They ask the types of the package too.
+    inputs: { build: buildPackage, apart: [] },
+    run: runChecks,
   },
 };
 
@@ -151,6 +214,15 @@ export const RARE = {
       return ofGuide(env);
     },
   },
+  stress: {
+    title: 'tests on a busy or slow machine',
+    needs: { browser: true, ownPython: true },
+    run: (setup) => stressed(Object.values(DAILY), setup, 1),
+  },
+  'wasm-pack': {
+    title: 'the modules, as wasm-pack makes and tests them',
+    run: testWithWasmPack,
+  },
   release: {
     title: 'a rehearsal of a release',
     run: async () => {
@@ -166,15 +238,20 @@ export function needsOf(parts) {
 }
 
 /** Runs a script of the package; with a word the tests whose file or name has it. */
-async function ofPackage(script, env = {}, word) {
+async function ofPackage(script, env = {}, word, own = []) {
   await buildPackage();
-  if (word === undefined) return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
+  if (word === undefined && own.length === 0) return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
   const folders = script === 'test' ? ['pkg/test', 'pkg/test/scripts'] : [`pkg/test/${script.split(':')[1]}`];
   const files = folders.flatMap((folder) => readdirSync(join(root, folder)).filter((name) => name.endsWith('.test.mjs')).map((name) => `${folder}/${name}`));
   const isNamed = (file) => basename(file, '.test.mjs').includes(word);
   const run = (own, ...options) =>
     own.length === 0 ? NOTHING : tests(node, process.execPath, ['--test', '--test-reporter=tap', ...options, ...own], env, word);
   return added(await run(files.filter(isNamed)), await run(files.filter((file) => !isNamed(file)), `--test-name-pattern=${literal(word)}`));
+}
+
+/** Playwright's arguments for the tests whose file or name has the word. */
+function named(word) {
+  return word === undefined ? [] : ['--pass-with-no-tests', '--grep', literal(word)];
 }
 
 /** A regular expression for a text as it is. */

@@ -2,8 +2,10 @@
 
 import { AsyncLocalStorage } from 'node:async_hooks';
 import { spawn } from 'node:child_process';
+import { writeFileSync } from 'node:fs';
 import { setPriority } from 'node:os';
 
+import { isKnown, watchProcessor } from './processor.mjs';
 import { environment, root } from './project.mjs';
 
 /** A failure that one sentence explains to the user; commands print it without a stack trace. */
@@ -14,10 +16,12 @@ const parts = new AsyncLocalStorage();
 
 /**
  * Runs `main` as a part of the work: its messages and the output of its programs go to `write`, where that is given, and its programs get this
- * `niceness` (0 to 19; where cores are short, those with less go first).
+ * `niceness` (0 to 19; where cores are short, those with less go first). Returns what `main` returns as `outcome`, with the seconds of
+ * processor that its programs took, where the system tells them.
  */
-export function inPart({ write, niceness = 0 }, main) {
-  return parts.run({ write, niceness }, main);
+export async function inPart({ write, niceness = 0 }, main) {
+  const part = { write, niceness, processor: isKnown ? 0 : undefined };
+  return { outcome: await parts.run(part, main), processor: part.processor };
 }
 
 /** Shows a line. */
@@ -46,8 +50,9 @@ export function run(program, args, { output = 'inherit', env = {}, cwd = root } 
     const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe], detached: true });
     if (child.pid) {
       running.add(child);
-      if (part?.niceness) setPriority(child.pid, part.niceness);
+      if (part?.niceness) giveWay(child.pid, part.niceness);
     }
+    const processor = part && isKnown && child.pid ? watchProcessor(child.pid) : undefined;
     const pieces = [];
     const written = [];
     child.stdout?.on('data', (piece) => {
@@ -61,11 +66,22 @@ export function run(program, args, { output = 'inherit', env = {}, cwd = root } 
     });
     const finish = (code, note = '') => {
       running.delete(child);
+      if (processor) part.processor += processor();
       resolve({ code, text: Buffer.concat(pieces) + note, stdout: Buffer.concat(written).toString() });
     };
     child.on('error', (error) => finish(127, `${program}: ${error.message}\n`));
     child.on('close', (code) => finish(code ?? 128));
   });
+}
+
+/** Where cores are short, a program and what it starts get less of them. Linux divides them between sessions first, which have a niceness too. */
+function giveWay(pid, niceness) {
+  setPriority(pid, niceness);
+  try {
+    writeFileSync(`/proc/${pid}/autogroup`, `${niceness}`);
+  } catch {
+    // Another system, or one that knows no sessions.
+  }
 }
 
 /** Like `run`, but a failure stops the command with `sentence`, after printing the program's output if it was not shown. */

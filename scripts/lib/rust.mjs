@@ -1,11 +1,12 @@
-// The Rust side of set-up: compiler, wasm target, linker, wasm-pack and wasm-bindgen.
+// The Rust side of set-up: compiler, wasm target, linker, and the programs that make WebAssembly modules.
 
 import { existsSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { installDebianPackages } from './debian.mjs';
-import { atLeast, projectText, toolsFolder, which } from './project.mjs';
-import { Stop, longStep, run, say } from './run.mjs';
+import { buildIfChanged } from './fingerprint.mjs';
+import { atLeast, projectText, root, toolsFolder, which } from './project.mjs';
+import { Stop, longStep, must, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 /**
@@ -13,18 +14,18 @@ const TARGET = 'wasm32-unknown-unknown';
  * in another way. Everything else takes any stable Rust from rust-version in Cargo.toml onwards.
  */
 const PINNED = '1.95.0';
-const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
+const WASM_PACK = '0.15.1';
 const RUSTUP = 'https://rustup.rs';
 // Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
-/** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
-export function wasmBindgenVersion() {
-  const found = /name = "wasm-bindgen"\r?\nversion = "([^"]+)"/.exec(projectText('Cargo.lock'));
-  if (!found) throw new Stop('Cargo.lock names no version of wasm-bindgen; restore it with `git checkout Cargo.lock`.');
-  return found[1];
-}
+/** Of the program that writes modules with their JavaScript: its sources, Cargo's folder for it, and itself. */
+const WASM_TOOLS = { sources: 'scripts/wasm-tools', target: '.tools/wasm-tools', program: '.tools/wasm-tools/release/wasm-tools' };
+/** Flags of the user's are for other programs. */
+const OF_PROGRAMS = { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined } };
+/** The path of the program that writes modules with their JavaScript. */
+export const wasmTools = join(root, WASM_TOOLS.program);
 
 /** Checks the compiler and linker, which every build needs. Throws one sentence that names everything missing. */
 export async function checkRust() {
@@ -50,6 +51,11 @@ let pinned = {};
 
 export function pinnedRust() {
   return pinned;
+}
+
+/** What the compiler says of itself. */
+export async function versionOfRust(env = {}) {
+  return (await run('rustc', ['-vV'], { output: 'collect', env })).text;
 }
 
 /** Finds or installs the pinned compiler. */
@@ -79,27 +85,24 @@ export async function prepareCompiler({ checks }) {
   }
 }
 
-/**
- * Installs wasm-pack and wasm-bindgen, each in exactly the version that the modules require. Where that takes minutes, `meanwhile` runs
- * beside it: neither keeps all cores busy all the time.
- */
+/** Compiles what writes modules. Where that takes a minute, `meanwhile` runs beside it: neither keeps all cores busy all the time. */
 export async function prepareWasmTools(meanwhile) {
-  const bindgen = {
-    program: 'wasm-bindgen',
-    crate: 'wasm-bindgen-cli',
-    version: wasmBindgenVersion(),
-    companions: ['wasm-bindgen-test-runner'],
-  };
-  const tools = [bindgen, { program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK }];
-  const missing = [];
-  for (const tool of tools) if (!(await isPresent(tool))) missing.push(tool);
-  if (missing.length === 0) return;
-  const install = async () => {
-    // One after another: they have packages in common, which are compiled once.
-    for (const tool of missing) await cargoInstall(tool);
-  };
-  await Promise.all([install(), meanwhile()]);
-  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
+  const { sources, target, program } = WASM_TOOLS;
+  const build = ['build', '--locked', '--release', '--manifest-path', `${sources}/Cargo.toml`, '--target-dir', target];
+  const compile = () =>
+    longStep(
+      'Compiling what writes WebAssembly modules (about a minute; once)',
+      `${sources} could not be compiled. See above; if it is the network, run the command again.`,
+      'cargo', build, OF_PROGRAMS,
+    );
+  await buildIfChanged('wasm-tools', { inputs: [sources], outputs: [program], versions: [await versionOfRust()] }, () => Promise.all([compile(), meanwhile()]));
+}
+
+/** Installs wasm-pack, and the version of wasm-bindgen's command line tool that it asks for; only a test of it needs them. */
+export async function prepareWasmPack() {
+  const version = /name = "wasm-bindgen"\r?\nversion = "([^"]+)"/.exec(projectText('Cargo.lock'))[1];
+  await installAlone({ program: 'wasm-bindgen', crate: 'wasm-bindgen-cli', version, companions: ['wasm-bindgen-test-runner'] });
+  await installAlone({ program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK });
 }
 
 /** Installs the program that drives Firefox; only its tests need it. */
@@ -133,8 +136,7 @@ async function cargoInstall(tool) {
         CARGO_PROFILE_RELEASE_LTO: 'off',
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
         CARGO_PROFILE_RELEASE_PANIC: 'abort',
-        RUSTFLAGS: undefined,
-        CARGO_ENCODED_RUSTFLAGS: undefined,
+        ...OF_PROGRAMS.env,
       },
     },
   );

@@ -41,10 +41,21 @@ export const test = base.extend<Options>({
   },
   page: async ({ context }, use) => {
     const [page] = context.pages();
+    if (process.env.VERONESE_STRESS === 'slow-page') await slowDown(context, page!);
     await use(page!);
     page!.removeAllListeners();
   },
 });
+
+/** The page is on a slow machine, and its scripts come late, by a slow line: `npm test -- --stress`. */
+async function slowDown(context: BrowserContext, page: Page): Promise<void> {
+  const devtools = await context.newCDPSession(page);
+  await devtools.send('Emulation.setCPUThrottlingRate', { rate: 6 });
+  devtools.on('Fetch.requestPaused', ({ requestId }) => {
+    setTimeout(() => void devtools.send('Fetch.continueRequest', { requestId }).catch(() => undefined), 1000);
+  });
+  await devtools.send('Fetch.enable', { patterns: [{ urlPattern: '*/assets/*.js' }] });
+}
 
 async function opened(browser: Browser): Promise<Kept> {
   const context = await browser.newContext();
