@@ -12,7 +12,7 @@ import { pinnedRust, versionOfRust, wasmTools } from './rust.mjs';
 const TARGET = 'wasm32-unknown-unknown';
 /** Texts in the package and on the page. */
 const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', NOTICES];
-const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo', 'scripts/wasm-tools'];
+const RUST_SOURCES = ['src', 'wasm/src', 'wasm/Cargo.toml', 'Cargo.toml', 'Cargo.lock', '.cargo', 'scripts/wasm-tools'];
 
 /**
  * The modules. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.

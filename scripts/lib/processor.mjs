@@ -71,6 +71,6 @@ function secondsOf(pid) {
 }
 
 function forget(pid) {
-  for (const one of [...seen.values()]) if (one.parent === pid) forget(one.pid);
+  for (const one of seen.values()) if (one.parent === pid) forget(one.pid);
   seen.delete(pid);
 }

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { installDebianPackages } from './debian.mjs';
 import { buildIfChanged } from './fingerprint.mjs';
 import { atLeast, projectText, root, toolsFolder, which } from './project.mjs';
-import { Stop, longStep, must, run, say } from './run.mjs';
+import { Stop, longStep, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 /**

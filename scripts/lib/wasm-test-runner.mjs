@@ -18,15 +18,14 @@ const folder = mkdtempSync(join(tmpdir(), 'veronese-tests-'));
 try {
   execFileSync(process.env.VERONESE_WASM_TOOLS, ['test', file, folder, 'tests'], { stdio: 'inherit' });
   // What the crate expects of its surroundings.
-  globalThis.__wbgtest_og_console_log = console.log;
-  globalThis.__wbgtest_og_console_error = console.error;
-  globalThis.__wbg_test_invoke = (test) => test();
+  Object.assign(globalThis, { __wbgtest_og_console_log: console.log, __wbgtest_og_console_error: console.error, __wbg_test_invoke: (test) => test() });
   const wasm = createRequire(import.meta.url)(join(folder, 'tests.js'));
+  const { __wasm: exported } = wasm;
   // What a test writes, its panic too, is shown with its failure.
   for (const method of ['debug', 'log', 'info', 'warn', 'error']) console[method] = (...args) => wasm[`__wbgtest_console_${method}`](args);
   const context = new wasm.WasmBindgenTestContext(false);
   context.filtered_count(tests.length - chosen.length);
-  process.exitCode = (await context.run(chosen.map((name) => wasm.__wasm[name]))) ? 0 : 1;
+  process.exitCode = (await context.run(chosen.map((name) => exported[name]))) ? 0 : 1;
 } finally {
   rmSync(folder, { recursive: true, force: true });
 }
