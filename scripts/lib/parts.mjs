@@ -33,7 +33,7 @@ const SOAK = { VERONESE_SOAK: '1' };
 const NOTES = ['ARCHITECTURE.md', 'CODE_OF_CONDUCT.md', 'CONTRIBUTING.md', 'SECURITY.md', 'VERSIONING.md', '.github', 'cspell.json', 'deny.toml', 'fuzz', 'benches', 'docs/figures', 'docs/images'];
 /** The sources of the modules: what depends on the modules depends on the built ones. */
 const CRATES_OF_MODULES = ['src', 'wasm', 'scenes', 'experiments', 'Cargo.toml', 'Cargo.lock', '.cargo', 'clippy.toml', 'rustfmt.toml', 'scripts/wasm-tools'];
-const BUILT = MODULES.map(({ folder, name }) => `${folder}/${name}_bg.wasm`);
+const BUILT = [...MODULES.map(({ folder, name }) => `${folder}/${name}_bg.wasm`), 'pkg/THIRD-PARTY-NOTICES'];
 const PAGE = ['www/src', 'www/tests', 'www/browsers', 'www/screens', 'www/index.html'];
 const PACKAGE = ['pkg/src', 'pkg/test', 'pkg/types', 'pkg/scripts', 'pkg/bin', 'pkg/schemas'];
 
