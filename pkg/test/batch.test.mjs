@@ -11,6 +11,7 @@ import { clip as framesOf, lines, tree } from './support/folders.mjs';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
+import { signalledAt } from './support/stopping.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
@@ -179,21 +180,8 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
   const SIZE = { width: 160, height: 120 };
   const args = (frames, out) => [frames, '--out', out, '--jobs', '2', '--overlay'];
 
-  /** The environment in which the program gets a signal as the n-th pair is complete: before its folder has its name, or after. */
-  function signalled(folder, signal, n, when) {
-    const preload = folder.file(`preload-${signal}-${n}-${when}.cjs`, `
-      const fs = require('fs'), { renameSync } = fs;
-      let count = 0;
-      fs.renameSync = (from, to) => {
-        const now = /\\.part.*\\d-f\\d$/.test(from) && ++count === ${n};
-        const signal = () => process.kill(process.pid, '${signal}');
-        if (now && '${when}' === 'before') signal();
-        renameSync(from, to);
-        if (now && '${when}' === 'after') signal();
-      };
-      require('module').syncBuiltinESMExports();`);
-    return { env: { NODE_OPTIONS: `--require "${preload}"` } };
-  }
+  /** As the n-th pair is complete: before its folder has its name, or after. */
+  const signalled = (folder, signal, n, when) => signalledAt(folder, signal, { path: /\d-f\d$/, n, when });
 
   test('in the middle of writing: what is left is taken away by the next run, but not that of others', async (t) => {
     const { frames, out, ...folder } = clip(t, 4);

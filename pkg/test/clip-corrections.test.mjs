@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, watch, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
@@ -12,6 +12,7 @@ import { ProgressBar } from '../build/cli/terminal.js';
 import { pngOf } from './support/chunks.mjs';
 import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
+import { signalledAt } from './support/stopping.mjs';
 import * as three from './support/three.mjs';
 import { veronese, veroneseProcess } from './support/program.mjs';
 
@@ -358,40 +359,26 @@ test('the progress bar says what is done with the frames', () => {
   assert.match(text, /labels: 3 frames$/);
 });
 
-describe('an interrupted clip', () => {
-  /** Runs until the pairs of a frame are kept, then ends with the signal. */
-  async function interrupted(args, out, signal, file) {
-    mkdirSync(join(out, '.clip'), { recursive: true });
-    const onStart = (child) => {
-      const watching = watch(join(out, '.clip'), () => {
-        if (!existsSync(join(out, '.clip', file))) return;
-        watching.close();
-        child.kill(signal);
-      });
-      child.on('close', () => watching.close());
-    };
-    return veroneseProcess(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
-  }
+describe('an interrupted clip', { skip: process.platform === 'win32' }, () => {
+  /** Runs until the pairs of so many frames are kept, in their order with one job. */
+  const interrupted = ({ file }, args, signal, n) =>
+    veroneseProcess(['clip', '--quality', 'fast', ...args], signalledAt({ file }, signal, { path: /\.pairs$/, n }));
+  const kept = (out) => readdirSync(join(out, '.clip'));
 
-  const skip = process.platform === 'win32';
+  test('goes on with the pairs it has solved', async (t) => {
+    const { file, frames, out, path } = clip(t, 8);
+    const { code } = await interrupted({ file }, [frames, '--jobs', '2', '--out', out], 'SIGINT', 4);
+    assert.equal(code, 130);
+    assert.ok(kept(out).length >= 4 && kept(out).every((name) => name.endsWith('.pairs')), kept(out).join());
+    assert.equal(existsSync(join(out, 'tracks.json')), false);
+    await run([frames, '--out', out]);
+    await run([frames, '--out', path('whole')]);
+    assert.deepEqual(tree(out), tree(path('whole')));
+  });
 
-  for (const [signal, exit] of [['SIGINT', 130], ['SIGKILL', null]]) {
-    test(`goes on after ${signal} with the pairs it has solved`, { skip }, async (t) => {
-      const { frames, out, path } = clip(t, 8);
-      const { code } = await interrupted([frames], out, signal, '00003.pairs');
-      assert.equal(code, exit);
-      const kept = readdirSync(join(out, '.clip')).filter((name) => name.endsWith('.pairs'));
-      assert.ok(kept.includes('00003.pairs') && kept.length < 8);
-      assert.equal(existsSync(join(out, 'tracks.json')), false);
-      await run([frames, '--out', out]);
-      await run([frames, '--out', path('whole')]);
-      assert.deepEqual(tree(out), tree(path('whole')));
-    });
-  }
-
-  test('does not use pairs of other options, of other frames, or damaged ones', { skip }, async (t) => {
-    const { frames, out, path } = clip(t);
-    await interrupted([frames], out, 'SIGKILL', '00003.pairs');
+  test('does not use pairs of other options, of other frames, or damaged ones', async (t) => {
+    const { file, frames, out, path } = clip(t);
+    await interrupted({ file }, [frames, '--jobs', '1', '--out', out], 'SIGKILL', 4);
     const same = async (name, args) => {
       await run([...args, '--out', path(name)]);
       await run([...args, '--out', path(`${name}-straight`)]);
@@ -406,13 +393,16 @@ describe('an interrupted clip', () => {
     await same('content', [frames]);
   });
 
-  test('does not solve known pairs: those of frames that are there are not written again', { skip }, async (t) => {
-    const { frames, out } = clip(t, 8);
-    await interrupted([frames, '--jobs', '1'], out, 'SIGKILL', '00003.pairs');
-    const first = join(out, '.clip', '00002.pairs');
-    const at = written(first);
-    await interrupted([frames, '--jobs', '1'], out, 'SIGKILL', '00005.pairs');
-    assert.equal(written(first), at);
+  test('does not solve known pairs: those of frames that are there are not written again', async (t) => {
+    const { file, frames, out } = clip(t, 8);
+    const args = [frames, '--jobs', '1', '--out', out];
+    await interrupted({ file }, args, 'SIGKILL', 4);
+    const times = () => kept(out).map((name) => written(join(out, '.clip', name)));
+    const before = times();
+    assert.equal(before.length, 4);
+    await interrupted({ file }, args, 'SIGKILL', 2);
+    assert.equal(times().length, 6);
+    assert.deepEqual(times().slice(0, 4), before);
   });
 });
 

@@ -10,6 +10,7 @@ import { clipFolder } from './support/clip.mjs';
 import { clip, tree } from './support/folders.mjs';
 import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases, soaking } from './support/soak.mjs';
+import { signalledAt } from './support/stopping.mjs';
 
 const COUNT = 4;
 const skipWindows = process.platform === 'win32';
@@ -225,20 +226,6 @@ describe('convert', () => {
 });
 
 describe('interrupted runs', { skip: skipWindows }, () => {
-  /** Ends the program as its n-th file or folder gets its name: before that, or after. */
-  const killed = (folder, n, when) => ({
-    NODE_OPTIONS: `--require "${folder.file(`preload-${n}-${when}.cjs`, `
-      const fs = require('fs'), { renameSync } = fs;
-      let count = 0;
-      fs.renameSync = (from, to) => {
-        const now = ++count === ${n};
-        if (now && '${when}' === 'before') process.kill(process.pid, 'SIGKILL');
-        renameSync(from, to);
-        if (now) process.kill(process.pid, 'SIGKILL');
-      };
-      require('module').syncBuiltinESMExports();`)}"`,
-  });
-
   /** The files that a run leaves in an empty folder. */
   async function straight(args, out) {
     await done(args);
@@ -261,7 +248,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
       const more = [[1, 'before'], [2, 'before'], [4, 'before'], [5, 'after']];
       for (const [first, n, when] of cases(few, [...ends(undefined, [[1, 'after'], ...more]), ...ends(other, [[3, 'after'], ...more])])) {
         if (first) await done(first);
-        const { signal } = await veroneseProcess(args, { env: killed(folder, n, when) });
+        const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { n, when }));
         assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
         const again = await veronese(args);
         assert.deepEqual([again.code, again.stderr], [0, ''], `${command} ${n} ${when} ${Boolean(first)}`);
@@ -273,14 +260,15 @@ describe('interrupted runs', { skip: skipWindows }, () => {
   });
 
   test('of a clip leave files of others alone, and name a new one in their way', async (t) => {
-    const { commands, out, place } = made(t, 12);
+    const folder = made(t);
+    const { commands, out, place } = folder;
     const args = [...commands.clip, '--look-ahead', '0'];
-    const { signal } = await veroneseProcess(args, { onStart: (child) => child.stdout.once('data', () => child.kill('SIGKILL')) });
+    const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { path: /f2\.png$/ }));
     assert.equal(signal, 'SIGKILL');
     assert.ok(existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
-    place('labels/f11.png', 'mine');
-    await refused(args, out, 'labels/f11.png');
-    rmSync(join(out, 'labels', 'f11.png'));
+    place('labels/f3.png', 'mine');
+    await refused(args, out, 'labels/f3.png');
+    rmSync(join(out, 'labels', 'f3.png'));
     await done(args);
   });
 });

@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
+import { setImmediate } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
@@ -391,7 +392,13 @@ describe('clips', () => {
     assert.equal((await outcomeWithout(0)).error.code, 'worker-failed');
   });
 
-  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', async (t) => {
+  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', { timeout: 60_000 }, async (t) => {
+    const untilIt = async (isSo) => {
+      while (!isSo()) {
+        t.signal.throwIfAborted();
+        await setImmediate();
+      }
+    };
     const workers = [];
     // The first worker never answers, so that its call lasts however slow the others are.
     const worker = () => {
@@ -408,17 +415,18 @@ describe('clips', () => {
     controller.abort();
     assert.equal(await busy, 'cancelled');
     // The cancelled call's worker has ended as it would have without a clip; of the others, one keeps the clip.
-    while (workers.filter(({ ended }) => !ended).length > 1) await new Promise((resolve) => setTimeout(resolve, 20));
+    await untilIt(() => workers.filter(({ ended }) => !ended).length === 1);
 
     let given;
     const slow = { length: COUNT, read: (index) => (index < 5 ? list[index] : new Promise((resolve) => (given = () => resolve(list[index])))) };
     const closed = until(pool.segmentClip(slow, FAST));
-    while (!given) await new Promise((resolve) => setTimeout(resolve, 20));
+    await untilIt(() => given);
     pool.close();
     const { length } = workers;
     given();
     assert.equal((await closed).error.code, 'cancelled');
-    await new Promise((resolve) => setTimeout(resolve, 300));
+    // Nothing that waits for no worker is left to do after so many turns.
+    for (let turn = 0; turn < 50; turn += 1) await setImmediate();
     assert.equal(workers.length, length, 'no worker was started');
   });
 
