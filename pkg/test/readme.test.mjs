@@ -7,6 +7,7 @@ import { describe as describePair } from '../../scripts/lib/describe.mjs';
 import { frame, png } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
 import { examples } from './support/readme.mjs';
+import { soaking } from './support/soak.mjs';
 
 /** A project with the package and the files that the examples speak of. */
 function project(t) {
@@ -55,7 +56,7 @@ describe('README.md', () => {
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);
   });
 
-  test('what the project says of its bundled pair is what comes out', async () => {
+  test('what the project says of its bundled pair is what comes out', { skip: !soaking && 'npm run soak' }, async () => {
     const at = (name) => fileURLToPath(new URL(`../../${name}`, import.meta.url));
     const sample = (name) => at(`www/public/samples/intel-two-cars/${name}.png`);
     const { code, stdout } = await veronese(['pair', sample('first'), sample('second')]);

@@ -12,8 +12,8 @@ import { main } from '../../dist/cli.js';
 export const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
 /**
- * Runs the program with these arguments, without a process. `onLine(line)` hears each line of its output. Resolves to exit code, output
- * and seconds.
+ * Runs the program with these arguments, without a process, and with one job where nothing is said of jobs: each has its own copy of the
+ * module. `onLine(line)` hears each line of its output. Resolves to exit code, output and seconds.
  */
 export async function veronese(args, { stdin = '', onLine } = {}) {
   const started = performance.now();
@@ -27,8 +27,14 @@ export async function veronese(args, { stdin = '', onLine } = {}) {
     },
   });
   const stderr = { isTTY: false, write: (piece) => (text.stderr += piece) };
-  const code = await main(args, { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
+  const code = await main(withJobs(args), { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
   return { code, ...text, seconds: (performance.now() - started) / 1000 };
+}
+
+function withJobs(args) {
+  const [command, ...rest] = args;
+  const isSilent = ['batch', 'clip', 'video'].includes(command) && !rest.some((arg) => /^(-j|--jobs)/.test(arg));
+  return isSilent ? [command, '--jobs', '1', ...rest] : args;
 }
 
 /** The line of `veronese convert` for these arguments, which has to work. */
