@@ -31,7 +31,7 @@ function checkError({ code, stdout, stderr, seconds }, exit, errorCode) {
   assert.equal(stderr.split(': ')[2], errorCode, stderr);
   assert.equal(stdout, '');
   assert.equal(code, exit);
-  assert.ok(seconds < 5, `took ${seconds} s`); // a second of work, and a busy machine that starts Node slowly
+  assert.ok(seconds < 5, `took ${seconds} s`);
 }
 
 const withoutLabels = ({ labels, ...rest }) => rest;

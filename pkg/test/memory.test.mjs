@@ -89,7 +89,7 @@ describe('the most that is in use', () => {
     });
   }
 
-  test('the largest frames there may be, with all that takes memory: at most 1 GiB', { skip: !soaking && 'npm run soak' }, async () => {
+  test('the largest frames there may be, with all that takes memory: at most 1 GiB', { skip: !soaking && 'npm run soak -- package' }, async () => {
     const size = await freshMemory();
     const [first, second] = [0, 1].map((t) => tiled(frame(t, { width: 512, height: 512 }), 8));
     const result = segment([first, second], { quality: 'best', confidence: true, markUnknown: true });

@@ -56,7 +56,7 @@ describe('README.md', () => {
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);
   });
 
-  test('what the project says of its bundled pair is what comes out', { skip: !soaking && 'npm run soak' }, async () => {
+  test('what the project says of its bundled pair is what comes out', { skip: !soaking && 'npm run soak -- package' }, async () => {
     const at = (name) => fileURLToPath(new URL(`../../${name}`, import.meta.url));
     const sample = (name) => at(`www/public/samples/intel-two-cars/${name}.png`);
     const { code, stdout } = await veronese(['pair', sample('first'), sample('second')]);
