@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { describe, test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { davisPalette, segmentClip } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
@@ -326,49 +326,45 @@ test('the progress bar says what is done with the frames', () => {
 });
 
 describe('an interrupted clip', { skip: process.platform === 'win32' }, () => {
-  /** Runs until the pairs of so many frames are kept, in their order with one job. */
-  const interrupted = ({ file }, args, signal, n) =>
-    veroneseProcess(['clip', '--quality', 'fast', ...args], signalledAt({ file }, signal, { path: /\.pairs$/, n }));
-  const kept = (out) => readdirSync(join(out, '.clip'));
+  const { file, frames, out, path } = clip({ after });
+  const args = [frames, '--jobs', '1', '--out'];
+  /** Runs until the pairs of so many frames were written; with one job they come in the order of the frames. */
+  const interrupted = (folder, signal, n) => veroneseProcess(['clip', '--quality', 'fast', ...args, folder], signalledAt({ file }, signal, { path: /\.pairs$/, n }));
+  const kept = (folder) => readdirSync(join(folder, '.clip'));
+  const copy = (name) => {
+    cpSync(out, path(name), { recursive: true });
+    return path(name);
+  };
+  const same = async (one, other) => {
+    for (const [folder, ...more] of [one, other]) await run([frames, ...more, '--out', folder]);
+    assert.deepEqual(tree(one[0]), tree(other[0]));
+  };
 
-  test('goes on with the pairs it has solved', async (t) => {
-    const { file, frames, out, path } = clip(t, 8);
-    const { code } = await interrupted({ file }, [frames, '--jobs', '2', '--out', out], 'SIGINT', 4);
-    assert.equal(code, 130);
-    assert.ok(kept(out).length >= 4 && kept(out).every((name) => name.endsWith('.pairs')), kept(out).join());
+  before(async () => assert.equal((await interrupted(out, 'SIGINT', 3)).code, 130));
+
+  test('has the pairs it has solved, and no tracks', () => {
+    assert.ok(kept(out).length >= 3 && kept(out).length < COUNT && kept(out).every((name) => name.endsWith('.pairs')), kept(out).join());
     assert.equal(existsSync(join(out, 'tracks.json')), false);
-    await run([frames, '--out', out]);
-    await run([frames, '--out', path('whole')]);
-    assert.deepEqual(tree(out), tree(path('whole')));
   });
 
-  test('does not use pairs of other options, of other frames, or damaged ones', async (t) => {
-    const { file, frames, out, path } = clip(t);
-    await interrupted({ file }, [frames, '--jobs', '1', '--out', out], 'SIGKILL', 4);
-    const same = async (name, args) => {
-      await run([...args, '--out', path(name)]);
-      await run([...args, '--out', path(`${name}-straight`)]);
-      assert.deepEqual(tree(path(name)), tree(path(`${name}-straight`)), name);
-    };
-    for (const name of ['options', 'damage', 'content']) cpSync(out, path(name), { recursive: true });
-    await same('options', [frames, '--motions', '2']);
-    copyFileSync(join(out, '.clip', '00001.pairs'), path('damage', '.clip', '00002.pairs'));
-    writeFileSync(path('damage', '.clip', '00001.pairs'), 'damaged');
-    await same('damage', [frames]);
-    writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
-    await same('content', [frames]);
-  });
-
-  test('does not solve known pairs: those of frames that are there are not written again', async (t) => {
-    const { file, frames, out } = clip(t, 8);
-    const args = [frames, '--jobs', '1', '--out', out];
-    await interrupted({ file }, args, 'SIGKILL', 4);
-    const times = () => kept(out).map((name) => written(join(out, '.clip', name)));
+  test('does not solve known pairs: those of frames that are there are not written again', async () => {
+    const folder = copy('again');
+    const times = () => kept(folder).map((name) => written(join(folder, '.clip', name)));
     const before = times();
-    assert.equal(before.length, 4);
-    await interrupted({ file }, args, 'SIGKILL', 2);
-    assert.equal(times().length, 6);
-    assert.deepEqual(times().slice(0, 4), before);
+    await interrupted(folder, 'SIGKILL', 1);
+    assert.equal(times().length, before.length + 1);
+    assert.deepEqual(times().slice(0, -1), before);
+  });
+
+  test('goes on with them, and not with damaged ones, those of other options or of other frames', async () => {
+    await same([copy('whole')], [path('straight')]);
+    const damaged = copy('damaged');
+    copyFileSync(join(out, '.clip', '00001.pairs'), join(damaged, '.clip', '00002.pairs'));
+    writeFileSync(join(damaged, '.clip', '00001.pairs'), 'damaged');
+    await same([damaged], [path('straight')]);
+    await same([copy('options'), '--motions', '2'], [path('straight-options'), '--motions', '2']);
+    writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
+    await same([copy('content')], [path('straight-content')]);
   });
 });
 
