@@ -67,16 +67,14 @@ describe('veronese clip', () => {
   });
 
   test('writes the same files with any number of jobs, also where it was killed with others', async (t) => {
-    const { frames, path } = clip(t, 2 * COUNT);
+    const { frames, path } = clip(t, 8);
     const alone = await run([frames, '--out', path('1'), '--jobs', '1']);
-    for (const jobs of ['2', '5']) {
-      const { stdout } = await run([frames, '--out', path(jobs), '--jobs', jobs]);
-      assert.deepEqual([stdout, tree(path(jobs))], [alone.stdout, tree(path('1'))], `${jobs} jobs`);
-    }
+    const several = await run([frames, '--out', path('3'), '--jobs', '3']);
+    assert.deepEqual([several.stdout, tree(path('3'))], [alone.stdout, tree(path('1'))]);
     rmSync(path('1', 'tracks.json'));
     rmSync(path('1', '.clip', 'state'));
     const { stdout } = await run([frames, '--out', path('1'), '--jobs', '3']);
-    assert.deepEqual([stdout, tree(path('1'))], [alone.stdout, tree(path('2'))]);
+    assert.deepEqual([stdout, tree(path('1'))], [alone.stdout, tree(path('3'))]);
     for (const jobs of ['0', '257', 'all']) await fails([frames, '--out', path('none'), '--jobs', jobs], 'invalid-option', 2);
   });
 

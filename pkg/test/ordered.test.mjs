@@ -187,9 +187,8 @@ test('a signal ends segmentPairs in every state: before, while the source waits,
   cancelled(await failure(unread.next()));
 
   const working = new AbortController();
-  const large = pair({ width: 1024, height: 1024 });
   const options = { jobs: 1, signal: working.signal, onProgress: () => working.abort() };
-  cancelled(await failure(segmentPairs([{ first: large[0], second: large[1] }], options).next()));
+  cancelled(await failure(segmentPairs([{ first, second }], options).next()));
 
   const idle = new AbortController();
   const outcomes = segmentPairs(forever, { jobs: 1, signal: idle.signal });

@@ -52,7 +52,7 @@ describe('Segmenter', () => {
     assert.deepEqual(order, [1, 2, 3, 4, 5]);
   });
 
-  test('a call is cancelled at once, the next one gets a fresh worker', async (t) => {
+  test('a call is cancelled at once, the next one gets a fresh worker', { timeout: 60_000 }, async (t) => {
     const expected = timeless(await segmentPair(...pair()));
     // The first call would never end.
     const workers = [stuckWorker(), new Worker(new URL('../dist/worker-node.js', import.meta.url))];

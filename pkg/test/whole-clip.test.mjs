@@ -350,7 +350,7 @@ describe('clips', () => {
 
   test('are the same to the bit with any number of workers, whichever of their pairs are known', async (t) => {
     const count = 21;
-    const moving = Array.from({ length: count }, (_, index) => frame(index / 2, SIZE));
+    const moving = Array.from({ length: count }, (_, index) => frame(index / 2));
     const pairs = new Map();
     const alone = await outcome(segmentClip, { length: count, read: (index) => moving[index] }, { onPairs: (index, bytes) => void pairs.set(index, bytes) });
     const some = [1, 2, 3, 9, 14, 20];
