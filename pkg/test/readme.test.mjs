@@ -47,7 +47,9 @@ describe('README.md', () => {
   test('the commands', { skip: process.platform === 'win32' }, (t) => {
     const folder = project(t);
     const [commands] = examples('sh run');
-    const { status, stderr } = spawnSync('sh', ['-e', '-c', commands], { cwd: folder.path('.'), encoding: 'utf8', timeout: 120_000 });
+    // npx itself is asked by the tests of the packed package.
+    const env = { ...process.env, PATH: `${folder.path('node_modules', '.bin')}:${process.env.PATH}` };
+    const { status, stderr } = spawnSync('sh', ['-e', '-c', `npx() { "$@"; }\n${commands}`], { cwd: folder.path('.'), env, encoding: 'utf8', timeout: 120_000 });
     assert.equal(status, 0, stderr);
     assert.ok(existsSync(folder.path('masks', 'overlay.png')));
     assert.deepEqual(readdirSync(folder.path('results')), ['000000-f0', '000001-f1', '000002-f2']);
