@@ -414,7 +414,7 @@ describe('Segmenter.segmentClip', () => {
     assert.deepEqual((await Promise.all(clips.map(all))).map(({ length }) => length), [3, 3]);
   });
 
-  test('a clip that was dropped after a frame gives its worker back, and its memory', { timeout: 60_000 }, async (t) => {
+  test('a clip that was dropped after a frame gives its worker back, and its memory', { timeout: 120_000 }, async (t) => {
     setFlagsFromString('--expose-gc');
     const collect = runInNewContext('gc');
     // The caller keeps nothing of the clip.

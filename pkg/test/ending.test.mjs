@@ -66,7 +66,7 @@ test('a list may come through a pipe', { skip: process.platform === 'win32' }, a
   const list = `${one(0)}\n${one(1)}\n`;
   const check = ({ stdout, stderr }, how) => assert.deepEqual([stderr, stdout.trim().split('\n').length], ['', 1], how);
   for (const how of ['- < <(cat)', '/dev/stdin < <(cat)']) {
-    check(spawnSync('bash', ['-c', `"$0" "$1" batch --quality fast --list ${how}`, process.execPath, program], { encoding: 'utf8', input: list, timeout: 60_000 }), how);
+    check(spawnSync('bash', ['-c', `"$0" "$1" batch --quality fast --list ${how}`, process.execPath, program], { encoding: 'utf8', input: list, timeout: 120_000 }), how);
   }
   // One that has nothing yet is waited for.
   if (spawnSync('mkfifo', [path('list')]).status !== 0) return;

@@ -29,7 +29,7 @@ async function shown(...args) {
 
 /** What a shell shows for a line that uses `veronese`, found as this program. */
 function inShell(shell, script, { env = {}, cwd } = {}) {
-  const found = spawnSync(shell, ['-c', script], { encoding: 'utf8', cwd, env: { ...process.env, NODE: process.execPath, PROGRAM: program, ...env }, timeout: 60_000 });
+  const found = spawnSync(shell, ['-c', script], { encoding: 'utf8', cwd, env: { ...process.env, NODE: process.execPath, PROGRAM: program, ...env }, timeout: 120_000 });
   assert.equal(found.error, undefined);
   return found;
 }

@@ -52,7 +52,7 @@ describe('SegmenterPool', () => {
     assert.equal(compiled, 1);
   });
 
-  test('a cancelled call leaves the others alone', { timeout: 60_000 }, async (t) => {
+  test('a cancelled call leaves the others alone', { timeout: 120_000 }, async (t) => {
     let workers = 0;
     // The first call would never end.
     const two = pool(t, { jobs: 2, worker: () => (workers++ === 0 ? stuckWorker() : new Worker(FILE)) });

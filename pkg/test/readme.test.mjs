@@ -36,7 +36,7 @@ describe('README.md', () => {
       const folder = project(t);
       const own = /const first\b|let first\b/.test(code);
       const file = folder.file('example.mjs', own ? code : FRAMES + code);
-      const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 60_000 });
+      const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 120_000 });
       assert.equal(status, 0, stderr);
       if (code.includes('console.log')) assert.notEqual(stdout, '');
     });

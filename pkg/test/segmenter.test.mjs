@@ -52,7 +52,7 @@ describe('Segmenter', () => {
     assert.deepEqual(order, [1, 2, 3, 4, 5]);
   });
 
-  test('a call is cancelled at once, the next one gets a fresh worker', { timeout: 60_000 }, async (t) => {
+  test('a call is cancelled at once, the next one gets a fresh worker', { timeout: 120_000 }, async (t) => {
     const expected = timeless(await segmentPair(...pair()));
     // The first call would never end.
     const workers = [stuckWorker(), new Worker(new URL('../dist/worker-node.js', import.meta.url))];
@@ -124,7 +124,7 @@ describe('Segmenter', () => {
       `import { Segmenter } from ${url('../dist/node.js')}; import { pair } from ${url('./support/frames.mjs')};
        console.log((await new Segmenter().segmentPair(...pair())).width);`,
     );
-    const { stdout, status, stderr } = spawnSync(process.execPath, [script], { encoding: 'utf8', timeout: 20000 });
+    const { stdout, status, stderr } = spawnSync(process.execPath, [script], { encoding: 'utf8', timeout: 120_000 });
     assert.equal(stdout.trim(), '64', stderr);
     assert.equal(status, 0);
   });

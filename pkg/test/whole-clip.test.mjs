@@ -397,7 +397,7 @@ describe('clips', () => {
     assert.equal((await outcomeWithout(0)).error.code, 'worker-failed');
   });
 
-  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', { timeout: 60_000 }, async (t) => {
+  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', { timeout: 120_000 }, async (t) => {
     const untilIt = async (isSo) => {
       while (!isSo()) {
         t.signal.throwIfAborted();
@@ -435,7 +435,7 @@ describe('clips', () => {
     assert.equal(workers.length, length, 'no worker was started');
   });
 
-  test('of a pool leave its other calls their turn', { timeout: 60_000 }, async (t) => {
+  test('of a pool leave its other calls their turn', { timeout: 120_000 }, async (t) => {
     const pool = new SegmenterPool({ jobs: 2 });
     t.after(() => pool.close());
     // The clip cannot end before the pair has an answer.

@@ -36,10 +36,10 @@ test('what parts and their programs show is not mixed, and programs get the nice
 
 const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
 for (const [signal, code] of Object.entries(INTERRUPTIONS)) {
-  test(`${signal} ends also the programs that programs have started`, { timeout: 20_000 }, async () => {
+  test(`${signal} ends also the programs that programs have started`, { timeout: 60_000 }, async () => {
     const main = `
       import { command, run } from ${JSON.stringify(MODULE)};
-      await command(() => run('bash', ['-c', 'sleep 60 & echo $!; wait']));
+      await command(() => run('bash', ['-c', 'sleep 600 & echo $!; wait']));
     `;
     const child = spawn(process.execPath, ['--input-type=module', '--eval', main], { stdio: ['ignore', 'pipe', 'inherit'] });
     const [line] = await once(child.stdout, 'data');

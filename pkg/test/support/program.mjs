@@ -60,7 +60,7 @@ export async function notConverted(folder, args, errorCode, sentence, exit = 1) 
 }
 
 /** Starts it in a process; `onStart(child)` may send it signals. Resolves to exit code, signal and output. */
-export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pipe', env = {}, timeout = 60_000 } = {}) {
+export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pipe', env = {}, timeout = 120_000 } = {}) {
   return new Promise((resolve, reject) => {
     const child = spawn(process.execPath, [program, ...args], {
       stdio: [stdin, stdout, 'pipe'],
