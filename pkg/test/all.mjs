@@ -9,7 +9,7 @@ import { availableParallelism } from 'node:os';
 import { before, describe } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-const ALONE = ['entries', 'hostile', 'loading', 'long', 'memory', 'warming'].map((name) => `${name}.test.mjs`);
+const ALONE = ['entries', 'hostile', 'loading', 'long', 'memory', 'warming'].map((name) => `./${name}.test.mjs`);
 const PROCESSES = 6;
 
 const given = process.argv.slice(2);
@@ -18,14 +18,14 @@ else await runAll();
 
 async function runHere(names) {
   for (const name of names) {
-    await import(`./${name}`);
+    await import(new URL(name, import.meta.url));
     // Suites and tests run in the order in which they were made.
     await new Promise((resolve) => describe(`end of ${name}`, () => before(() => resolve())));
   }
 }
 
 async function runAll() {
-  const names = ['', 'scripts/'].flatMap((folder) => readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.mjs')).map((name) => folder + name));
+  const names = ['./', './scripts/'].flatMap((folder) => readdirSync(new URL(folder, import.meta.url)).filter((name) => name.endsWith('.test.mjs')).map((name) => folder + name));
   const shared = names.filter((name) => !ALONE.includes(name));
   const groups = Array.from({ length: PROCESSES }, (_, k) => shared.filter((_, at) => at % PROCESSES === k));
   groups.push(...ALONE.map((name) => [name]));
