@@ -10,6 +10,7 @@ import { random } from '../../scripts/lib/random.mjs';
 import { chunk, pngOf } from './support/chunks.mjs';
 import { drawnClip } from './support/clip.mjs';
 import { drawn, labelImages } from './support/masks.mjs';
+import { stopwatch } from './support/processor.mjs';
 import { soaking } from './support/soak.mjs';
 
 const { readAnnotations } = formats;
@@ -69,7 +70,7 @@ describe('one image', () => {
   for (const [name, encode] of Object.entries(IMAGES)) {
     test(`${name}: every pixel`, () => {
       const names = Object.fromEntries(Array.from({ length: 10 }, (_, label) => [label, label === 0 ? 'background' : `thing ${label}`]));
-      for (const { labels, width, height } of labelImages(soaking ? 80 : 30)) {
+      for (const { labels, width, height } of labelImages(soaking ? 80 : 15)) {
         const complete = COMPLETE.includes(name);
         const all = [...new Set(labels)].sort((a, b) => a - b);
         const present = all.filter((label) => label !== 255 && label !== 0);
@@ -509,8 +510,8 @@ describe('what is none of that', () => {
   };
   for (const [name, [content, sentence, code = 'invalid-input']] of Object.entries(WRONG)) {
     test(name, () => {
-      const began = performance.now();
       const all = () => [...readAnnotations([file('folder/a.file', content)]).frames.values()].map((one) => one.read());
+      const seconds = stopwatch();
       assert.throws(all, (error) => {
         assert.equal(error.name, 'VeroneseError', error.stack);
         assert.equal(error.code, code, error.message);
@@ -519,7 +520,7 @@ describe('what is none of that', () => {
         assert.ok(error.message.length < 300, 'a sentence');
         return true;
       });
-      assert.ok(performance.now() - began < 2000);
+      assert.ok(seconds() < 2);
     });
   }
 
@@ -541,9 +542,9 @@ describe('what is none of that', () => {
     const large = (annotations) => ({ images: [{ id: 1, file_name: 'f', width, height }], annotations });
     const full = { size: [height, width], counts: [0, width * height] };
     const HOSTILE = {
-      'one mask over another': large(Array.from({ length: 100_000 }, () => ({ image_id: 1, track_id: 1, segmentation: full }))),
+      'one mask over another': large(Array.from({ length: soaking ? 100_000 : 20_000 }, () => ({ image_id: 1, track_id: 1, segmentation: full }))),
       'a polygon that goes up and down': large([{ image_id: 1, segmentation: [Array.from({ length: 2_000_000 }, (_, k) => (k % 4 === 1 ? -1 : k % 4 === 3 ? 5000 : k % 3000))] }]),
-      'many polygons': large(Array.from({ length: 50_000 }, () => ({ image_id: 1, track_id: 1, segmentation: [[0, 0, 9999, 0, 9999, 9999, 0, 9999]] }))),
+      'many polygons': large(Array.from({ length: soaking ? 50_000 : 20_000 }, () => ({ image_id: 1, track_id: 1, segmentation: [[0, 0, 9999, 0, 9999, 9999, 0, 9999]] }))),
       'a tower of elements': `${'<annotations>'.repeat(100_000)}${'</annotations>'.repeat(100_000)}`,
       'an archive that grows': zipSync({ 'a.json': new Uint8Array(2 ** (soaking ? 27 : 24)), 'b.json': new Uint8Array(1) }),
       'a PNG that grows': Buffer.concat([png.subarray(0, 33), chunk('IDAT', deflateSync(Buffer.alloc(2 ** (soaking ? 28 : 24))))]),
@@ -551,12 +552,9 @@ describe('what is none of that', () => {
     for (const [name, content] of Object.entries(HOSTILE)) {
       test(name, () => {
         const source = file('a.file', content);
-        const started = process.cpuUsage();
+        const seconds = stopwatch();
         assert.throws(() => [...readAnnotations([source]).frames.values()].map((one) => one.read()), { name: 'VeroneseError' });
-        // Of a processor, which others on the machine do not change.
-        const { user, system } = process.cpuUsage(started);
-        const seconds = (user + system) / 1e6;
-        assert.ok(seconds < 20, `${seconds} s`);
+        assert.ok(seconds() < 20, `${seconds()} s`);
       });
     }
   });

@@ -5,6 +5,7 @@ import { davisPalette, fitMotions, groupLabels, paintLabels, segmentPair, Verone
 import { api as codecsApi, decodeImage } from '../dist/codecs.js';
 import { frame, pair, points } from './support/frames.mjs';
 import { checkLabels, checkPair, checkPoints, failure, timeless } from './support/shapes.mjs';
+import { cases } from './support/soak.mjs';
 
 describe('segmentPair', () => {
   test('gives every field of the contract', async () => {
@@ -43,7 +44,7 @@ describe('segmentPair', () => {
   test('has a junction of motions that touch, with either quality', async () => {
     const sample = (name) => decodeImage(readFileSync(new URL(`../../www/public/samples/intel-two-cars/${name}.png`, import.meta.url)));
     const frames = [await sample('first'), await sample('second')];
-    for (const quality of ['fast', 'best']) {
+    for (const quality of cases(['fast'], ['best'])) {
       const { junctions, labels, width, motions } = await segmentPair(...frames, { quality });
       assert.ok(junctions.length >= 2, quality);
       const touching = new Set();

@@ -11,6 +11,7 @@ import { clip as framesOf, lines, tree } from './support/folders.mjs';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
+import { signalledAt } from './support/stopping.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
@@ -18,7 +19,7 @@ const clipFrame = (k, size) => frame(k / 2, size);
 const clip = (t, count, size) => framesOf(t, count, (k) => clipFrame(k, size));
 
 async function batch(args, { code = 0, ...options } = {}) {
-  const run = await veronese(['batch', ...args], options);
+  const run = await veronese(['batch', '--quality', 'fast', ...args], options);
   assert.equal(run.code, code, run.stderr);
   if (code === 0) assert.equal(run.stderr, '', 'nothing on stderr where nobody looks');
   return { ...run, lines: lines(run.stdout) };
@@ -26,21 +27,21 @@ async function batch(args, { code = 0, ...options } = {}) {
 
 describe('veronese batch', () => {
   test('does every pair of consecutive frames, like pair, in order, with several jobs', async (t) => {
-    const { frames, one, out } = clip(t, 12);
+    const { frames, one, out } = clip(t, 6);
     const run = await batch([frames, '--out', out, '--jobs', '3', '--overlay', '--motions', '2']);
     assert.deepEqual(run.lines.map(({ index, status, first, second }) => [index, status, first, second]),
-      Array.from({ length: 11 }, (_, k) => [k, 'done', one(k), one(k + 1)]));
+      Array.from({ length: 5 }, (_, k) => [k, 'done', one(k), one(k + 1)]));
     const names = run.lines.map(({ name }) => name);
     assert.deepEqual(readdirSync(out), names);
-    assert.equal(names[10], '000010-f10');
+    assert.equal(names[4], '000004-f4');
     const { index, name, status, first, second, ...found } = run.lines[3];
     checkPair(found, 64, 48);
-    const { labels, ...direct } = await segmentPair(clipFrame(3), clipFrame(4), { motions: 2 });
+    const { labels, ...direct } = await segmentPair(clipFrame(3), clipFrame(4), { motions: 2, quality: 'fast' });
     assert.deepEqual(timeless(found), timeless(direct));
 
     // The images are those of pair; the record has no times, because two runs would differ in them.
     const alone = join(out, '..', 'alone');
-    assert.equal((await veronese(['pair', one(3), one(4), '--out', alone, '--overlay', '--motions', '2'])).code, 0);
+    assert.equal((await veronese(['pair', one(3), one(4), '--quality', 'fast', '--out', alone, '--overlay', '--motions', '2'])).code, 0);
     const [mine, theirs] = [tree(join(out, name)), tree(alone)];
     const { job, inputs, ...record } = JSON.parse(mine['result.json']);
     const { milliseconds, ...expected } = JSON.parse(theirs['result.json']);
@@ -55,7 +56,7 @@ describe('veronese batch', () => {
 
   test('--every, patterns, lists and single files', async (t) => {
     const { frames, one, path, file } = clip(t, 7);
-    const pairs = async (...args) => (await batch([...args, '--quality', 'fast'])).lines.map(({ first, second }) => [first, second]);
+    const pairs = async (...args) => (await batch(args)).lines.map(({ first, second }) => [first, second]);
     assert.deepEqual(await pairs(frames, '--every', '3'), [[one(0), one(3)], [one(3), one(6)]]);
     assert.deepEqual(await pairs(path('f*', 'f[0-2].png')), [[one(0), one(1)], [one(1), one(2)]]);
     assert.deepEqual(await pairs('--list', file('list', `${one(5)}\n\n${one(2)}\r\n`)), [[one(5), one(2)]]);
@@ -176,30 +177,16 @@ describe('veronese batch', () => {
 });
 
 describe('a batch that is stopped', { skip: process.platform === 'win32' }, () => {
-  const SIZE = { width: 160, height: 120 };
   const args = (frames, out) => [frames, '--out', out, '--jobs', '2', '--overlay'];
 
-  /** The environment in which the program gets a signal as the n-th pair is complete: before its folder has its name, or after. */
-  function signalled(folder, signal, n, when) {
-    const preload = folder.file(`preload-${signal}-${n}-${when}.cjs`, `
-      const fs = require('fs'), { renameSync } = fs;
-      let count = 0;
-      fs.renameSync = (from, to) => {
-        const now = /\\.part.*\\d-f\\d$/.test(from) && ++count === ${n};
-        const signal = () => process.kill(process.pid, '${signal}');
-        if (now && '${when}' === 'before') signal();
-        renameSync(from, to);
-        if (now && '${when}' === 'after') signal();
-      };
-      require('module').syncBuiltinESMExports();`);
-    return { env: { NODE_OPTIONS: `--require "${preload}"` } };
-  }
+  /** As the n-th pair is complete: before its folder has its name, or after. */
+  const signalled = (folder, signal, n, when) => signalledAt(folder, signal, { path: /\d-f\d$/, n, when });
 
   test('in the middle of writing: what is left is taken away by the next run, but not that of others', async (t) => {
     const { frames, out, ...folder } = clip(t, 4);
     const ended = spawnSync(process.execPath, ['--eval', '']).pid;
     // This machine's mark is in the name of what the program writes: catch it in the act.
-    const killed = await veroneseProcess(['batch', frames, '--out', out, '--jobs', '1'], signalled(folder, 'SIGKILL', 1, 'before'));
+    const killed = await veroneseProcess(['batch', frames, '--quality', 'fast', '--out', out, '--jobs', '1'], signalled(folder, 'SIGKILL', 1, 'before'));
     assert.equal(killed.signal, 'SIGKILL');
     const [, host] = /^\.veronese-([0-9a-f]{8})-\d+\.part$/.exec(readdirSync(out)[0]);
     const [dead, live, other] = [`${host}-${ended}`, `${host}-${process.ppid}`, '00000000-1'].map((mark) => `.veronese-${mark}.part`);
@@ -213,8 +200,8 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
 
   for (const [signal, exit] of cases([['SIGINT', 130]], [['SIGTERM', 143]])) {
     test(`by ${signal} leaves whole results only, exit ${exit}`, async (t) => {
-      const { frames, out, path, ...folder } = clip(t, 8, SIZE);
-      const run = await veroneseProcess(['batch', ...args(frames, out)], signalled(folder, signal, 3, 'after'));
+      const { frames, out, path, ...folder } = clip(t, 8);
+      const run = await veroneseProcess(['batch', '--quality', 'fast', ...args(frames, out)], signalled(folder, signal, 3, 'after'));
       assert.equal(run.code, exit);
       assert.match(run.stderr, /^veronese: error: cancelled: [^\n]+\n$/);
       const names = readdirSync(out);
@@ -309,7 +296,7 @@ describe('veronese video', () => {
 
   test('does the frames of a video like files of them', { skip }, async (t) => {
     const { film: file, frames, out, path } = film(t);
-    const run = await veronese(['video', file, '--out', out, '--every', '3', '--jobs', '2']);
+    const run = await veronese(['video', '--quality', 'fast', file, '--out', out, '--every', '3']);
     assert.equal(run.code, 0, run.stderr);
     assert.equal(run.stderr, '');
     const found = lines(run.stdout);
@@ -321,7 +308,7 @@ describe('veronese video', () => {
     const files = (await batch([frames, '--every', '3', '--out', path('files')])).lines;
     assert.deepEqual(found.map(({ motions }) => motions), files.map(({ motions }) => motions));
     assert.deepEqual(tree(join(out, found[1].name))['labels.png'], tree(join(path('files'), files[1].name))['labels.png']);
-    const again = await veronese(['video', file, '--out', out, '--every', '3']);
+    const again = await veronese(['video', '--quality', 'fast', file, '--out', out, '--every', '3']);
     assert.deepEqual(lines(again.stdout).map(({ status }) => status), ['skipped', 'skipped', 'skipped']);
   });
 
@@ -349,18 +336,16 @@ describe('veronese video', () => {
     assert.equal((await veronese(['video', file, '--quality', 'fast'])).stderr, '', 'a whole one');
     // Within a frame, and between two, of which ffmpeg reports nothing.
     const end = whole.indexOf('00dc', whole.indexOf('movi')) + 4 * (8 + 64 * 48 * 3);
-    for (const [cut, reason] of [[end - 1000, 'Invalid'], [end, 'it should have \\d+ bytes and has \\d+']]) {
+    for (const [cut, reason, ...args] of [[end - 1000, 'Invalid', 'video', file], [end, 'it should have \\d+ bytes and has \\d+', 'clip', file, '--out', out]]) {
       writeFileSync(file, whole.subarray(0, cut));
-      for (const args of [['video', file], ['clip', file, '--out', out]]) {
-        const refused = await veronese([...args, '--quality', 'fast']);
-        assert.equal(refused.code, 1);
-        if (args[0] === 'video') assert.ok(lines(refused.stdout).length >= 2, 'the pairs before are done');
-        assert.match(refused.stderr, new RegExp(`^veronese: error: unreadable-video: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*--allow-damaged[^\n]*\n$`));
-        const allowed = await veronese([...args, '--quality', 'fast', '--allow-damaged']);
-        assert.equal(allowed.code, 0);
-        assert.match(allowed.stderr, new RegExp(`^veronese: warning: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*\n$`), 'once');
-        assert.ok(lines(allowed.stdout).length >= 2);
-      }
+      const refused = await veronese([...args, '--quality', 'fast']);
+      assert.equal(refused.code, 1);
+      if (args[0] === 'video') assert.ok(lines(refused.stdout).length >= 2, 'the pairs before are done');
+      assert.match(refused.stderr, new RegExp(`^veronese: error: unreadable-video: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*--allow-damaged[^\n]*\n$`));
+      const allowed = await veronese([...args, '--quality', 'fast', '--allow-damaged']);
+      assert.equal(allowed.code, 0);
+      assert.match(allowed.stderr, new RegExp(`^veronese: warning: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*\n$`), 'once');
+      assert.ok(lines(allowed.stdout).length >= 2);
     }
   });
 

@@ -2,9 +2,9 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, watch, writeFileSync } from 'node:fs';
+import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { describe, test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { davisPalette, segmentClip } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
@@ -12,6 +12,7 @@ import { ProgressBar } from '../build/cli/terminal.js';
 import { pngOf } from './support/chunks.mjs';
 import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
+import { signalledAt } from './support/stopping.mjs';
 import * as three from './support/three.mjs';
 import { veronese, veroneseProcess } from './support/program.mjs';
 
@@ -65,17 +66,20 @@ describe('veronese clip --corrections', () => {
     assert.match(settings.corrections, /^[0-9a-f]{64}$/);
   });
 
-  test('boxes and clicks of edits.json point to objects as those of the call do', async (t) => {
+  test('boxes, clicks and prompts of edits.json point to objects as those of the call do', async (t) => {
     const { frames, corrections, said, out } = clip(t);
     said('f1.png', await mask(LABELS.map((label, p) => (p < 200 ? 4 : 255))));
-    said('edits.json', JSON.stringify({ boxes: { f3: { 9: [23, 16, 44, 44] } }, clicks: { f5: { 9: [46, 39], 12: [90, 5] } }, propagate: { f5: 'none' } }));
+    const prompt = { clicks: [[90, 60, 1], [88, 40, -1]], box: [80, 50, 15, 20] };
+    const edits = { boxes: { f3: { 9: [23, 16, 44, 44] } }, clicks: { f5: { 9: [46, 39], 12: [90, 5] } }, propagate: { f5: 'none' } };
+    said('edits.json', JSON.stringify({ ...edits, prompts: [{ frame: 'f2', object: 14, ...prompt }] }));
     const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
     const points = [{ frame: 3, label: 9, box: [23, 16, 44, 44] }, ...[[9, [46, 39]], [12, [90, 5]]].map(([label, click]) => ({ frame: 5, label, click, propagate: 'none' }))];
     const labels = Uint8Array.from({ length: PIXELS }, (_, p) => (p < 200 ? 4 : 255));
-    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 1, labels }, ...points] });
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 1, labels }, ...points], prompts: [{ frame: 2, object: 14, ...prompt }] });
     for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
     assert.ok(lines.slice(0, -1).every(({ objects }) => objects.includes(9)));
     assert.ok(lines[5].objects.includes(12) && !lines[4].objects.includes(12));
+    assert.ok(lines[2].objects.includes(14));
     const before = tracksOf(out).settings.corrections;
     said('edits.json', JSON.stringify({ boxes: { f3: { 9: [23, 16, 44, 43] } } }));
     await run([frames, '--corrections', corrections, '--out', out]);
@@ -246,35 +250,8 @@ describe('veronese clip --masks', () => {
 });
 
 describe('what a person said through the command line', () => {
-  const { box, changedOf, labelled, middle } = three;
+  const { box, labelled, middle } = three;
   const all = (out) => Array.from({ length: COUNT }, (_, k) => labelsOf(out, k));
-
-  const CASES = {
-    'painted and named': { files: { 'f1.png': labelled(2, 1, 2) }, edits: { names: { 1: 'square' } } },
-    'prompted and locked': { edits: { prompts: [{ frame: 'f1', object: 2, clicks: [[...middle(2, 1), 1]], box: box(2, 1) }], locked: [1] } },
-    'given, and accepted': { given: { 'f0.png': labelled(2, 0, 2, 0) }, edits: { accepted: ['f1'] } },
-  };
-  for (const [name, { files = {}, given: masks = {}, edits }] of Object.entries(CASES)) {
-    test(`${name}: boxes and clicks for others change none of it by a pixel`, async (t) => {
-      const { frames, corrections, said, given, masks: folder, out } = clip(t, COUNT, three.frame);
-      for (const [file, labels] of Object.entries(files)) said(file, await mask(labels));
-      for (const [file, labels] of Object.entries(masks)) given(file, await mask(labels));
-      const labels = async (more) => {
-        said('edits.json', JSON.stringify({ ...edits, ...more, prompts: [...(edits.prompts ?? []), ...(more.prompts ?? [])] }));
-        await run([frames, '--corrections', corrections, '--masks', folder, '--out', out]);
-        return all(out);
-      };
-      const before = await labels({});
-      for (const more of [
-        { boxes: { f4: { 9: box(3, 4) } }, clicks: { f3: { 10: middle(2, 3) } } },
-        { clicks: { f0: { 9: middle(3, 0) } }, prompts: [{ frame: 'f3', object: 10, clicks: [[...middle(1, 3), 1], [90, 70, -1]], box: box(1, 3) }] },
-      ]) {
-        const after = await labels(more);
-        for (const id of [1, 2]) assert.equal(changedOf(before, after, id), 0, `${id}: ${JSON.stringify(more)}`);
-        assert.equal(changedOf(before, after, 3, (_, now) => now >= 9), 0);
-      }
-    });
-  }
 
   test('a line says what it changes, and so do tracks.json and the next run', async (t) => {
     const { frames, corrections, said, out } = clip(t, COUNT, three.frame);
@@ -339,16 +316,6 @@ describe('what a person said through the command line', () => {
     await run([frames, '--out', path('straight')]);
     assert.deepEqual(tree(out), tree(path('straight')), 'nothing is accepted any more');
   });
-
-  test('in a new folder frames are accepted as they are found', async (t) => {
-    const { frames, corrections, said, out, path } = clip(t, COUNT, three.frame);
-    await run([frames, '--out', path('base')]);
-    said('f3.png', await mask(labelled(2, 3, 9)));
-    said('edits.json', '{"accepted": ["f1", "f2"]}');
-    await run([frames, '--corrections', corrections, '--out', out]);
-    for (const k of [1, 2]) assert.deepEqual(labelsOf(out, k), labelsOf(path('base'), k));
-    assert.ok(labelsOf(out, 3).includes(9));
-  });
 });
 
 test('the progress bar says what is done with the frames', () => {
@@ -358,61 +325,46 @@ test('the progress bar says what is done with the frames', () => {
   assert.match(text, /labels: 3 frames$/);
 });
 
-describe('an interrupted clip', () => {
-  /** Runs until the pairs of a frame are kept, then ends with the signal. */
-  async function interrupted(args, out, signal, file) {
-    mkdirSync(join(out, '.clip'), { recursive: true });
-    const onStart = (child) => {
-      const watching = watch(join(out, '.clip'), () => {
-        if (!existsSync(join(out, '.clip', file))) return;
-        watching.close();
-        child.kill(signal);
-      });
-      child.on('close', () => watching.close());
-    };
-    return veroneseProcess(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
-  }
+describe('an interrupted clip', { skip: process.platform === 'win32' }, () => {
+  const { file, frames, out, path } = clip({ after });
+  const args = [frames, '--jobs', '1', '--out'];
+  /** Runs until the pairs of so many frames were written; with one job they come in the order of the frames. */
+  const interrupted = (folder, signal, n) => veroneseProcess(['clip', '--quality', 'fast', ...args, folder], signalledAt({ file }, signal, { path: /\.pairs$/, n }));
+  const kept = (folder) => readdirSync(join(folder, '.clip'));
+  const copy = (name) => {
+    cpSync(out, path(name), { recursive: true });
+    return path(name);
+  };
+  const same = async (one, other) => {
+    for (const [folder, ...more] of [one, other]) await run([frames, ...more, '--out', folder]);
+    assert.deepEqual(tree(one[0]), tree(other[0]));
+  };
 
-  const skip = process.platform === 'win32';
+  before(async () => assert.equal((await interrupted(out, 'SIGINT', 3)).code, 130));
 
-  for (const [signal, exit] of [['SIGINT', 130], ['SIGKILL', null]]) {
-    test(`goes on after ${signal} with the pairs it has solved`, { skip }, async (t) => {
-      const { frames, out, path } = clip(t, 8);
-      const { code } = await interrupted([frames], out, signal, '00003.pairs');
-      assert.equal(code, exit);
-      const kept = readdirSync(join(out, '.clip')).filter((name) => name.endsWith('.pairs'));
-      assert.ok(kept.includes('00003.pairs') && kept.length < 8);
-      assert.equal(existsSync(join(out, 'tracks.json')), false);
-      await run([frames, '--out', out]);
-      await run([frames, '--out', path('whole')]);
-      assert.deepEqual(tree(out), tree(path('whole')));
-    });
-  }
-
-  test('does not use pairs of other options, of other frames, or damaged ones', { skip }, async (t) => {
-    const { frames, out, path } = clip(t);
-    await interrupted([frames], out, 'SIGKILL', '00003.pairs');
-    const same = async (name, args) => {
-      await run([...args, '--out', path(name)]);
-      await run([...args, '--out', path(`${name}-straight`)]);
-      assert.deepEqual(tree(path(name)), tree(path(`${name}-straight`)), name);
-    };
-    for (const name of ['options', 'damage', 'content']) cpSync(out, path(name), { recursive: true });
-    await same('options', [frames, '--motions', '2']);
-    copyFileSync(join(out, '.clip', '00001.pairs'), path('damage', '.clip', '00002.pairs'));
-    writeFileSync(path('damage', '.clip', '00001.pairs'), 'damaged');
-    await same('damage', [frames]);
-    writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
-    await same('content', [frames]);
+  test('has the pairs it has solved, and no tracks', () => {
+    assert.ok(kept(out).length >= 3 && kept(out).length < COUNT && kept(out).every((name) => name.endsWith('.pairs')), kept(out).join());
+    assert.equal(existsSync(join(out, 'tracks.json')), false);
   });
 
-  test('does not solve known pairs: those of frames that are there are not written again', { skip }, async (t) => {
-    const { frames, out } = clip(t, 8);
-    await interrupted([frames, '--jobs', '1'], out, 'SIGKILL', '00003.pairs');
-    const first = join(out, '.clip', '00002.pairs');
-    const at = written(first);
-    await interrupted([frames, '--jobs', '1'], out, 'SIGKILL', '00005.pairs');
-    assert.equal(written(first), at);
+  test('does not solve known pairs: those of frames that are there are not written again', async () => {
+    const folder = copy('again');
+    const times = () => kept(folder).map((name) => written(join(folder, '.clip', name)));
+    const before = times();
+    await interrupted(folder, 'SIGKILL', 1);
+    assert.equal(times().length, before.length + 1);
+    assert.deepEqual(times().slice(0, -1), before);
+  });
+
+  test('goes on with them, and not with damaged ones, those of other options or of other frames', async () => {
+    await same([copy('whole')], [path('straight')]);
+    const damaged = copy('damaged');
+    copyFileSync(join(out, '.clip', '00001.pairs'), join(damaged, '.clip', '00002.pairs'));
+    writeFileSync(join(damaged, '.clip', '00001.pairs'), 'damaged');
+    await same([damaged], [path('straight')]);
+    await same([copy('options'), '--motions', '2'], [path('straight-options'), '--motions', '2']);
+    writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
+    await same([copy('content')], [path('straight-content')]);
   });
 });
 

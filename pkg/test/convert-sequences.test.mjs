@@ -10,6 +10,7 @@ import { decodeVeronese, encodeCocoVideo, encodeCvatVideo, encodeDavis } from 'v
 import { openClip } from '../build/cli/clip-folder.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
+import { signalledAt } from './support/stopping.mjs';
 import { converted, entries, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'flo', 'npy', 'supervisely', 'web-annotation', 'veronese', 'masks'];
@@ -224,18 +225,9 @@ describe('a clip', () => {
   test('stopped by a signal it leaves nothing half-written', async (t) => {
     const folder = temporaryFolder(t);
     const clip = folder.path('clip');
-    const noise = Uint8Array.from({ length: 512 * 512 }, (_, at) => Math.imul(at, 0x9e3779b1) >>> 31);
-    clipFolder(clip, { frames: Array(12).fill(noise), width: 512, height: 512 });
+    clipFolder(clip);
     const before = files(clip);
-    const { code, stdout } = await veroneseProcess(['convert', clip, '--to', 'labelme-polygon,coco'], {
-      onStart: (child) => {
-        const look = setInterval(() => {
-          const part = readdirSync(clip).find((name) => name.endsWith('.part'));
-          if (part && files(join(clip, part)).length > 0) child.kill('SIGINT');
-        }, 5);
-        child.once('close', () => clearInterval(look));
-      },
-    });
+    const { code, stdout } = await veroneseProcess(['convert', clip, '--to', 'labelme-polygon,coco'], signalledAt(folder, 'SIGINT', { call: 'writeFile', n: 2 }));
     assert.equal(code, 130);
     assert.equal(stdout, '');
     assert.deepEqual(files(clip), before);
@@ -246,7 +238,7 @@ describe('a batch', () => {
   async function batch(t, ...options) {
     const folder = temporaryFolder(t);
     for (let k = 0; k < 4; k++) folder.file(`a${k}.png`, png(frame(k)));
-    const { code, stderr } = await veronese(['batch', folder.path('a*.png'), '--out', folder.path('out'), '--jobs', '1', ...options]);
+    const { code, stderr } = await veronese(['batch', folder.path('a*.png'), '--out', folder.path('out'), '--quality', 'fast', ...options]);
     assert.equal(code, 0, stderr);
     const pairs = readdirSync(folder.path('out'));
     return { folder, out: folder.path('out'), pairs };

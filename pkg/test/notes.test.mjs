@@ -32,25 +32,25 @@ const CLIPS = {
   'small-steps': [(k) => frame(k * 0.008, SIZE), /between frames that are 16 apart something does: try '--every 16'/],
 };
 
-describe('a clip in which nothing is found', () => {
-  for (const [code, [at, sentence]] of Object.entries(CLIPS)) {
-    test(code, async (t) => {
-      const { frames, out } = framesOf(t, 20, at);
-      const run = () => veronese(['clip', frames, '--quality', 'fast', '--out', out]);
-      const { stdout, stderr, code: exit } = await run();
-      assert.equal(exit, 0, stderr);
-      assert.deepEqual(lines(stdout).at(-1), { done: true, objects: 0 });
-      assert.match(stderr, /^veronese: note: [^\n]+\n$/);
-      assert.match(stderr, sentence);
-      const { notes } = tracksOf(out);
-      assert.deepEqual(notes.map((note) => [note.code, `veronese: note: ${note.message}\n`]), [[code, stderr]]);
-      assert.equal((await run()).stderr, stderr, 'said again by a finished clip');
-    });
-  }
+/** Frames of a clip: more than 16 where those are compared. */
+const lengthOf = (code) => (code === 'small-steps' ? 17 : 9);
+
+test('a clip in which nothing is found says why, in tracks.json and in one sentence, and again when it is finished', async (t) => {
+  const [at, sentence] = CLIPS['small-steps'];
+  const { frames, out } = framesOf(t, lengthOf('small-steps'), at);
+  const run = () => veronese(['clip', frames, '--quality', 'fast', '--out', out]);
+  const { stdout, stderr, code: exit } = await run();
+  assert.equal(exit, 0, stderr);
+  assert.deepEqual(lines(stdout).at(-1), { done: true, objects: 0 });
+  assert.match(stderr, /^veronese: note: [^\n]+\n$/);
+  assert.match(stderr, sentence);
+  const { notes } = tracksOf(out);
+  assert.deepEqual(notes.map((note) => [note.code, `veronese: note: ${note.message}\n`]), [['small-steps', stderr]]);
+  assert.equal((await run()).stderr, stderr);
 });
 
 describe('the call for clips gives the same notes', () => {
-  const frames = (at, length = 20) => ({ length, read: (index) => at(index) });
+  const frames = (at, length = 9) => ({ length, read: (index) => at(index) });
   const options = { quality: 'fast' };
   const notesOf = async (clip) => {
     while (!(await clip.next()).done);
@@ -58,22 +58,29 @@ describe('the call for clips gives the same notes', () => {
   };
   for (const [code, [at, sentence]] of Object.entries(CLIPS)) {
     test(code, async () => {
-      const notes = await notesOf(segmentClip(frames(at), options));
+      const source = frames(at, lengthOf(code));
+      const notes = await notesOf(segmentClip(source, options));
       assert.deepEqual(notes.map((note) => note.code), [code]);
       const { message, step } = notes[0];
       assert.match(step ? `${message}: try '--every ${step}'` : message, sentence);
-      const segmenter = new Segmenter();
-      assert.deepEqual(await notesOf(segmenter.segmentClip(frames(at), options)), notes);
-      assert.deepEqual(await notesOf(segmenter.segmentClip(frames(at), { ...options, lookAhead: 2 })), notes, 'a stream that can be read again');
-      segmenter.close();
-      // Frames that are gone tell it by a pair that was kept, but no step.
-      for (const transfer of [false, true]) {
-        const [kept] = await notesOf(segmentClip(Array.from({ length: 9 }, (_, k) => at(k)), { ...options, transfer }));
-        assert.ok([code, 'no-motion'].includes(kept.code), kept.code);
-        assert.equal(kept.step, undefined);
-      }
+      assert.deepEqual(await notesOf(segmentClip(source, { ...options, lookAhead: 2 })), notes, 'a stream that can be read again');
     });
   }
+
+  test('in a worker', async () => {
+    const source = () => frames(CLIPS['small-steps'][0], lengthOf('small-steps'));
+    const segmenter = new Segmenter();
+    assert.deepEqual(await notesOf(segmenter.segmentClip(source(), options)), await notesOf(segmentClip(source(), options)));
+    segmenter.close();
+  });
+
+  test('frames that are gone tell it by a pair that was kept, but no step', async () => {
+    for (const [code, transfer] of [['one-motion', false], ['small-steps', true]]) {
+      const [kept] = await notesOf(segmentClip(Array.from({ length: 9 }, (_, k) => CLIPS[code][0](k)), { ...options, transfer }));
+      assert.ok([code, 'no-motion'].includes(kept.code), kept.code);
+      assert.equal(kept.step, undefined);
+    }
+  });
 
   test('what was asked for, what a person said, and a single live frame have none', async () => {
     const still = CLIPS['no-motion'][0];

@@ -1,7 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
@@ -91,14 +90,3 @@ test("the modules do not hold the builder's folders", () => {
     if (home && home.length > 1) assert.ok(!text.includes(`${home}/`), path);
   }
 });
-
-for (const [title, project] of [
-  ['the types hold: samples compile under strict settings, mistakes do not', 'types'],
-  ['the types need neither the DOM nor Node', 'types/bare'],
-]) {
-  test(title, () => {
-    const tsc = join(dirname(createRequire(import.meta.url).resolve('typescript/package.json')), 'bin', 'tsc');
-    const { status, stdout } = spawnSync(process.execPath, [tsc, '-p', join(folder, 'test', project)], { encoding: 'utf8' });
-    assert.equal(status, 0, stdout);
-  });
-}

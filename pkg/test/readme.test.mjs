@@ -7,6 +7,7 @@ import { describe as describePair } from '../../scripts/lib/describe.mjs';
 import { frame, png } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
 import { examples } from './support/readme.mjs';
+import { soaking } from './support/soak.mjs';
 
 /** A project with the package and the files that the examples speak of. */
 function project(t) {
@@ -35,7 +36,7 @@ describe('README.md', () => {
       const folder = project(t);
       const own = /const first\b|let first\b/.test(code);
       const file = folder.file('example.mjs', own ? code : FRAMES + code);
-      const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 60_000 });
+      const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 120_000 });
       assert.equal(status, 0, stderr);
       if (code.includes('console.log')) assert.notEqual(stdout, '');
     });
@@ -46,7 +47,9 @@ describe('README.md', () => {
   test('the commands', { skip: process.platform === 'win32' }, (t) => {
     const folder = project(t);
     const [commands] = examples('sh run');
-    const { status, stderr } = spawnSync('sh', ['-e', '-c', commands], { cwd: folder.path('.'), encoding: 'utf8', timeout: 120_000 });
+    // npx itself is asked by the tests of the packed package.
+    const env = { ...process.env, PATH: `${folder.path('node_modules', '.bin')}:${process.env.PATH}` };
+    const { status, stderr } = spawnSync('sh', ['-e', '-c', `npx() { "$@"; }\n${commands}`], { cwd: folder.path('.'), env, encoding: 'utf8', timeout: 120_000 });
     assert.equal(status, 0, stderr);
     assert.ok(existsSync(folder.path('masks', 'overlay.png')));
     assert.deepEqual(readdirSync(folder.path('results')), ['000000-f0', '000001-f1', '000002-f2']);
@@ -55,7 +58,7 @@ describe('README.md', () => {
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);
   });
 
-  test('what the project says of its bundled pair is what comes out', async () => {
+  test('what the project says of its bundled pair is what comes out', { skip: !soaking && 'npm run soak -- package' }, async () => {
     const at = (name) => fileURLToPath(new URL(`../../${name}`, import.meta.url));
     const sample = (name) => at(`www/public/samples/intel-two-cars/${name}.png`);
     const { code, stdout } = await veronese(['pair', sample('first'), sample('second')]);

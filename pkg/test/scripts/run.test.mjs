@@ -3,19 +3,30 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { inPart, run, say } from '../../../scripts/lib/run.mjs';
 
 const MODULE = new URL('../../../scripts/lib/run.mjs', import.meta.url).href;
 
-test('what parts and their programs show is not mixed, and programs get the niceness of their part', async () => {
+test('what parts and their programs show is not mixed, and programs get the niceness of their part', async (t) => {
   const written = { one: '', two: '' };
   const nice = Number((await run('nice', [], { output: 'collect' })).text);
+  const folder = mkdtempSync(join(tmpdir(), 'veronese-test-'));
+  t.after(() => rmSync(folder, { recursive: true }));
+  // Both go on when both were heard.
+  const script = 'echo "$0"; until [ -e heard ]; do sleep 0.01; done; nice >&2; exit 3';
+  const write = (name, piece) => {
+    written[name] += piece;
+    if (Object.values(written).every((text) => text.split('\n').length > 2)) writeFileSync(join(folder, 'heard'), '');
+  };
   const part = (name, niceness) =>
-    inPart({ write: (piece) => (written[name] += piece), niceness }, async () => {
+    inPart({ write: (piece) => write(name, piece), niceness }, async () => {
       say(`${name}:`);
-      const { code } = await run('bash', ['-c', 'echo "$0"; sleep 0.2; nice >&2; exit 3', name]);
+      const { code } = await run('bash', ['-c', script, name], { cwd: folder });
       say(`${name} ended with ${code}`);
     });
   await Promise.all([part('one', 0), part('two', nice + 3)]);
@@ -25,10 +36,10 @@ test('what parts and their programs show is not mixed, and programs get the nice
 
 const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
 for (const [signal, code] of Object.entries(INTERRUPTIONS)) {
-  test(`${signal} ends also the programs that programs have started`, { timeout: 20_000 }, async () => {
+  test(`${signal} ends also the programs that programs have started`, { timeout: 60_000 }, async () => {
     const main = `
       import { command, run } from ${JSON.stringify(MODULE)};
-      await command(() => run('bash', ['-c', 'sleep 60 & echo $!; wait']));
+      await command(() => run('bash', ['-c', 'sleep 600 & echo $!; wait']));
     `;
     const child = spawn(process.execPath, ['--input-type=module', '--eval', main], { stdio: ['ignore', 'pipe', 'inherit'] });
     const [line] = await once(child.stdout, 'data');

@@ -8,15 +8,16 @@ import { join } from 'node:path';
 import { Readable, Writable } from 'node:stream';
 import { fileURLToPath } from 'node:url';
 import { main } from '../../dist/cli.js';
+import { stopwatch } from './processor.mjs';
 
 export const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
 /**
- * Runs the program with these arguments, without a process. `onLine(line)` hears each line of its output. Resolves to exit code, output
- * and seconds.
+ * Runs the program with these arguments, without a process, and with one job where nothing is said of jobs, since each job starts a worker.
+ * `onLine(line)` hears each line of its output. Resolves to exit code, output and seconds of a processor.
  */
 export async function veronese(args, { stdin = '', onLine } = {}) {
-  const started = performance.now();
+  const seconds = stopwatch();
   const text = { stdout: '', stderr: '' };
   const stdout = new Writable({
     decodeStrings: false,
@@ -27,8 +28,14 @@ export async function veronese(args, { stdin = '', onLine } = {}) {
     },
   });
   const stderr = { isTTY: false, write: (piece) => (text.stderr += piece) };
-  const code = await main(args, { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
-  return { code, ...text, seconds: (performance.now() - started) / 1000 };
+  const code = await main(withJobs(args), { stdin: Readable.from([stdin]), stdout, stderr, signal: new AbortController().signal });
+  return { code, ...text, seconds: seconds() };
+}
+
+function withJobs(args) {
+  const [command, ...rest] = args;
+  const isSilent = ['batch', 'clip', 'video'].includes(command) && !rest.some((arg) => /^(-j|--jobs)/.test(arg));
+  return isSilent ? [command, '--jobs', '1', ...rest] : args;
 }
 
 /** The line of `veronese convert` for these arguments, which has to work. */
@@ -52,10 +59,9 @@ export async function notConverted(folder, args, errorCode, sentence, exit = 1) 
   assert.deepEqual(files(), before);
 }
 
-/** Starts it in a process; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
-export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pipe', env = {}, timeout = 60_000 } = {}) {
+/** Starts it in a process; `onStart(child)` may send it signals. Resolves to exit code, signal and output. */
+export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pipe', env = {}, timeout = 120_000 } = {}) {
   return new Promise((resolve, reject) => {
-    const started = performance.now();
     const child = spawn(process.execPath, [program, ...args], {
       stdio: [stdin, stdout, 'pipe'],
       env: { ...process.env, ...env },
@@ -65,7 +71,7 @@ export function veroneseProcess(args, { onStart, stdin = 'ignore', stdout = 'pip
     child.stdout?.setEncoding('utf8').on('data', (chunk) => (text.stdout += chunk));
     child.stderr.setEncoding('utf8').on('data', (chunk) => (text.stderr += chunk));
     child.on('error', reject);
-    child.on('close', (code, signal) => resolve({ code, signal, ...text, seconds: (performance.now() - started) / 1000 }));
+    child.on('close', (code, signal) => resolve({ code, signal, ...text }));
     onStart?.(child);
   });
 }

@@ -1,31 +1,40 @@
-// How far a process of the program has come, so that a signal meets it at work.
+// Processes and threads that are stopped at a known place, so that nothing has to be watched and no time is assumed.
 
-import { existsSync } from 'node:fs';
-import { setTimeout } from 'node:timers/promises';
-
-/** Two frames as files: decoding them alone takes longer than a signal. */
-export function largeFrames({ file }) {
-  return ['texture', 'another texture'].map((text, k) => file(`large${k}.pgm`, Buffer.concat([Buffer.from('P5 4096 4096 255\n'), Buffer.alloc(4096 * 4096, text)])));
-}
+import { Worker } from 'node:worker_threads';
 
 /**
- * `env` for a process that marks, in whichever thread it happens, that it has read a file, which it is to work on then; `seen(child)` waits
- * for the mark.
+ * The environment of a process that sends itself a signal as it calls a function of the file system for the n-th time with a path that fits:
+ * before the call, or after it. With `stays` the thread that calls does nothing more, so that work never ends there.
  */
-export function markedReading({ file, path }, read) {
-  const mark = path('read');
-  const preload = file('mark.cjs', `
-    const fs = require('fs'), { readFile } = fs.promises;
-    fs.promises.readFile = async (path, ...rest) => {
-      const bytes = await readFile(path, ...rest);
-      if (path === ${JSON.stringify(read)}) fs.writeFileSync(${JSON.stringify(mark)}, '');
-      return bytes;
+export function signalledAt({ file }, signal, { call = 'renameSync', path = /^/, n = 1, when = 'after', stays = false } = {}) {
+  const preload = file(`${[signal, call, n, when].join('-')}.cjs`, `
+    const fs = require('fs'), place = '${call}' in fs.promises ? fs.promises : fs, { ${call}: original } = place;
+    let count = 0;
+    const signal = () => {
+      process.kill(process.pid, '${signal}');
+      if (${stays}) Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0);
+    };
+    place.${call} = (...args) => {
+      const isIt = args.some((arg) => typeof arg === 'string' && ${path}.test(arg)) && ++count === ${n};
+      if (isIt && '${when}' === 'before') signal();
+      const answer = original(...args);
+      if (!isIt || '${when}' === 'before') return answer;
+      if (answer instanceof Promise) return answer.then((value) => (signal(), value));
+      signal();
     };
     require('module').syncBuiltinESMExports();`);
-  return { env: { NODE_OPTIONS: `--require "${preload}"` }, seen: (child) => there(mark, child) };
+  return { env: { NODE_OPTIONS: `--require "${preload}"` } };
 }
 
-/** Waits until a file is there, or the process is no more. */
-export async function there(path, child) {
-  while (!existsSync(path) && child.exitCode === null) await setTimeout(5);
+/** A worker of the package that gets no further than the first progress it tells. */
+export function stuckWorker() {
+  const file = new URL('../../dist/worker-node.js', import.meta.url);
+  const code = `
+    const { parentPort } = require('worker_threads'), post = parentPort.postMessage.bind(parentPort);
+    parentPort.postMessage = (message, ...rest) => {
+      post(message, ...rest);
+      if (message.kind === 'progress') Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0);
+    };
+    import(${JSON.stringify(file)});`;
+  return new Worker(code, { eval: true });
 }

@@ -46,7 +46,3 @@ export function box(square, index) {
   return [left, top, SIDE + 3, SIDE + 3];
 }
 export const middle = (square, index) => at(square, index).map((side) => Math.floor(side) + SIDE / 2);
-
-/** Pixels, over all frames, that an object has in one of two lists of labels alone; those of `isFree` may. */
-export const changedOf = (before, after, id, isFree = () => false) =>
-  before.reduce((sum, labels, k) => sum + labels.filter((label, p) => (label === id) !== (after[k][p] === id) && !isFree(label, after[k][p])).length, 0);

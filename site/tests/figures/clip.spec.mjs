@@ -1,5 +1,7 @@
 import { expect, test } from '@playwright/test';
 
+import { timers } from '../site.mjs';
+
 test.describe.configure({ mode: 'serial' });
 
 /** The clip is segmented once, for all tests. */
@@ -61,7 +63,7 @@ test('frames are chosen by keys, by the strip and by playing', async () => {
   await expect(slider()).not.toHaveValue('13');
   await figure.getByRole('button', { name: 'Pause' }).click();
   const still = await slider().inputValue();
-  await page.waitForTimeout(500);
+  await timers(page, 500);
   await expect(slider()).toHaveValue(still);
 });
 

@@ -1,4 +1,5 @@
 import { changes, drag, expect, numbers, open, test } from './figure.mjs';
+import { frames } from '../site.mjs';
 
 const GRADIENT = /by (\S+) grey levels per pixel to the right, by (\S+) per pixel down and by (\S+) from frame/;
 const REST = /sheet’s motion \((\S+), (\S+)\) gives (\S+) there/
@@ -49,16 +50,16 @@ test('the sheet moves by itself only where motion is welcome, and stops', async 
   const { figure } = await open(page, 'one-pixel');
   const picture = () => figure.locator('canvas').evaluate((canvas) => canvas.toDataURL());
   const still = await picture();
-  await page.waitForTimeout(300);
+  await frames(page, 5);
   expect(await picture()).toBe(still);
   const play = figure.getByRole('button', { name: /the sheet$/ });
   await play.click();
   await expect.poll(picture).not.toBe(still);
   await expect(play).toHaveText('Stop the sheet');
   await play.click();
-  await page.waitForTimeout(100);
+  await frames(page, 2);
   const stopped = await picture();
-  await page.waitForTimeout(300);
+  await frames(page, 5);
   expect(await picture()).toBe(stopped);
   const other = await page.context().newPage();
   const moving = await open(other, 'one-pixel', { motion: true });
