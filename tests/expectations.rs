@@ -147,15 +147,12 @@ fn best_group(
     counts.iter().filter(|(group, _)| **group != 0).map(overlap).max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
 }
 
-fn check_pair(name: &str) {
-    check_altered(name, &[Altered::No]);
-}
-
-fn check_altered(name: &str, altered: &[Altered]) {
+/// Checks what is found of a pair. Returns what *fast* and *best* find.
+fn check_pair(name: &str, altered: Altered) -> [Segmentation; 2] {
     let expected = expected(name);
     let pictures = [0, 1].map(|k| picture(expected["frames"][k].as_str().unwrap()));
     let objects = expected["objects"].as_array().unwrap();
-    for (&altered, quality) in altered.iter().flat_map(|altered| [Quality::Fast, Quality::Best].map(|q| (altered, q))) {
+    [Quality::Fast, Quality::Best].map(|quality| {
         let case = format!("{name}, {altered:?}, {quality:?}");
         let [first, second] = [0, 1].map(|k| altered.frame(&pictures[k]));
         let options = SegmentOptions::default().with_quality(quality);
@@ -186,12 +183,14 @@ fn check_altered(name: &str, altered: &[Altered]) {
             assert!(overlap >= least, "{case}: overlap of {} {overlap:.3}", object["name"]);
             assert!(taken.insert(group), "{case}: {} is one with another object", object["name"]);
         }
-    }
+        found
+    })
 }
 
 #[test]
 fn two_cars_on_a_plain_road_are_two_objects_and_the_road_is_at_rest() {
-    check_altered("two-cars", &[Altered::No, Altered::Mirrored([true, false]), Altered::Jpeg]);
+    check_kept("two-cars", check_pair("two-cars", Altered::No));
+    check_pair("two-cars", Altered::Mirrored([true, false]));
 }
 
 #[test]
@@ -201,67 +200,61 @@ fn frames_that_are_altered_show_the_same_objects() {
     let names = files.filter(|path| path.extension().is_some_and(|kind| kind == "json"));
     let names = names.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned());
     for name in names.filter(|name| expected(name)["altered"] == true) {
-        check_altered(&name, &Altered::ALL);
+        for altered in Altered::ALL {
+            check_pair(&name, altered);
+        }
     }
 }
 
 #[test]
 fn things_that_a_camera_passes_are_three_objects() {
-    check_pair("parallax");
+    check_kept("parallax", check_pair("parallax", Altered::No));
 }
 
-/// The page shows what *fast* finds until *best* is there.
-#[test]
-fn what_fast_gets_right_of_the_samples_best_has_right() {
-    for name in ["two-cars", "parallax"] {
-        let expected = expected(name);
-        let pictures = [0, 1].map(|k| picture(expected["frames"][k].as_str().unwrap()));
-        let [first, second] = [0, 1].map(|k| Altered::No.frame(&pictures[k]));
-        let size = [first.width(), first.height()];
+/// What *fast* gets right of a sample, *best* has right: the page shows what *fast* finds until *best* is there.
+fn check_kept(name: &str, found: [Segmentation; 2]) {
+    let expected = expected(name);
+    let right = found.map(|found| {
+        let group = |p: usize| found.motions[usize::from(found.labels[p])].group;
         let centre = |x: usize, y: usize| [x as f64 + 0.5, y as f64 + 0.5];
-        let right = |quality: Quality| {
-            let options = SegmentOptions::default().with_quality(quality);
-            let found = segment_pair(&first, &second, &options, &mut |_| {}).unwrap();
-            let group = |p: usize| found.motions[usize::from(found.labels[p])].group;
-            let objects = expected["objects"].as_array().unwrap().iter().map(|object| {
-                let (own, _) = best_group(object, |x, y| group(y * size[0] + x), centre, size);
-                (outline(&object["outline"]), outline(&object["shadow"]), own)
-            });
-            let objects: Vec<(Outline, Outline, u8)> = objects.collect();
-            let is_right = |&p: &usize| {
-                let [x, y] = centre(p % size[0], p / size[0]);
-                let there = objects.iter().find(|(inner, _, _)| contains(inner, x, y));
-                let own = there.map_or(found.motions[0].group, |(_, _, own)| *own);
-                group(p) == own && !objects.iter().any(|(_, shadow, _)| there.is_none() && contains(shadow, x, y))
-            };
-            (0..size[0] * size[1]).filter(is_right).collect::<BTreeSet<usize>>()
+        let objects = expected["objects"].as_array().unwrap().iter().map(|object| {
+            let (own, _) = best_group(object, |x, y| group(y * found.width + x), centre, [found.width, found.height]);
+            (outline(&object["outline"]), outline(&object["shadow"]), own)
+        });
+        let objects: Vec<(Outline, Outline, u8)> = objects.collect();
+        let is_right = |&p: &usize| {
+            let [x, y] = centre(p % found.width, p / found.width);
+            let there = objects.iter().find(|(inner, _, _)| contains(inner, x, y));
+            let own = there.map_or(found.motions[0].group, |(_, _, own)| *own);
+            group(p) == own && !objects.iter().any(|(_, shadow, _)| there.is_none() && contains(shadow, x, y))
         };
-        let [fast, best] = [Quality::Fast, Quality::Best].map(right);
-        let kept = fast.intersection(&best).count() as f64 / fast.len() as f64;
-        assert!(kept >= KEPT, "{name}: {kept:.4} of what fast gets right");
-    }
+        (0..found.labels.len()).filter(is_right).collect::<BTreeSet<usize>>()
+    });
+    let [fast, best] = right;
+    let kept = fast.intersection(&best).count() as f64 / fast.len() as f64;
+    assert!(kept >= KEPT, "{name}: {kept:.4} of what fast gets right");
 }
 
 #[test]
 fn a_visitor_moves_and_the_room_does_not() {
-    check_pair("visitor");
+    check_pair("visitor", Altered::No);
 }
 
 #[test]
 fn nothing_moves_in_an_empty_room() {
-    check_pair("empty-room");
+    check_pair("empty-room", Altered::No);
 }
 
-/// Scenes of seeds that nothing was chosen on.
+/// A scene of a seed that nothing was chosen on.
 #[test]
 fn ground_is_at_rest_below_the_cars_of_a_camera_at_rest() {
-    assert_ground_at_rest(53_000..53_003);
+    assert_ground_at_rest(53_000..53_001);
 }
 
 #[test]
 #[ignore = "npm run soak"]
 fn ground_is_at_rest_in_many_scenes() {
-    assert_ground_at_rest(53_003..53_030);
+    assert_ground_at_rest(53_001..53_030);
 }
 
 fn assert_ground_at_rest(seeds: Range<u64>) {
@@ -281,21 +274,30 @@ fn assert_ground_at_rest(seeds: Range<u64>) {
 
 #[test]
 fn passing_cars_are_two_objects_from_coming_to_leaving() {
-    check_clip(Quality::Fast);
+    check_clip(Quality::Fast, 0, 1);
+}
+
+/// They include two of the three that have outlines: where the cars meet, and where they have passed.
+#[test]
+fn passing_cars_are_two_objects_in_every_third_frame_in_the_best_quality() {
+    check_clip(Quality::Best, 2, 3);
 }
 
 /// The clip that a first visitor of the page sees.
 #[test]
+#[ignore = "npm run soak"]
 fn passing_cars_are_two_objects_in_the_best_quality() {
-    check_clip(Quality::Best);
+    check_clip(Quality::Best, 0, 1);
 }
 
-fn check_clip(quality: Quality) {
+/// Checks a clip of every so many frames from `first` on.
+fn check_clip(quality: Quality, first: usize, step: usize) {
     let expected = expected("passing-cars");
     let mut paths: Vec<PathBuf> =
         fs::read_dir(expected["folder"].as_str().unwrap()).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
-    let frames: Vec<Frame> = paths.iter().map(|path| Altered::No.frame(&picture(path.to_str().unwrap()))).collect();
+    let paths = paths.iter().skip(first).step_by(step);
+    let frames: Vec<Frame> = paths.map(|path| Altered::No.frame(&picture(path.to_str().unwrap()))).collect();
     let pair = SegmentOptions::default().with_quality(quality);
     let mut clip = ClipSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(None)).unwrap();
     frames.iter().for_each(|frame| drop(clip.push(frame.clone()).unwrap()));
@@ -306,11 +308,15 @@ fn check_clip(quality: Quality) {
         let (name, seen) = (object["name"].as_str().unwrap(), clip.frames_with(id));
         let from = object["from"].as_u64().unwrap() as usize;
         let follow = seen.windows(2).all(|pair| pair[1] == pair[0] + 1) && seen.last() == Some(&(frames.len() - 1));
-        assert!(seen[0] <= from && follow, "{quality:?}: {name} is found in the frames {seen:?}");
+        assert!(first + step * seen[0] < from + step && follow, "{quality:?}: {name} is found in the frames {seen:?}");
         for (index, corners) in object["outlines"].as_object().unwrap() {
             let (index, corners): (usize, _) = (index.parse().unwrap(), outline(corners));
-            let (frame, width) = (&frames[index], frames[index].width());
-            let labels = clip.frame(index, frame).unwrap().labels;
+            if index % step != first {
+                continue;
+            }
+            let at = index / step;
+            let width = frames[at].width();
+            let labels = clip.frame(at, &frames[at]).unwrap().labels;
             let inside = |&p: &usize| contains(&corners, (p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
             let pixels: Vec<usize> = (0..labels.len()).filter(inside).collect();
             let covered = pixels.iter().filter(|&&p| labels[p] == id).count() as f64 / pixels.len() as f64;

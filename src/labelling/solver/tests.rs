@@ -115,28 +115,29 @@ fn bound(problem: &Potts<'_>, iterations: usize) -> f64 {
         1.0 / chains[0].max(chains[1]).max(1) as f64
     };
     let mut bound = f64::NEG_INFINITY;
+    let mut total = vec![0.0; labels];
+    let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
     for pass in 0..2 * iterations {
         let forward = pass % 2 == 0;
         let mut sum = 0.0;
         for k in 0..pixels {
             let p = if forward { k } else { pixels - 1 - k };
             let x = p % width;
-            let behind = [(0, x > 0, 1), (1, p >= width, width)];
-            let before: Vec<(usize, usize)> =
-                behind.iter().filter(|b| b.1).map(|&(d, _, step)| (d, p - step)).collect();
-            let after: Vec<(usize, usize)> =
-                [(0, x + 1 < width), (1, p + width < pixels)].iter().filter(|a| a.1).map(|a| (a.0, p)).collect();
-            let mut total: Vec<f64> = (0..labels).map(|l| f64::from(problem.cost(l, p))).collect();
-            for &(d, q) in before.iter().chain(&after) {
-                (0..labels).for_each(|l| total[l] += messages[d][q][l]);
+            let before = [(0, x > 0, 1), (1, p >= width, width)].map(|(d, is, step)| is.then(|| (d, p - step)));
+            let after = [(0, x + 1 < width), (1, p + width < pixels)].map(|(d, is)| is.then_some((d, p)));
+            total.iter_mut().enumerate().for_each(|(l, t)| *t = f64::from(problem.cost(l, p)));
+            for &(d, q) in before.iter().chain(&after).flatten() {
+                total.iter_mut().zip(&messages[d][q]).for_each(|(t, m)| *t += m);
             }
-            let low = total.iter().copied().fold(f64::INFINITY, f64::min);
+            let low = least(&total);
             total.iter_mut().for_each(|t| *t -= low);
             sum += low;
-            for &(d, q) in if forward { &after } else { &before } {
-                let source: Vec<f64> = (0..labels).map(|l| share(p) * total[l] - messages[d][q][l]).collect();
-                let low = source.iter().copied().fold(f64::INFINITY, f64::min);
-                messages[d][q] = source.iter().map(|s| (s - low).min(weights[d][q])).collect();
+            let share = share(p);
+            for (d, q) in if forward { after } else { before }.into_iter().flatten() {
+                let message = &mut messages[d][q];
+                message.iter_mut().zip(&total).for_each(|(m, t)| *m = share * t - *m);
+                let low = least(message);
+                message.iter_mut().for_each(|m| *m = (*m - low).min(weights[d][q]));
                 sum += low;
             }
         }
