@@ -63,7 +63,7 @@ const OVER_DISC = [[0.2, 0.4], [0.36, 0.4]] as const;
 const BESIDE = [[0.5, 0.15], [0.65, 0.3]] as const;
 
 test('what is drawn exactly is kept, exported and left alone by corrections elsewhere', async ({ page }) => {
-  const files = await clipFrames(6);
+  const files = await clipFrames(6, 200, 140);
   await openSegmented(page, files);
   const [third, fifth, before] = (await masksOf(page, [3, 5, 4])) as [Uint8Array, Uint8Array, Uint8Array];
   const disc = before[Math.round(0.4 * HEIGHT) * WIDTH + Math.round(0.28 * WIDTH)]!;
@@ -146,7 +146,7 @@ test('what is drawn exactly is kept, exported and left alone by corrections else
 });
 
 test('the onion skin shows the frames beside; polygons are filled pixel for pixel', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(6, 200, 140));
 
   await test.step('the onion skin shows the objects of the frames beside, but not while the clip plays', async () => {
     const [second, fourth, first] = await masksOf(page, [1, 3, 0]);
@@ -298,7 +298,7 @@ test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
   test('fingers draw a polygon exactly; two of them set no corner', async ({ page }) => {
-    await openSegmented(page, await clipFrames(4));
+    await openSegmented(page, await clipFrames(4, 200, 140));
     await goTo(page, 2);
     const before = await labelsOnCanvas(page);
     await page.locator('#objects > li').nth(1).locator('.motion-share').tap();
