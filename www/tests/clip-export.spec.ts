@@ -23,7 +23,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
     for (const [index, file] of files.entries()) expect(differences(await labelsOfDavis(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
     await expect(listed).toHaveText([`${folder}/f00.png … f03.png, 4 files`, 'davis/ImageSets/2017/val.txt']);
-    await expect(caption).toHaveText(`f03.png: ${(davis[`${folder}/f03.png`]!.length / 1000).toFixed(1)} kB`);
+    await expect(caption).toHaveText(`f03.png: ${davis[`${folder}/f03.png`]!.length} B`);
     const shown = async (): Promise<Uint8Array> => labelsInPalette(await pixelsOfPicture(preview.locator('img')));
     expect(differences(await shown(), found[3]!)).toBe(0);
 

@@ -262,6 +262,7 @@ test('a clip is kept when it is opened, and one whose run a reload ended goes on
   await expect(page.locator('#clip-detail')).toHaveText(/^[2-9] of 12/);
   await hide(page); // as before a reload
   await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f11') && /"pairs":\{"map":\[\[0/.test(project))).toBe(true);
+  await expect.poll(() => copies(page)).toBe(2);
   await reloadEmpty(page);
   await page.getByLabel('Segment a clip when it is opened').check();
   const release = await holdBack(page, 'f08.png');
