@@ -622,6 +622,20 @@ fn an_eraser_through_a_separate_piece_removes_the_piece_and_gives_it_back() {
 }
 
 #[test]
+fn frames_from_which_an_object_that_was_found_is_erased_as_a_whole_have_changed() {
+    let mut shot = three();
+    let before = shot.labels();
+    let object = *before[2].iter().find(|label| (1..255).contains(*label)).unwrap();
+    let labels = before[2].iter().map(|&label| if label == object { 0 } else { 255 }).collect();
+    let corrections = vec![Painted { frame: 2, object: Some(object), labels, spread: Spread::Both }];
+    let changed = annotate(&mut shot.clip, &shot.frames, Annotations { corrections, ..Annotations::default() });
+    let now = shot.labels();
+    assert!(!now[2].contains(&object));
+    let silent: Vec<usize> = (0..now.len()).filter(|t| now[*t] != before[*t] && !changed.contains(t)).collect();
+    assert!(silent.is_empty(), "frames {silent:?} have changed, besides {changed:?}");
+}
+
+#[test]
 fn a_prompt_takes_nothing_from_other_objects_of_a_person_and_must_be_within_the_frame() {
     let mut shot = three();
     let prompts = prompts_of(&shot, 2, 3);

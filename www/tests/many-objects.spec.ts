@@ -3,19 +3,19 @@
 import type { Page } from '@playwright/test';
 import { encodeDavis } from 'veronese/formats';
 
-import { axe, clipDone, clipFrames, expect, goTo, openSegmented, screen, test, upload, withSamples } from './support.js';
+import { clipDone, clipFrames, expect, goTo, openClip, openSegmented, test, upload } from './support.js';
 
 const COUNT = 20;
 
 /** A clip with so many objects: squares side by side, from a file of masks. */
 async function openMany(page: Page): Promise<void> {
-  await openSegmented(page, await clipFrames(3));
+  await openSegmented(page, await clipFrames(4));
   await goTo(page, 1);
-  const [width, height] = [200, 140];
+  const [width, height] = [100, 70];
   const labels = Uint8Array.from({ length: width * height }, (_, p) => {
     const [x, y] = [p % width, Math.floor(p / width)];
-    const cell = 5 * Math.floor(y / 35) + Math.floor(x / 40);
-    return x % 40 > 6 && y % 35 > 6 ? cell + 1 : 0;
+    const cell = 5 * Math.floor(y / 17.5) + Math.floor(x / 20);
+    return x % 20 > 3 && y % 17.5 > 3 ? cell + 1 : 0;
   });
   await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(labels, width, height)) }]);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
@@ -33,7 +33,6 @@ function inSight(page: Page, row: number): Promise<boolean> {
 test('the object that is selected in the picture, or is new, is scrolled into view; all others are locked, hidden, deleted at once', async ({ page }) => {
   await page.setViewportSize({ width: 1280, height: 720 });
   await openMany(page);
-  expect(await axe(page)).toEqual([]);
   expect(await inSight(page, COUNT)).toBe(false);
   // The last one is at the lower right.
   const box = (await page.locator('.layers').boundingBox())!;
@@ -47,7 +46,6 @@ test('the object that is selected in the picture, or is new, is scrolled into vi
   await expect(page.locator('#objects > li')).toHaveCount(2 + COUNT);
   expect(await inSight(page, 1 + COUNT)).toBe(true);
   expect(await page.evaluate(() => scrollY)).toBe(0);
-  await page.screenshot({ path: screen('many-objects') });
 
   // Eight rows and eight lanes are seen.
   await page.keyboard.press('1');
@@ -80,13 +78,12 @@ test('the object that is selected in the picture, or is new, is scrolled into vi
 });
 
 test('samples fold away once there are frames of one\'s own, and stay if they are unfolded', async ({ page }) => {
-  await openSegmented(page, await clipFrames(3, 96, 64));
-  await withSamples(page);
+  await openClip(page, await clipFrames(3));
   const parallax = page.getByRole('button', { name: 'Parallax' });
   await expect(parallax).toBeHidden();
   await page.locator('#welcome > summary').click();
   await expect(parallax).toBeVisible();
-  await upload(page, await clipFrames(4, 96, 64));
+  await upload(page, await clipFrames(4));
   await expect(page.locator('#clip-name')).toContainText('4 frames');
   await expect(parallax).toBeVisible();
 });

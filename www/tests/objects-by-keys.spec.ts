@@ -1,9 +1,9 @@
 //! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
 
-import { axe, clipDone, done, drag, expect, goTo, openSegmented, smallFrames, test } from './support.js';
+import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
 
 test('objects are selected and deleted, corrected frames are found, and a correction spreads where it is told to', async ({ page }) => {
-  await openSegmented(page, await smallFrames(6));
+  await openSegmented(page, await clipFrames(6));
   const rows = page.locator('#objects > li');
   await expect(rows).toHaveCount(3); // and the background
   await page.keyboard.press('2');
@@ -88,7 +88,7 @@ test('objects are selected and deleted, corrected frames are found, and a correc
 });
 
 test('several objects are selected by mouse and keyboard, and what is done with them is one step', async ({ page }) => {
-  await openSegmented(page, await smallFrames(3));
+  await openSegmented(page, await clipFrames(4));
   const rows = page.locator('#objects > li');
   const row = (id: number) => page.locator(`#objects > [data-mask="${id}"]`);
   const boxes = page.getByRole('checkbox', { name: /^Select / });
@@ -104,8 +104,6 @@ test('several objects are selected by mouse and keyboard, and what is done with 
   await expect(page.getByRole('checkbox', { name: 'Select Object 1' })).toBeChecked();
   await expect(page.getByRole('checkbox', { name: 'Select Object 2' })).toBeChecked();
   await expect(page.locator('#select-several')).toHaveAttribute('aria-pressed', 'true');
-
-  expect(await axe(page)).toEqual([]);
 
   // Locks and classes of all, each in one step.
   const lock = bar.getByRole('button', { name: 'Lock' });

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, PAIR, clipDone, clipFrames, done, expect, held, openEmpty, openSample, shown, square, test, upload, withSamples } from './support.js';
+import { type Upload, clipDone, clipFrames, done, expect, held, holdSamples, openEmpty, openSample, shown, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -19,17 +19,12 @@ async function expectToStep(page: Page, first: number): Promise<void> {
   await shown(page, 'first', `#${first},`);
 }
 
-test('the worker starts and warms up while the first frames are on their way; a broken file does not lose a correction that is being carried', async ({ page, context }) => {
-  let release = (): void => undefined;
-  const held = new Promise<void>((resolve) => (release = resolve));
-  await context.route('**/samples/**', async (route) => {
-    await held;
-    await route.continue();
-  });
+test('the worker starts and warms up while the first frames are on their way; a broken file does not lose a correction that is being carried', async ({ page }) => {
+  await holdSamples(page);
   const worker = page.waitForEvent('worker');
-  await page.goto(`${PAIR}&quality=fast`);
+  await page.goto('./#sample=parallax&quality=fast');
   await worker;
-  release();
+  await withSamples(page);
   await clipDone(page);
 
   await page.locator('#tools [value=brush]').check();
@@ -68,7 +63,7 @@ test('a broken file does not switch the camera off, and the camera replaces a cl
   await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
 
   // The camera replaces a clip once it is on.
-  await upload(page, await clipFrames(3, 100, 70));
+  await upload(page, await clipFrames(3));
   await expect(page.locator('#clip-name')).toContainText('3 frames');
   await done(page);
   await page.getByRole('button', { name: 'Camera' }).click();
@@ -142,9 +137,9 @@ test('frames that are chosen before the page is ready are opened, not the sample
     await route.continue();
   });
   await page.goto('./', { waitUntil: 'commit' });
-  await upload(page, await clipFrames(4, 96, 64));
+  await upload(page, await clipFrames(4));
   release();
-  await expect(page.locator('#clip-name')).toHaveText('f00-f03.png, 4 frames, 96 × 64');
+  await expect(page.locator('#clip-name')).toHaveText('f00-f03.png, 4 frames, 100 × 70');
   await done(page);
   await expect(page.locator('#samples [aria-current=true]')).toHaveCount(0);
 });
@@ -153,7 +148,7 @@ test('what is opened last wins: steps and what was chosen before it do not give 
   await openEmpty(page);
   const release = await held(page, 'slow.png');
   await page.reload();
-  await upload(page, await clipFrames(4, 96, 64));
+  await upload(page, await clipFrames(4));
   await expect(page.locator('#clip-name')).toContainText('4 frames');
   await done(page);
 

@@ -2,9 +2,9 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, axe, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reachPicture, screen, test } from './support.js';
+import { type Place, clipDone, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, reachPicture, test } from './support.js';
 
-const [WIDTH, HEIGHT, RADIUS] = [120, 84, 0.16 * 84];
+const [WIDTH, HEIGHT, RADIUS] = [100, 70, 0.16 * 70];
 
 /** Where the disc of `clipFrames` is in a frame. */
 const isDisc = (p: number, frame: number): boolean =>
@@ -23,13 +23,13 @@ function overlap(labels: Uint8Array, own: number, frame: number): number {
 
 const tool = (page: Page) => page.getByRole('radio', { name: 'Box: a new object' });
 /** The corners of a box around the disc in frame 3, and its middle, in pixels. */
-const [LEFT, TOP, RIGHT, BOTTOM] = [20, 17, 52, 50];
+const [LEFT, TOP, RIGHT, BOTTOM] = [18, 14, 46, 42];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
 const AROUND = [at(LEFT, TOP), at(RIGHT, BOTTOM)] as const;
-const MIDDLE = at(36, 33);
+const MIDDLE = at(32, 28);
 
 test('a box, a press and the keyboard make a new object in all frames, and undo takes it back', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(6));
   await goTo(page, 3);
   const before = await labelsOnCanvas(page);
   const own = Math.max(...before) + 1;
@@ -58,7 +58,6 @@ test('a box, a press and the keyboard make a new object in all frames, and undo 
   await page.getByRole('button', { name: 'Redo' }).click();
   expect(differences(await labelsOnCanvas(page), after)).toBe(0);
   expect(await objects.count()).toBeGreaterThanOrEqual(count);
-  expect(await axe(page)).toEqual([]);
 
   await test.step('a press points to an object as well', async () => {
     await page.getByRole('button', { name: 'Undo' }).click();
@@ -99,15 +98,7 @@ test('a box, a press and the keyboard make a new object in all frames, and undo 
     await expect(status).toHaveText(/^Undone/);
   });
 
-  await test.step('objects one after another keep what they have, and a pair has no box', async () => {
-    // Both in one go: the second waits for the first.
-    await drag(page, ...AROUND);
-    await drag(page, [0.5, 0.05], [0.7, 0.3]);
-    await expect.poll(async () => (await labelsOnCanvas(page)).includes(own + 1)).toBe(true);
-    await clipDone(page);
-    const labels = await labelsOnCanvas(page);
-    expect(overlap(labels, own, 3)).toBeGreaterThan(0.85);
-    expect(labels).toContain(own + 1);
+  await test.step('a pair has no box', async () => {
     await page.locator('#kinds [value=groups]').check();
     await expect(tool(page)).toBeHidden();
     await expect(page.locator('#tools [value=look]')).toBeChecked();
@@ -118,7 +109,7 @@ test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
   test('the tools are large enough, and a finger draws a box; two fingers draw none', async ({ page }) => {
-    await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
+    await openSegmented(page, await clipFrames(6));
     await goTo(page, 3);
     for (const label of await page.locator('#tools fieldset label').all()) {
       const { width, height } = (await label.boundingBox())!;
@@ -151,7 +142,7 @@ test.describe('on a phone', () => {
     const remove = page.getByRole('radio', { name: 'Remove' });
     expect((await remove.locator('..').boundingBox())!.height).toBeGreaterThanOrEqual(44);
     await remove.check({ force: true });
-    const [x, y] = [41, 33];
+    const [x, y] = [36, 28];
     expect((await labelsOnCanvas(page))[y * WIDTH + x]).toBe(own);
     await page.touchscreen.tap(finger(at(x + 0.5, y + 0.5)).x, finger(at(x + 0.5, y + 0.5)).y);
     await expect(page.locator('#strokes .prompt')).toHaveCount(2);
@@ -161,7 +152,7 @@ test.describe('on a phone', () => {
 });
 
 test('a press on something that was not found offers a new object there, which further presses refine', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(6));
   await goTo(page, 3);
   const offer = page.getByRole('button', { name: 'New object here' });
   const status = page.locator('#clip-status');
@@ -174,13 +165,11 @@ test('a press on something that was not found offers a new object there, which f
   await clipDone(page);
   await drag(page, MIDDLE, MIDDLE);
   await expect(offer).toBeVisible();
-  expect(await axe(page)).toEqual([]);
-  await page.screenshot({ path: screen('offer') });
   // Another tool or another frame takes it back.
   await page.keyboard.press('b');
   await expect(offer).toBeHidden();
   await page.keyboard.press('v');
-  await drag(page, at(2, 80), at(2, 80)); // the background is selected no more
+  await drag(page, at(2, 66), at(2, 66)); // the background is selected no more
   await drag(page, MIDDLE, MIDDLE);
   await offer.click();
   await expect(status).toHaveText(/^Corrected/);
@@ -190,10 +179,10 @@ test('a press on something that was not found offers a new object there, which f
   await expect(page.locator('[name=pointing][value=add]')).toBeChecked();
   const marks = page.locator('#strokes .prompt');
   await expect(marks).toHaveCount(1);
-  await drag(page, at(32, 30), at(32, 30));
+  await drag(page, at(28, 25), at(28, 25));
   await expect(marks).toHaveCount(2);
   await page.keyboard.down('Alt');
-  await drag(page, at(80, 70), at(80, 70));
+  await drag(page, at(67, 62), at(67, 62));
   await page.keyboard.up('Alt');
   await expect(page.locator('#strokes .prompt.minus')).toHaveCount(1);
   await clipDone(page);

@@ -4,7 +4,13 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipInNode, differences, done, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, segmentClip, smallFrames, test, upload } from './support.js';
+import type { Clip } from '../src/clips/clip.js';
+import { packed } from '../src/correction/runs.js';
+import { fileOf, projectFromFile } from '../src/projects/file.js';
+import type { Project } from '../src/projects/project.js';
+import { DEFAULT_SETTINGS } from '../src/state/settings.js';
+import { type Span, type TrackedFrame, untracked, versionOf } from '../src/state/tracked.js';
+import { type Upload, clipFrames, differences, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, test, upload } from './support.js';
 
 /** The names of objects in the only project of the browser; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {
@@ -12,25 +18,21 @@ async function namesInBrowser(page: Page): Promise<unknown> {
   return project === undefined ? undefined : (JSON.parse(project) as { clip: { names: unknown } }).clip.names;
 }
 
-/** A segmented clip with a name and a correction. */
-async function correctedClip(page: Page, files: Upload[]): Promise<void> {
+/** A segmented clip with a name and a correction. Gives the masks of its first and its last frame. */
+async function correctedClip(page: Page, files: Upload[]): Promise<Uint8Array[]> {
   await openSegmented(page, files);
   await rename(page, '#objects', 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \d+ frames/);
+  return masksOf(page, [files.length - 1, 0]);
 }
 
-/** Whether it is the clip of {@link correctedClip}, continued without being segmented again. */
-async function isContinued(page: Page, files: readonly Upload[]): Promise<void> {
-  const found = await clipInNode(files, { quality: 'fast', edits: { delete: [1] } });
-  const last = files.length - 1;
-  await expect(page.locator('#clip-status')).toHaveText(`Continued: one object in ${files.length} frames.`);
+/** Whether it is the clip of {@link correctedClip}, with those masks, continued without being segmented again. */
+async function isContinued(page: Page, masks: readonly Uint8Array[], count: number): Promise<void> {
+  await expect(page.locator('#clip-status')).toHaveText(`Continued: one object in ${count} frames.`);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  for (const index of [0, last]) {
-    await goTo(page, index);
-    expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
-  }
+  expect((await masksOf(page, [count - 1, 0])).map((labels, k) => differences(labels, masks[k]!))).toEqual([0, 0]);
 }
 
 /** Removes all projects from the browser, once none is being written. */
@@ -40,8 +42,8 @@ async function forgetAll(page: Page): Promise<void> {
 }
 
 test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
-  const files = await smallFrames(4);
-  await correctedClip(page, files);
+  const files = await clipFrames(4);
+  const masks = await correctedClip(page, files);
   await goTo(page, 2);
   await page.getByLabel('Show Box').uncheck();
   await expect.poll(async () => (await projectsInBrowser(page)).join('')).toContain('"hidden":[2]');
@@ -49,7 +51,7 @@ test('a corrected clip is there after a reload, and can be corrected further', a
   await expect(page.locator('#caption')).toHaveText('Frame 2');
   await expect(page.getByLabel('Show Box')).not.toBeChecked();
   await page.getByLabel('Show Box').check();
-  await isContinued(page, files);
+  await isContinued(page, masks, 4);
   expect(await leaves(page)).toBe(true);
 
   await page.locator('#objects > li').nth(1).locator('summary').click();
@@ -62,7 +64,7 @@ test('a corrected clip is there after a reload, and can be corrected further', a
 });
 
 test('classes are those of the project, and their list is there for the next clip', async ({ page }) => {
-  const files = await smallFrames(3);
+  const files = await clipFrames(4);
   await openSegmented(page, files);
   const own = page.getByLabel(/^Class of .* 1$/);
   await page.keyboard.press('1');
@@ -92,8 +94,8 @@ test('classes are those of the project, and their list is there for the next cli
 });
 
 test('a project is saved as a file and opened where nothing is left of it, over its frames or before them', async ({ page }) => {
-  const files = await smallFrames(4);
-  await correctedClip(page, files);
+  const files = await clipFrames(4);
+  const masks = await correctedClip(page, files);
   const project = await savedProject(page);
   expect(project.name).toBe('f00-f03.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
@@ -106,28 +108,33 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   await expect(page.locator('#projects')).toBeHidden();
   await reopen(page, files);
   await expect(page.locator('#kind-objects')).toBeHidden();
+  // A damaged one changes nothing.
+  await upload(page, [{ ...project, name: 'other.veronese', buffer: project.buffer.subarray(0, -9) }]);
+  await expect(page.locator('#notice-code')).toHaveText('damaged-project');
+  await expect(page.locator('#notice-sentence')).toContainText('“other.veronese”');
+  await expect(page.locator('#kind-objects')).toBeHidden();
   // Over the open clip.
   await upload(page, [project]);
-  await isContinued(page, files);
+  await isContinued(page, masks, 4);
   await forgetAll(page);
   await reloadEmpty(page);
   await upload(page, [project]);
   await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is open. Now open its frames');
   await upload(page, files);
-  await isContinued(page, files);
+  await isContinued(page, masks, 4);
 });
 
-for (const [lack, remove] of [
-  ['has no private file system', () => delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory],
-  ['cannot write it', () => delete (FileSystemFileHandle.prototype as { createWritable?: unknown }).createWritable],
+for (const [lack, tag, remove] of [
+  ['has no private file system', [], () => delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory],
+  ['cannot write it', ['@soak'], () => delete (FileSystemFileHandle.prototype as { createWritable?: unknown }).createWritable],
 ] as const) {
-  test(`projects are in a database if the browser ${lack}`, async ({ page }) => {
+  test(`projects are in a database if the browser ${lack}`, { tag: [...tag] }, async ({ page }) => {
     await page.addInitScript(remove);
-    const files = await smallFrames(3);
-    await correctedClip(page, files);
+    const files = await clipFrames(4);
+    const masks = await correctedClip(page, files);
     await kept(page);
     await reopen(page, files);
-    await isContinued(page, files);
+    await isContinued(page, masks, 4);
     await openExport(page);
     await page.getByText('One project in this browser').click();
     await page.getByRole('button', { name: 'Forget the project' }).click();
@@ -136,13 +143,11 @@ for (const [lack, remove] of [
 }
 
 test('a full disk loses nothing, and the next change is kept again, with the settings', async ({ page, context, baseURL }) => {
-  const files = await smallFrames(4);
-  await openClip(page, files);
+  const files = await clipFrames(4);
+  await openSegmented(page, files);
   const unlabelled = page.getByLabel('Leave unexplained pixels unlabelled');
   await openAdvanced(page);
   await unlabelled.check();
-  await done(page);
-  await segmentClip(page);
   await kept(page);
   const session = await context.newCDPSession(page);
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: 100 });
@@ -169,14 +174,14 @@ test('a full disk loses nothing, and the next change is kept again, with the set
 
 test('a second tab on a clip says that its work is not kept, and overwrites nothing', async ({ page: second, context }) => {
   const first = await context.newPage();
-  const files = await smallFrames(3);
+  const files = await clipFrames(4);
   await openSegmented(first, files);
   await kept(first);
 
   await openClip(second, files);
-  await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 3 frames.');
+  await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 4 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
-  await expect(second.locator('#notice-sentence')).toContainText('“f00-f02.png” is open in another tab');
+  await expect(second.locator('#notice-sentence')).toContainText('“f00-f03.png” is open in another tab');
   await rename(second, '#objects', 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);
@@ -202,32 +207,44 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   expect(await namesInBrowser(second)).toEqual({ 'objects-1': 'Ball', 'objects-2': 'Box' });
 });
 
-test('damaged and foreign projects are refused with a reason and change nothing', async ({ page }) => {
-  const files = await smallFrames(5);
-  await openSegmented(page, files);
-  const project = await savedProject(page);
-  const lines = gunzipSync(project.buffer).toString('latin1').split('\n');
-  const remade = (change: (lines: string[]) => string[]): Buffer => gzipSync(Buffer.from(change([...lines]).join('\n'), 'latin1'));
-  const flipped = Buffer.from(project.buffer);
+test('damaged and foreign projects are refused', async () => {
+  const runs = packed(Uint8Array.of(0, 1, 1, 0, 0, 0), 6, 1);
+  const masks: TrackedFrame = { runs, objects: [{ id: 1, pixels: 2, bbox: [1, 0, 2, 1], confidence: 0.9, matrix: null }], background: null };
+  const state: Span = { range: { first: 0, last: 1 }, state: new Blob(['state']), numbers: new Map([[1, 1]]) };
+  const version = { ...versionOf(untracked({ count: 2 } as Clip)), frames: [masks, { ...masks }], found: [runs, runs], spans: [state], longestSide: 6, largest: 1 };
+  const project: Project = {
+    of: 'a clip',
+    name: 'clip.png',
+    frames: 2,
+    thumbnail: 'data:image/jpeg;base64,',
+    settings: DEFAULT_SETTINGS,
+    classList: [],
+    clip: { ...version, range: state.range, past: [], future: [], at: 0, hidden: [], solved: null },
+  };
+  const whole = Buffer.from(await (await fileOf(project, new Date())).arrayBuffer());
+  const read = async (bytes: Buffer): Promise<unknown> => projectFromFile(new Blob([new Uint8Array(bytes)]), 'other.veronese').then(() => 'read', ({ code }) => code as unknown);
+  expect(await read(whole)).toBe('read');
+
+  const lines = gunzipSync(whole).toString('latin1').split('\n');
+  const remade = (line: number, from: string | RegExp, to: string): Buffer => {
+    const changed = lines.with(line, lines[line]!.replace(from, to));
+    expect(changed[line]).not.toBe(lines[line]);
+    return gzipSync(Buffer.from(changed.join('\n'), 'latin1'));
+  };
+  const flipped = Buffer.from(whole);
   flipped[Math.floor(flipped.length / 2)]! ^= 1;
-  const cases: readonly (readonly [Buffer, string])[] = [
-    [Buffer.from(''), 'damaged-project'],
-    [Buffer.from('not a project'), 'damaged-project'],
-    [project.buffer.subarray(0, project.buffer.length - 9), 'damaged-project'],
-    [flipped, 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('"version":4', '"version":5'), ...rest]), 'newer-project'],
-    [remade(([header, ...rest]) => [header!.replace('"version":4', '"version":3'), ...rest]), 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('data:image/jpeg;', 'data:text/html;'), ...rest]), 'damaged-project'],
-    [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
-    [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[100,70,', '[100,71,'), ...rest]), 'damaged-project'],
-    [remade(([header, content, ...rest]) => [header!, content!.replace(/\{"image":\d+\}/, '{"image":999}'), ...rest]), 'damaged-project'],
+  expect(await read(remade(0, '"version":4', '"version":5'))).toBe('newer-project');
+  const damaged = [
+    Buffer.from(''),
+    Buffer.from('not a project'),
+    whole.subarray(0, -9),
+    flipped,
+    remade(0, '"version":4', '"version":3'),
+    remade(0, '"frames":2', '"frames":1'),
+    remade(0, 'data:image/jpeg;', 'data:text/html;'),
+    remade(1, /\{"image":\d+\}/, '{"image":999}'),
+    remade(2, '"confidence"', '"confident"'),
+    remade(2, '[6,1,', '[6,2,'),
   ];
-  for (const [buffer, code] of cases) {
-    await upload(page, [{ name: 'other.veronese', mimeType: '', buffer }]);
-    await expect(page.locator('#notice-code')).toHaveText(code);
-    await expect(page.locator('#notice-sentence')).toContainText('“other.veronese”');
-    await page.locator('#notice-close').click();
-  }
-  await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
+  for (const [k, bytes] of damaged.entries()) expect(await read(bytes), `case ${k}`).toBe('damaged-project');
 });

@@ -2,10 +2,10 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
+import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
 
 test('frames are accepted, the least certain next, and a correction takes back what it changes', async ({ page }) => {
-  await openSegmented(page, await clipFrames(4, 100, 70));
+  await openSegmented(page, await clipFrames(4));
   const reviewed = page.locator('#reviewed');
   await expect(reviewed).toHaveText('0 of 4 accepted');
   await goTo(page, 2);
@@ -21,7 +21,6 @@ test('frames are accepted, the least certain next, and a correction takes back w
     await done(page);
   }
   await expect(page.getByRole('button', { name: 'Accept all' })).toBeDisabled();
-  expect(await axe(page)).toEqual([]);
 
   // A correction changes masks, which are then to be accepted again; undone, they are the accepted ones.
   await goTo(page, 1);
@@ -48,7 +47,7 @@ function marks(page: Page): Promise<Record<string, number>> {
 }
 
 test('frames that a correction changed are marked, and N goes through them, the largest change first', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6, 100, 70));
+  await openSegmented(page, await clipFrames(6));
   await goTo(page, 5);
   await page.keyboard.press('y');
   await expect(page.locator('#reviewed')).toHaveText('1 of 6 accepted');
@@ -80,7 +79,6 @@ test('frames that a correction changed are marked, and N goes through them, the 
   await page.keyboard.press('y');
   await expect(next).toHaveText(`${changed - 1} changed`);
   expect(await marks(page)).toEqual({ accepted: 2, changed: changed - 1 });
-  expect(await axe(page)).toEqual([]);
   await page.keyboard.press('Control+z');
   await page.keyboard.press('Control+z');
   await clipDone(page);

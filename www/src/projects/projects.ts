@@ -120,11 +120,12 @@ export class Projects {
     if (clip !== undefined) this.#known.add(clip.fingerprint);
     if (project === null || this.#shelf === null) return;
     const { withProject } = this.#shelf;
-    this.#opened.delete(project.of);
+    const isOfFile = this.#opened.delete(project.of);
     if (project.thumbnail !== undefined) this.#thumbnails.set(project.of, project.thumbnail);
     if (project.clip.solved) this.#pairs.set(project.of, project.clip.solved);
     this.#store.set(withProject(this.#store.get(), project, pair));
-    this.#keeps(project.of);
+    // Of a file it is not known yet whether the browser keeps it.
+    if (!isOfFile) this.#keeps(project.of);
     this.#touch(project.of, SOON);
   }
 

@@ -9,7 +9,11 @@ import { report } from '../failures.js';
 
 /** More workers than this are not worth their memory. */
 const MOST_WORKERS = 8;
-const PROCESSORS = navigator.hardwareConcurrency || 1;
+
+/** Of more than two processors one is left for the page, which needs a part of one. */
+function workersFor(processors: number): number {
+  return Math.min(processors > 2 ? processors - 1 : processors, MOST_WORKERS);
+}
 
 /** Changes what is known of the clip. */
 export type Change = (change: Partial<Tracked>) => void;
@@ -23,13 +27,13 @@ interface Ends {
 }
 
 export class ClipRuns {
-  /** Of more than two processors one is left for the page, which needs a part of one. */
-  readonly segmenter = new SegmenterPool({ jobs: Math.min(PROCESSORS > 2 ? PROCESSORS - 1 : PROCESSORS, MOST_WORKERS) });
+  readonly segmenter: SegmenterPool;
   readonly #store: Store;
   #current: { readonly controller: AbortController; readonly ends: Ends } | null = null;
 
-  constructor(store: Store) {
+  constructor(store: Store, segmenter = new SegmenterPool({ jobs: workersFor(navigator.hardwareConcurrency || 1) })) {
     this.#store = store;
+    this.segmenter = segmenter;
   }
 
   /** Runs `work` instead of what is under way. `set` changes what is known of the clip, unless the run has ended. */
