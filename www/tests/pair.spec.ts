@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeColourPng } from 'veronese/codecs';
 
-import { type Upload, chooseMotions, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOnCanvas, masksOf, motionsChosen, openAdvanced, openEmpty, openExport, openSample, reloadEmpty, rename, shown, square, test, undoAll, upload, withSamples, withoutStorage } from './support.js';
+import { type Upload, chooseMotions, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOnCanvas, masksOf, motionsChosen, openAdvanced, openEmpty, openExport, reloadEmpty, rename, shown, square, test, undoAll, upload, withoutStorage } from './support.js';
 
 /** Frames of a square that moves right and down. */
 function frames(count: number): Promise<Upload[]> {
@@ -80,9 +80,8 @@ test('two frames have objects in both, which are corrected, undone and kept like
     await expect(page.locator('#caption')).toHaveText('Frame 1');
     await expect(name).toHaveValue('Square');
     await page.locator('#swap').click();
-    await withSamples(page);
-    await openSample(page, 'Parallax');
-    await shown(page, 'first', '400 × 300');
+    await upload(page, files.slice(2));
+    await shown(page, 'first', 'f2.png');
     await upload(page, pair);
     await expect(name).toHaveValue('Square');
     await expect(undo(page)).toBeEnabled();

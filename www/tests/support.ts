@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
-import { type Browser, type CDPSession, type Locator, type Page, expect } from '@playwright/test';
+import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
 import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
@@ -133,7 +133,7 @@ export async function segmentClip(page: Page): Promise<void> {
  * Its status is that of work that goes on. Tests that are about a run call {@link segmentClip}.
  */
 export async function openSegmented(page: Page, files: Upload[], count = files.length): Promise<void> {
-  await openClip(page, [await projectOf(page.context().browser()!, files, count), ...files], { count });
+  await openClip(page, [await projectOf(page, files, count), ...files], { count });
   await clipDone(page);
 }
 
@@ -422,17 +422,15 @@ export async function savedProject(page: Page): Promise<Upload> {
   return { name, mimeType: '', buffer: bytes };
 }
 
-/** The project of a clip whose masks are of quality `fast` and not corrected. Another browser context makes it, where a test has changed nothing. */
-const projectOf = once(async (browser: Browser, files: Upload[], count: number): Promise<Upload> => {
-  const context = await browser.newContext();
-  try {
-    const page = await context.newPage();
-    await openClip(page, files, { count });
-    await segmentClip(page);
-    return await savedProject(page);
-  } finally {
-    await context.close();
-  }
+/** The project of a clip whose masks are of quality `fast` and not corrected. A page of its own makes it, which keeps nothing in the browser. */
+const projectOf = once(async (beside: Page, files: Upload[], count: number): Promise<Upload> => {
+  const page = await beside.context().newPage();
+  await withoutStorage(page);
+  await openClip(page, files, { count });
+  await segmentClip(page);
+  const project = await savedProject(page);
+  await page.close();
+  return project;
 }, (_, files) => keyOf(files, 'project'));
 
 /** Merges the mask of a row of the list, whose details are open, with another. */
