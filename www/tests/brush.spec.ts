@@ -1,15 +1,17 @@
-//! The circle and the trace of the brush are under the pointer, whatever is open and however it is enlarged.
+//! The circle and the trace of the brush are under the pointer, whatever is open and however it is enlarged; and it need not be waited for.
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, expect, openSegmented, test } from './support.js';
+import { clipFrames, differences, expect, labelsOnCanvas, openSegmented, said, test, unwatched } from './support.js';
+
+const [WIDTH, HEIGHT] = [120, 84];
 
 /** Differences that rounding to whole pixels of the screen explains. */
 const NEAR = 1.5;
 
 /** Opens and segments a clip before any pair was painted, and takes the brush. */
 async function clipWithBrush(page: Page): Promise<void> {
-  await openSegmented(page, await clipFrames(3, 120, 84));
+  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
   await page.locator('#tools [value=brush]').locator('..').click();
   await expect(page.locator('#tools [value=brush]')).toBeChecked();
   await page.locator('.layers').scrollIntoViewIfNeeded();
@@ -60,6 +62,51 @@ test('in a clip the circle and the trace are under the pointer, enlarged too', a
   await paintsUnderPointer(page);
   for (let k = 0; k < 5; k++) await page.locator('#zoom-in').click();
   await paintsUnderPointer(page);
+});
+
+test('keys wait for what draws as pointers do, and are not about the clip meanwhile', async ({ page }) => {
+  let come = (): void => undefined;
+  const coming = new Promise<void>((resolve) => (come = resolve));
+  await page.route('**/assets/brush-*.js', (route) => coming.then(() => route.continue()));
+  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  const rows = page.locator('#objects > li');
+  const found = await labelsOnCanvas(page);
+  await page.keyboard.press('1');
+  await page.keyboard.press('b');
+  await page.locator('.layers').focus();
+  // One that is given up, and another.
+  for (const key of ['ArrowUp', 'Space', 'ArrowRight', 'Escape', 'ArrowDown', 'ArrowRight', 'Space', 'ArrowRight', 'Backspace', 'ArrowRight', 'Space']) await page.keyboard.press(key);
+  await expect(page.locator('#caption')).toHaveText('Frame 0');
+  await expect(page.locator('#play')).toHaveAccessibleName('Play');
+  await expect(rows).toHaveCount(3);
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  come();
+  await said(page, /^Corrected/);
+  // From the centre in steps of the radius.
+  const drawn = await labelsOnCanvas(page);
+  const at = (x: number, y: number): number => drawn[y * WIDTH + x]!;
+  expect([76, 84, 92].map((x) => at(x, 42))).toEqual([1, 1, 1]);
+  expect([60, 64].map((x) => at(x, 30))).toEqual([0, 0]);
+  await expect(page.locator('#caption')).toHaveText('Frame 0');
+  await expect(page.locator('#undo')).toBeEnabled();
+  await page.locator('#undo').click();
+  await expect(page.locator('#undo')).toBeDisabled();
+});
+
+unwatched('without what draws there is a notice, and keys are about the clip; it is loaded once it is there', async ({ page }) => {
+  await page.route('**/assets/brush-*.js', (route) => route.abort());
+  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  const tool = page.locator('#tools [name=tool]:checked');
+  await page.keyboard.press('b');
+  await expect(page.locator('#notice-code')).toHaveText('not-loaded');
+  await expect(tool).toHaveValue('look');
+  await page.locator('.layers').focus();
+  await page.keyboard.press('ArrowRight');
+  await expect(page.locator('#caption')).toHaveText('Frame 1');
+  await page.unrouteAll();
+  await page.keyboard.press('b');
+  await expect(tool).toHaveValue('brush');
+  await expect(page.locator('#strokes .brush')).toBeAttached();
 });
 
 test.describe('on a phone', () => {

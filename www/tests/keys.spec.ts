@@ -2,7 +2,7 @@
 
 import type { Locator, Page } from '@playwright/test';
 
-import { expect, openSegmented, smallFrames, test } from './support.js';
+import { expect, openEmpty, openSegmented, smallFrames, test } from './support.js';
 
 const at = (page: Page): Locator => page.locator('#caption');
 
@@ -106,7 +106,7 @@ test('a click selects a name, a double click or F2 renames, Escape leaves it', a
 });
 
 test('the list of keys is in groups, and nothing in it overlaps', async ({ page }) => {
-  await page.goto('./');
+  await openEmpty(page);
   for (const [width, height] of [[1280, 720], [640, 360], [360, 640]] as const) {
     await page.setViewportSize({ width, height });
     await page.keyboard.press('?');

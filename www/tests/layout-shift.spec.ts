@@ -1,9 +1,9 @@
-//! Stepping through a clip does not shift the layout.
+//! Nothing that is done, found or said shifts the layout.
 
 import { type Page } from '@playwright/test';
+import { encodeColourPng } from 'veronese/codecs';
 
-import { video } from './video.js';
-import { done, expect, openEmpty, openSampleClip, shown, test, upload, withSmallSampleClip } from './support.js';
+import { type Upload, clipFrames, done, expect, openEmpty, openSampleClip, said, segmentClip, shown, smallFrames, test, upload, withSmallSampleClip } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -33,8 +33,8 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 
 test('three steps through a clip and choosing a tool shift nothing, on a desktop and on a phone', async ({ page }) => {
   await openEmpty(page, 'groups', 'best'); // a preview, then the result
-  await upload(page, [await video(page, 8, 'webm', 'vp8')]);
-  await expect(page.locator('#clip-name')).toContainText('clip.webm');
+  await upload(page, await smallFrames(8));
+  await expect(page.locator('#clip-name')).toContainText('8 frames');
   await done(page);
   for (const [from, width, height] of [[0, 1280, 860], [3, 390, 780]] as const) {
     await page.setViewportSize({ width, height });
@@ -43,7 +43,7 @@ test('three steps through a clip and choosing a tool shift nothing, on a desktop
     const shift = await watchShifts(page);
     for (let k = from + 1; k <= from + 3; k++) {
       await page.getByRole('button', { name: 'Step both forward' }).click();
-      await shown(page, 'first', `#${k},`);
+      await shown(page, 'first', `f0${k}.png`);
     }
     expect(await shift(), `${width} × ${height}`).toBeLessThanOrEqual(0.01);
     await page.evaluate(() => scrollTo(0, 0));
@@ -57,8 +57,82 @@ test('three steps through a clip and choosing a tool shift nothing, on a desktop
   }
 });
 
+/** Grey frames, 96 × 72. */
+function greyFrames(count: number, grey: (x: number, y: number, k: number) => number): Promise<Upload[]> {
+  return Promise.all(
+    Array.from({ length: count }, async (_, k) => {
+      const pixels = Uint8Array.from({ length: 3 * 96 * 72 }, (_, i) => grey(Math.floor(i / 3) % 96, Math.floor(i / 288), k));
+      return { name: `g${k}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(96, 72, pixels)) };
+    }),
+  );
+}
+
+const wave = (x: number, y: number): number => 128 + 50 * Math.sin(0.31 * x + 0.17 * y) + 40 * Math.cos(0.23 * x - 0.41 * y) + 20 * Math.sin(0.9 * x) * Math.cos(0.8 * y);
+
 test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+
+  test('bar and dock keep their height whatever they say, and all of it can be read', async ({ page }) => {
+    const heights = new Map<number, Set<string>>();
+    /** Looks at a sentence in windows of different widths. Returns in which it is not shown as a whole until it is tapped. */
+    const cut = async (sentence: string): Promise<number[]> => {
+      const cut: number[] = [];
+      for (const width of [360, 390, 1280]) {
+        await page.setViewportSize({ width, height: 844 });
+        const told = page.locator('.told', { has: page.locator(sentence) });
+        const look = (): Promise<{ height: string; whole: boolean; seen: boolean }> =>
+          told.evaluate((told) => {
+            const text = told.firstElementChild!;
+            const { left, bottom } = text.getBoundingClientRect();
+            const height = ['.masthead', '#clip-run'].map((part) => document.querySelector(part)!.getBoundingClientRect().height).join();
+            return { height, whole: text.scrollHeight <= text.clientHeight, seen: text.contains(document.elementFromPoint(left + 2, bottom - 4)) };
+          });
+        await told.scrollIntoViewIfNeeded();
+        const before = await look();
+        if (!before.whole) cut.push(width);
+await told.tap();
+        expect(await look(), `${sentence} ${width}`).toEqual({ height: before.height, whole: true, seen: true });
+        await page.locator('#motions-title').tap();
+        heights.set(width, (heights.get(width) ?? new Set()).add(before.height));
+      }
+      return cut;
+    };
+
+    await openEmpty(page);
+    await upload(page, await clipFrames(4, 96, 72));
+    await expect(page.locator('#clip-name')).toContainText('4 frames');
+    await done(page);
+    expect(await cut('#status')).toEqual([]);
+    await page.evaluate(() => {
+      for (const part of ['#settings [value=best]', '#cancel']) document.querySelector<HTMLElement>(part)!.click();
+    });
+    await expect(page.locator('#status')).toHaveText('Cancelled. The masks are from the last result.');
+    await cut('#status');
+    // The whole picture moves as one piece.
+    await upload(page, await greyFrames(3, (x, y, k) => wave(x + 2 * k, y)));
+    await expect(page.locator('#clip-name')).toContainText('g0-g2');
+    await done(page);
+    const why = 'The whole picture follows one motion, of up to 2\\.\\d pixels: nothing is seen to move by itself\\.';
+    await expect(page.locator('#status')).toHaveText(new RegExp(`^(No objects|One motion) found in [\\d.]+\\s+m?s\\. ${why}$`));
+    expect(await cut('#status')).toEqual([360, 390, 1280]);
+    await page.evaluate(() => (location.hash = '#motions=3'));
+    await expect(page.locator('#status')).toHaveText(/Of the 3 motions requested, only one could be told apart\.$/);
+    await cut('#status');
+    await segmentClip(page);
+    await said(page, new RegExp(`^No objects in 3 frames\\. ${why}$`));
+    await cut('#clip-status');
+    // What is around the middle moves.
+    await page.evaluate(() => (location.hash = '#motions=auto'));
+    await upload(page, await greyFrames(6, (x, y, k) => (Math.abs(x - 48) < 40 && Math.abs(y - 36) < 30 ? wave(3 * x, y) : wave(x + 3 * k, y + 2 * k))));
+    await expect(page.locator('#clip-name')).toContainText('g0-g5');
+    await segmentClip(page);
+    await said(page, /it is likely to be the ground\.$/);
+    expect(await cut('#clip-status')).toEqual([360, 390, 1280]);
+    await upload(page, [...(await greyFrames(1, wave)), ...(await clipFrames(1, 64, 48))]);
+    await expect(page.locator('#status')).toHaveText(/^The segmentation failed/);
+    await cut('#status');
+    for (const [width, seen] of heights) expect([...seen], String(width)).toHaveLength(1);
+  });
 
   test('the page keeps its layout while it opens, and while the clip is segmented', async ({ page }) => {
     await withSmallSampleClip(page);

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipFrames, done, expect, open, openSegmented, square, test, upload } from './support.js';
+import { type Upload, clipFrames, done, expect, open, openSegmented, test, upload, withSmallSampleClip } from './support.js';
 
 async function openSegmentedClip(page: Page, named: (k: number) => string = (k) => `f${k}.png`): Promise<Upload[]> {
   const files = (await clipFrames(4, 100, 70)).map((frame, k) => ({ ...frame, name: named(k) }));
@@ -66,9 +66,7 @@ test.describe('on a phone', () => {
 });
 
 test('a sample that is clicked is in view, on a laptop and on a phone', async ({ page }) => {
-  // Its frames are small and all the same: this is not about what is found.
-  const { buffer, mimeType } = await square('frame.png', 96, 54, 0, 0);
-  await page.route('**/samples/passing-cars/frames/*', (route) => route.fulfill({ contentType: mimeType, body: buffer }));
+  await withSmallSampleClip(page);
   await open(page, 'groups');
   const samples = page.locator('#samples button');
   for (const [width, height] of [[1280, 720], [390, 844]] as const) {
@@ -88,7 +86,7 @@ for (const hasTouch of [false, true]) {
   test.describe(`low and wide, ${hasTouch ? 'a phone on its side' : 'a page at 200 %'}`, () => {
     test.use({ viewport: { width: 640, height: 360 }, hasTouch, isMobile: hasTouch });
 
-    test('nothing lies over the picture, all is in reach, and what went wrong covers no button', async ({ page }) => {
+    test('nothing lies over the picture, all is in reach, and what went wrong covers no button', { tag: hasTouch ? [] : '@soak' }, async ({ page }) => {
       await openSegmentedClip(page);
       for (const tool of ['look', 'brush']) {
         await page.locator(`#tools [value=${tool}]`).check({ force: true });

@@ -10,6 +10,7 @@ import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette,
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
+import { SAMPLES } from '../src/frames/samples.js';
 import { test as unwatched } from './kept.js';
 
 export { expect, unwatched };
@@ -216,14 +217,34 @@ export const smallSampleClip = once(async (): Promise<Upload[]> => {
   return frames;
 });
 
-/** Gives the page the small one, for tests that are not about the masks of the other. */
+/** What the page has of the small clip: the frames around the first that is shown, in which both cars are whole. */
+export const SMALL_SAMPLE = { from: 26, count: 12, start: 6 } as const;
+
+/** Gives the page some frames of the small clip, for tests that are not about the masks of the other; the host page takes its own from all. */
 export async function withSmallSampleClip(page: Page): Promise<void> {
   const frames = await smallSampleClip();
-  await page.context().route('**/samples/passing-cars/frames/*', (route) => {
-    const { buffer, mimeType } = frames.find(({ name }) => route.request().url().endsWith(name))!;
-    return route.fulfill({ contentType: mimeType, body: buffer });
+  const { from, count, start } = SMALL_SAMPLE;
+  // Not by routes: with them the browser caches nothing.
+  const devtools = await page.context().newCDPSession(page);
+  devtools.on('Fetch.requestPaused', ({ requestId, request: { url } }) => {
+    const name = url.replace(/^.*\//, '');
+    const index = frames.findIndex((frame) => frame.name === name);
+    const { mimeType, buffer } = index < 0 ? shorterSample(name, count, start) : frames[index < count ? from + index : index]!;
+    const responseHeaders = [{ name: 'Content-Type', value: mimeType }];
+    // The page may have been left.
+    devtools.send('Fetch.fulfillRequest', { requestId, responseCode: 200, responseHeaders, body: buffer.toString('base64') }).catch(() => undefined);
   });
+  await devtools.send('Fetch.enable', { patterns: ['samples/passing-cars/frames/*', 'assets/index-*.js'].map((file) => ({ urlPattern: `*/${file}` })) });
 }
+
+/** The script of the page in which the sample that opens it has so many frames. */
+const shorterSample = once((name: string, count: number, start: number): Omit<Upload, 'name'> => {
+  const script = readFileSync(new URL(`../dist/assets/${name}`, import.meta.url), 'utf8');
+  const [sample] = SAMPLES;
+  const shorter = script.replace(new RegExp(`(${sample.title}.,)${sample.frames.length},${sample.start}\\b`), `$1${count},${start}`);
+  expect(shorter, 'the script names the sample').not.toBe(script);
+  return { mimeType: 'text/javascript', buffer: Buffer.from(shorter) };
+});
 
 /** Opens the page as a first visitor does, with the sample clip, and waits until it is segmented. */
 export async function openSampleClip(page: Page, settings = 'quality=fast'): Promise<void> {
@@ -246,26 +267,26 @@ export async function cancelWhen(page: Page, said = /./): Promise<void> {
 /** Keeps the open page from reading a frame until what this gives is called. */
 export async function holdBack(page: Page, name: string): Promise<() => Promise<void>> {
   await page.evaluate(holdReading, name);
-  return () => release(page);
+  return () => release(page, name);
 }
 
 /** {@link holdBack} of a page that is opened next. */
 export async function held(page: Page, name: string): Promise<() => Promise<void>> {
   await page.addInitScript(holdReading, name);
-  return () => release(page);
+  return () => release(page, name);
 }
 
 function holdReading(name: string): void {
   const decode = window.createImageBitmap;
-  const released = new Promise<void>((release) => Object.assign(window, { release }));
+  const released = new Promise<void>((release) => Object.assign(window, { [`release ${name}`]: release }));
   window.createImageBitmap = async (source: ImageBitmapSource, ...rest: []) => {
     if (source instanceof File && source.name === name) await released;
     return decode(source, ...rest);
   };
 }
 
-function release(page: Page): Promise<void> {
-  return page.evaluate(() => (window as unknown as { release(): void }).release());
+function release(page: Page, name: string): Promise<void> {
+  return page.evaluate((name) => (window as unknown as Record<string, () => void>)[`release ${name}`]!(), name);
 }
 
 /** Waits until the clip is segmented. */
@@ -278,27 +299,39 @@ export async function clipPhase(page: Page, name: string): Promise<void> {
   await phase(page, '#clip-run', name);
 }
 
-/** Waits until an element has this phase: the page tells at once, where `expect` asks twice a second. */
+/** Waits until an element has this phase. */
 async function phase(page: Page, selector: string, name: string): Promise<void> {
+  await until(page, selector, 'data-phase', new RegExp(`^${name}$`));
+  const notice = await page.locator('#notice').innerText().catch(() => '');
+  await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
+}
+
+/** Waits until the clip says this of what was done last. */
+export async function said(page: Page, sentence: RegExp): Promise<void> {
+  await until(page, '#clip-status', null, sentence);
+  await expect(page.locator('#clip-status')).toHaveText(sentence, { timeout: PATIENCE });
+}
+
+/** Waits until an attribute of an element, or its text, is so: the page tells at once, where `expect` asks once a second. */
+async function until(page: Page, selector: string, attribute: string | null, pattern: RegExp): Promise<void> {
   const reached = page.evaluate(
-    ([selector, name, timeout]) =>
+    ([selector, attribute, source, timeout]) =>
       new Promise<void>((resolve) => {
-        const element = document.querySelector<HTMLElement>(selector)!;
+        const element = document.querySelector(selector)!;
         const observer = new MutationObserver(() => setTimeout(look));
         const look = (): void => {
-          if (element.dataset.phase !== name) return;
+          const is = attribute === null ? element.textContent : (element.getAttribute(attribute) ?? '');
+          if (!new RegExp(source).test(is)) return;
           observer.disconnect();
           resolve();
         };
-        observer.observe(element, { attributes: true, attributeFilter: ['data-phase'] });
+        observer.observe(element, attribute === null ? { childList: true, characterData: true, subtree: true } : { attributeFilter: [attribute] });
         look();
         setTimeout(resolve, timeout);
       }),
-    [selector, name, PATIENCE] as const,
+    [selector, attribute, pattern.source, PATIENCE] as const,
   );
   await reached.catch(() => undefined); // another page has taken its place
-  const notice = await page.locator('#notice').innerText().catch(() => '');
-  await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
 }
 
 /** Whether the page can be left without a question: nothing is still to be written. */

@@ -24,26 +24,19 @@ async function press(page: Page, ...paths: Path[]): Promise<(type: 'touchStart' 
   };
 }
 
-/** Puts fingers down, moves and lifts them. */
+/** Puts fingers down, moves and lifts them, and waits until the page scrolls no more: a finger that is lifted may leave it scrolling. */
 async function fingers(page: Page, ...paths: Path[]): Promise<void> {
+  const scrolling = await page.evaluateHandle(() => {
+    const scrolling = { now: false };
+    document.addEventListener('scroll', () => (scrolling.now = true), { once: true });
+    document.addEventListener('scrollend', () => (scrolling.now = false), { once: true });
+    return scrolling;
+  });
   const then = await press(page, ...paths);
   await then('touchEnd');
-  // A finger that is lifted may leave the page scrolling.
-  await page.evaluate(
-    () =>
-      new Promise<void>((resolve) => {
-        let [before, still] = ['', 0];
-        const look = (): void => {
-          const { x, y, width } = document.querySelector('#frame')!.getBoundingClientRect();
-          const now = [scrollY, visualViewport!.scale, x, y, width].join();
-          still = now === before ? still + 1 : 0;
-          before = now;
-          if (still < 5) requestAnimationFrame(look);
-          else resolve();
-        };
-        look();
-      }),
-  );
+  // Events of scrolling come with the next frame.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  await expect.poll(() => scrolling.evaluate(({ now }) => now)).toBe(false);
 }
 
 interface Seen {

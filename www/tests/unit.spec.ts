@@ -18,6 +18,7 @@ import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { TimeLeft } from '../src/session/clip/time-left.js';
 import { painted, promptOf, refined } from '../src/session/clip/drawing.js';
+import { Pace } from '../src/session/playing.js';
 import { exactly } from '../src/state/exact.js';
 import { withCorrection } from '../src/state/correction.js';
 import { fromSpan, withRun } from '../src/state/spans.js';
@@ -322,6 +323,29 @@ test('the time left is that of the frames done last: drafts beside the first one
   expect(left).toBe(4 * 14);
   for (let done = 9; done <= 20; done++) left = time.at(done, 29_000 + 1000 * (done - 8));
   expect(left).toBe(2);
+});
+
+test('a clip is played as fast as it was taken, and all of it if frames come late; more slowly; and faster, without those whose time is over', () => {
+  /** Which frames are shown, and when, if each takes so long to read. */
+  const played = (times: Float64Array | null, speed: number, reading: number): number[][] => {
+    const [count, shown] = [6, [] as number[][]];
+    const pace = new Pace({ times, count }, 0);
+    for (let index = 0, now = 0; index < count; ) {
+      now += reading;
+      shown.push([index, now]);
+      const { next, wait } = pace.after(index, speed, now);
+      now += Math.max(0, wait);
+      index = next;
+    }
+    return shown;
+  };
+  const frames = [0, 1, 2, 3, 4, 5];
+  for (const speed of [0.25, 1, 2]) expect(played(null, speed, 10)).toEqual(frames.map((k) => [k, 10 + (k * 40) / speed]));
+  // Of a video each frame has its own time.
+  const times = Float64Array.of(0, 0.125, 0.25, 0.5, 0.625, 0.75);
+  for (const speed of [0.25, 1, 2]) expect(played(times, speed, 10)).toEqual(frames.map((k) => [k, 10 + (1000 * times[k]!) / speed]));
+  expect(played(null, 1, 60)).toEqual(frames.map((k) => [k, 60 * (k + 1)]));
+  expect(played(null, 2, 60).map(([index]) => index)).toEqual([0, 2, 5]);
 });
 
 test('pixels whose labels differ are counted run by run', () => {

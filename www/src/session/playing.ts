@@ -28,19 +28,15 @@ export class Playing {
     this.#store.set({ playing: !playing });
     if (playing || timeline === null) return;
     const { clip, first } = timeline;
-    let next = first >= clip.count - 1 ? 0 : first + 1;
-    let end = performance.now(); // of the time of the frame before
-    while (this.#store.get().playing && next < clip.count) {
-      await this.#frames.goTo(next);
+    const pace = new Pace(clip, performance.now());
+    let index = first >= clip.count - 1 ? 0 : first + 1;
+    while (this.#store.get().playing && index < clip.count) {
+      await this.#frames.goTo(index);
       const { timeline: now, speed } = this.#store.get();
-      if (now?.clip !== clip || now.first !== next) break; // the end of the pair, or gone elsewhere
-      const duration = (): number => durationOf(clip, next) / speed;
-      end += duration();
-      next += 1;
-      // Above the speed at which it was taken, frames whose time is over are left out. Else all are shown, if need be more slowly.
-      if (speed > 1) for (; next < clip.count - 1 && end + duration() < performance.now(); next++) end += duration();
-      else end = Math.max(end, performance.now());
-      await new Promise((resolve) => setTimeout(resolve, end - performance.now()));
+      if (now?.clip !== clip || now.first !== index) break; // the end of the pair, or gone elsewhere
+      const { next, wait } = pace.after(index, speed, performance.now());
+      await new Promise((resolve) => setTimeout(resolve, wait));
+      index = next;
       // What was opened meanwhile stays where it is.
       if (this.#store.get().timeline?.clip !== clip) break;
     }
@@ -76,9 +72,33 @@ export class Playing {
   }
 }
 
-/** How long a frame is shown when the clip is played, milliseconds. */
-function durationOf({ times }: Clip, index: number): number {
-  if (times === null) return 1000 / FRAMES_PER_SECOND;
-  const [now, next] = [times[index]!, times[index + 1]];
-  return next === undefined ? 0 : 1000 * (next - now);
+/** Which frames of a clip are shown when it is played, and when. */
+export class Pace {
+  /** Of the time of the frame before, milliseconds. */
+  #end: number;
+
+  constructor(
+    readonly clip: Pick<Clip, 'times' | 'count'>,
+    begin: number,
+  ) {
+    this.#end = begin;
+  }
+
+  /** What comes after a frame that is shown from now on, and in how many milliseconds. */
+  after(index: number, speed: number, now: number): { readonly next: number; readonly wait: number } {
+    const duration = (of: number): number => this.#duration(of) / speed;
+    this.#end += duration(index);
+    let next = index + 1;
+    // Above the speed at which it was taken, frames whose time is over are left out. Else all are shown, if need be more slowly.
+    if (speed > 1) for (; next < this.clip.count - 1 && this.#end + duration(next) < now; next++) this.#end += duration(next);
+    else this.#end = Math.max(this.#end, now);
+    return { next, wait: this.#end - now };
+  }
+
+  #duration(index: number): number {
+    const { times } = this.clip;
+    if (times === null) return 1000 / FRAMES_PER_SECOND;
+    const [now, next] = [times[index]!, times[index + 1]];
+    return next === undefined ? 0 : 1000 * (next - now);
+  }
 }

@@ -127,11 +127,11 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   document.addEventListener('keydown', (event) => {
     const { key, target } = event;
     // Wherever the focus is, these are first about what is being drawn.
-    const takesBack = brush.now?.painting && !isDialogueOpen() && (key === 'Escape' || key === 'Backspace') && !takesText(target);
+    const takesBack = brush.painting && !isDialogueOpen() && (key === 'Escape' || key === 'Backspace') && !takesText(target);
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
     // After a press on the picture these are about the clip, unless they go on with what was begun by them.
-    const ofClip = (key === ' ' || key.startsWith('Arrow')) && !brush.now?.painting && !isReached(target, '.layers');
-    if (plain && ((target === layers && !ofClip) || takesBack) && brush.now?.key(event)) event.preventDefault();
+    const ofClip = (key === ' ' || key.startsWith('Arrow')) && !brush.painting && !isReached(target, '.layers');
+    if (plain && ((target === layers && !ofClip) || takesBack) && brush.key(event)) event.preventDefault();
   });
   // A long press on a touch screen opens a menu otherwise, and so does the right button.
   layers.addEventListener('contextmenu', (event) => {
