@@ -1,6 +1,6 @@
 //! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
 
-import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
+import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, said, test } from './support.js';
 
 test('objects are selected and deleted, corrected frames are found, and a correction spreads where it is told to', async ({ page }) => {
   await openSegmented(page, await clipFrames(6));
@@ -26,7 +26,7 @@ test('objects are selected and deleted, corrected frames are found, and a correc
   await follow.selectOption('forward');
   await page.keyboard.press('2');
   await drag(page, [0.3, 0.42], [0.4, 0.42]);
-  await expect(status).toHaveText(/^Corrected: the masks of (2|3|4) frames have changed\.$/);
+  await said(page, /^Corrected: the masks of (2|3|4) frames have changed\.$/);
 
   await goTo(page, 5);
   await page.keyboard.press('Shift+C');

@@ -3,7 +3,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Place, clipFrames, differences, drag, enter, expect, goTo, kept, labelsOnCanvas, masksOf, openSegmented, reopen, test } from './support.js';
+import { type Place, clipFrames, differences, drag, enter, expect, goTo, kept, labelsOnCanvas, masksOf, openSegmented, reopen, said, test } from './support.js';
 
 const [WIDTH, HEIGHT] = [100, 70];
 /** Pixels of the picture, as shares of it. */
@@ -25,7 +25,7 @@ test('a correction tells how far it has spread, and Escape takes it back, and no
   const [status, undo] = [page.locator('#clip-status'), page.locator('#undo')];
   await page.locator('#objects > [data-mask="2"] .thumbnail').click();
   await page.keyboard.press('Delete');
-  await expect(status).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   const before = await masksOf(page, [5, 3]);
   await selectNew(page);
 
@@ -52,7 +52,7 @@ test('a correction tells how far it has spread, and Escape takes it back, and no
     Object.assign(window, { told });
   });
   await drag(page, at(X - 6, Y - 4), at(X + 3, Y + 4));
-  await expect(status).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   const told = await page.evaluate(() => (window as unknown as { told: string[] }).told);
   const counts = told.map((text) => Number(/^Carrying your correction to other frames… (\d+) of 6 frames(?:, about \d+\u00a0s left)? false$/.exec(text)?.[1]));
   expect(counts).toEqual(counts.toSorted((one, other) => one - other));
@@ -78,7 +78,7 @@ test('corrections of others leave objects with a name as they are; a lock is set
   // A new object over its edge.
   await selectNew(page);
   await drag(page, at(X, Y), at(X + 22, Y));
-  await expect(status).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   const masks = await labelsOnCanvas(page);
   expect([masks[pixelAt(X + 3, Y)], masks[pixelAt(X + 20, Y)]]).toEqual([1, 3]);
   expect(differences(await disc(), found)).toBe(0);
@@ -90,7 +90,7 @@ test('corrections of others leave objects with a name as they are; a lock is set
   await page.keyboard.press('1');
   await page.keyboard.press('e');
   await drag(page, at(X - 6, Y - 5), at(X + 3, Y - 5));
-  await expect(status).toHaveText(/^Corrected: the masks of (\d+|one) frames? ha(ve|s) changed/);
+  await said(page, /^Corrected: the masks of (\d+|one) frames? ha(ve|s) changed/);
 
   await page.keyboard.press('v');
   await lock.focus();
