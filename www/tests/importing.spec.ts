@@ -20,7 +20,7 @@ function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
 }
 
 test('a file of annotations corrects the frames that it is of, in one step that can be undone; masks that are dropped are no frames', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(4));
   const found = await masksOf(page, [2, 3, 1]);
   // Objects 1 and 2 are gone in frames 2 and 3; there is a third one, and a frame that the clip does not have.
   const nothing = new Uint8Array(SIZE.width * SIZE.height);
@@ -74,7 +74,7 @@ test('a file of annotations corrects the frames that it is of, in one step that 
 });
 
 test('boxes without masks point to objects; what is left out is said', { tag: '@soak' }, async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(4));
   const categories = [{ id: 1, name: 'Disc' }];
   const images = ['f01', 'f99'].map((name, k) => ({ id: k + 1, file_name: `${name}.png`, ...SIZE }));
   // The disc of frame 1, a box of a frame that is not there, and an annotation that says nothing.

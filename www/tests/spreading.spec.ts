@@ -10,23 +10,23 @@ const [WIDTH, HEIGHT] = [100, 70];
 const at = (x: number, y: number): Place => [x / WIDTH, y / HEIGHT];
 const pixelAt = (x: number, y: number): number => y * WIDTH + x;
 
-/** The centre of the disc of `clipFrames` in frame 3. */
-const [X, Y] = [32, 28];
+/** The centre of the disc of `clipFrames` in frame 2. */
+const [X, Y] = [28, 27];
 
-/** A new object, to be painted with a brush of 3 pixels in frame 3. */
+/** A new object, to be painted with a brush of 3 pixels in frame 2. */
 async function selectNew(page: Page): Promise<void> {
-  await goTo(page, 3);
+  await goTo(page, 2);
   await page.getByRole('button', { name: 'New object' }).click();
   await page.locator('#tools [name=radius]').fill('3');
 }
 
 test('a correction tells how far it has spread, and Escape takes it back, and nothing else', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(4));
   const [status, undo] = [page.locator('#clip-status'), page.locator('#undo')];
   await page.locator('#objects > [data-mask="2"] .thumbnail').click();
   await page.keyboard.press('Delete');
   await said(page, /^Corrected/);
-  const before = await masksOf(page, [5, 3]);
+  const before = await masksOf(page, [0, 2]);
   await selectNew(page);
 
   // In one task with the first change.
@@ -41,7 +41,7 @@ test('a correction tells how far it has spread, and Escape takes it back, and no
   await drag(page, at(X - 6, Y - 4), at(X + 3, Y + 4));
   await expect(status).toHaveText('Undone.');
   await expect(page.locator('#clip-cancel')).toBeHidden();
-  expect((await masksOf(page, [5, 3])).map((labels, k) => differences(labels, before[k]!))).toEqual([0, 0]);
+  expect((await masksOf(page, [0, 2])).map((labels, k) => differences(labels, before[k]!))).toEqual([0, 0]);
 
   await page.evaluate(() => {
     const told: string[] = [];
@@ -54,9 +54,9 @@ test('a correction tells how far it has spread, and Escape takes it back, and no
   await drag(page, at(X - 6, Y - 4), at(X + 3, Y + 4));
   await said(page, /^Corrected/);
   const told = await page.evaluate(() => (window as unknown as { told: string[] }).told);
-  const counts = told.map((text) => Number(/^Carrying your correction to other frames… (\d+) of 6 frames(?:, about \d+\u00a0s left)? false$/.exec(text)?.[1]));
+  const counts = told.map((text) => Number(/^Carrying your correction to other frames… (\d+) of 4 frames(?:, about \d+\u00a0s left)? false$/.exec(text)?.[1]));
   expect(counts).toEqual(counts.toSorted((one, other) => one - other));
-  expect(counts.at(-1)).toBe(6);
+  expect(counts.at(-1)).toBe(4);
   expect((await labelsOnCanvas(page))[pixelAt(X, Y)]).toBe(3);
   // The one before is a step of its own.
   await undo.click();
@@ -65,10 +65,10 @@ test('a correction tells how far it has spread, and Escape takes it back, and no
 });
 
 test('corrections of others leave objects with a name as they are; a lock is set with the keyboard, undone, and kept', async ({ page }) => {
-  const files = await clipFrames(6);
+  const files = await clipFrames(4);
   await openSegmented(page, files);
   const [status, notice] = [page.locator('#clip-status'), page.locator('#notice-sentence')];
-  const disc = async (): Promise<Uint8Array> => (await masksOf(page, [5]))[0]!.map((label) => Number(label === 1));
+  const disc = async (): Promise<Uint8Array> => (await masksOf(page, [3]))[0]!.map((label) => Number(label === 1));
   const found = await disc();
   const row = page.locator('#objects > [data-mask="1"]');
   const lock = row.locator('[data-action=lock]');
@@ -104,7 +104,7 @@ test('corrections of others leave objects with a name as they are; a lock is set
   await expect(lock).toHaveAttribute('aria-pressed', 'true');
   await kept(page);
   await reopen(page, files);
-  await expect(status).toHaveText('Continued: 3 objects in 6 frames.');
+  await expect(status).toHaveText('Continued: 3 objects in 4 frames.');
   await expect(lock).toHaveAttribute('aria-pressed', 'true');
   await lock.click();
   await expect(status).toHaveText('Unlocked.');
