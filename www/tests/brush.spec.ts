@@ -4,14 +4,14 @@ import { type Page } from '@playwright/test';
 
 import { clipFrames, differences, expect, labelsOnCanvas, openSegmented, said, test, unwatched } from './support.js';
 
-const [WIDTH, HEIGHT] = [120, 84];
+const WIDTH = 100;
 
 /** Differences that rounding to whole pixels of the screen explains. */
 const NEAR = 1.5;
 
 /** Opens and segments a clip before any pair was painted, and takes the brush. */
 async function clipWithBrush(page: Page): Promise<void> {
-  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(4));
   await page.locator('#tools [value=brush]').locator('..').click();
   await expect(page.locator('#tools [value=brush]')).toBeChecked();
   await page.locator('.layers').scrollIntoViewIfNeeded();
@@ -68,14 +68,14 @@ test('keys wait for what draws as pointers do, and are not about the clip meanwh
   let come = (): void => undefined;
   const coming = new Promise<void>((resolve) => (come = resolve));
   await page.route('**/assets/brush-*.js', (route) => coming.then(() => route.continue()));
-  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(4));
   const rows = page.locator('#objects > li');
   const found = await labelsOnCanvas(page);
   await page.keyboard.press('1');
   await page.keyboard.press('b');
   await page.locator('.layers').focus();
   // One that is given up, and another.
-  for (const key of ['ArrowUp', 'Space', 'ArrowRight', 'Escape', 'ArrowDown', 'ArrowRight', 'Space', 'ArrowRight', 'Backspace', 'ArrowRight', 'Space']) await page.keyboard.press(key);
+  for (const key of ['ArrowUp', 'Space', 'ArrowRight', 'Escape', 'ArrowDown', 'Space', 'ArrowRight', 'Backspace', 'ArrowRight', 'Space']) await page.keyboard.press(key);
   await expect(page.locator('#caption')).toHaveText('Frame 0');
   await expect(page.locator('#play')).toHaveAccessibleName('Play');
   await expect(rows).toHaveCount(3);
@@ -85,8 +85,8 @@ test('keys wait for what draws as pointers do, and are not about the clip meanwh
   // From the centre in steps of the radius.
   const drawn = await labelsOnCanvas(page);
   const at = (x: number, y: number): number => drawn[y * WIDTH + x]!;
-  expect([76, 84, 92].map((x) => at(x, 42))).toEqual([1, 1, 1]);
-  expect([60, 64].map((x) => at(x, 30))).toEqual([0, 0]);
+  expect([58, 66, 74].map((x) => at(x, 35))).toEqual([1, 1, 1]);
+  expect([50, 54].map((x) => at(x, 23))).toEqual([0, 0]);
   await expect(page.locator('#caption')).toHaveText('Frame 0');
   await expect(page.locator('#undo')).toBeEnabled();
   await page.locator('#undo').click();
@@ -95,7 +95,7 @@ test('keys wait for what draws as pointers do, and are not about the clip meanwh
 
 unwatched('without what draws there is a notice, and keys are about the clip; it is loaded once it is there', async ({ page }) => {
   await page.route('**/assets/brush-*.js', (route) => route.abort());
-  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(4));
   const tool = page.locator('#tools [name=tool]:checked');
   await page.keyboard.press('b');
   await expect(page.locator('#notice-code')).toHaveText('not-loaded');

@@ -1,11 +1,11 @@
 //! A clip of one's own is segmented by itself, and what is drawn with can be seen.
 
-import { clipDone, expect, holdSamples, smallFrames, test, upload } from './support.js';
+import { clipDone, expect, holdSamples, clipFrames, test, upload } from './support.js';
 
 test('a clip of one\'s own is segmented when it is opened; a setting keeps it off, also at the next visit', async ({ page }) => {
   await holdSamples(page);
   await page.goto('./#sample=parallax&quality=fast');
-  await upload(page, await smallFrames(4));
+  await upload(page, await clipFrames(4));
   await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 4 frames.');
   await expect(page.locator('#caption')).toHaveText('Frame 0');
@@ -14,7 +14,7 @@ test('a clip of one\'s own is segmented when it is opened; a setting keeps it of
   await automatic.uncheck();
   await page.reload();
   await expect(automatic).not.toBeChecked();
-  await upload(page, (await smallFrames(6)).slice(1));
+  await upload(page, (await clipFrames(6)).slice(1));
   await expect(page.locator('#clip-name')).toContainText('5 frames');
   await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
@@ -27,7 +27,7 @@ test('a clip of one\'s own is segmented when it is opened; a setting keeps it of
 test('what is selected is named beside the pointer, and painting with the background says what it does', async ({ page }) => {
   await holdSamples(page);
   await page.goto('./#sample=parallax&quality=fast');
-  await upload(page, await smallFrames(4));
+  await upload(page, await clipFrames(4));
   await clipDone(page);
   const [cursor, help] = [page.locator('#cursor'), page.locator('#tool-help')];
   // It rests there from now on.

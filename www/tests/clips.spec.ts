@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
 import { BIT, BITS, WIDTH, video } from './video.js';
-import { type Upload, done, expect, holdBack, open, openEmpty, openSample, pixelsOf, smallFrames, test, upload, withSamples } from './support.js';
+import { type Upload, done, expect, holdBack, open, openEmpty, openSample, pixelsOf, clipFrames, test, upload, withSamples } from './support.js';
 
 /** The number in the frame on screen. */
 async function numberShown(page: Page): Promise<number> {
@@ -82,7 +82,7 @@ test('videos give exactly the requested frames', async ({ page }) => {
 
 test('keys and a button change how fast a clip is played, which opens nothing', async ({ page }) => {
   await openEmpty(page);
-  await upload(page, await smallFrames(6));
+  await upload(page, await clipFrames(6));
   await expect(page.locator('#clip-name')).toContainText('6 frames');
   await done(page);
   const speed = page.getByRole('button', { name: 'Speed' });

@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { PALETTE } from '../src/drawing/palette.js';
 import { type Place, clipFrames, differences, drag, expect, labelsOnCanvas, openSegmented, said, test } from './support.js';
 
-const [WIDTH, HEIGHT] = [120, 84];
+const [WIDTH, HEIGHT] = [100, 70];
 
 const row = (page: Page, id: number) => page.locator(`#objects > [data-mask="${id}"]`);
 
@@ -20,36 +20,36 @@ async function stroke(page: Page, y: number, ends: readonly [number, number]): P
 }
 
 test('masks are corrected with brush, eraser and the list', async ({ page }) => {
-  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(4));
   const rows = page.locator('#objects > li');
   await expect(rows).toHaveCount(3);
   const undo = page.locator('#undo');
 
   await test.step('strokes of brush and eraser, with the pointer or the keyboard, change a mask, and undo removes them', async () => {
     const found = await labelsOnCanvas(page);
-    // With the keyboard, from the centre: 2 steps of 8 pixels (the radius) to the right, then 3 more.
+    // With the keyboard, from the centre: a step of 8 pixels (the radius) to the right, then 2 more.
     await page.keyboard.press('1');
     await page.keyboard.press('p');
     await page.locator('.layers').focus();
-    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowRight');
+    await page.keyboard.press('ArrowRight');
     await page.keyboard.press('Space');
-    for (let k = 0; k < 3; k++) await page.keyboard.press('ArrowRight');
+    for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowRight');
     await page.keyboard.press('Space');
     await said(page, /^Corrected/);
     const drawn = await labelsOnCanvas(page);
-    expect(span(drawn, 42, [76, 100])).toEqual(new Set([1]));
+    expect(span(drawn, 35, [58, 74])).toEqual(new Set([1]));
     expect(differences(drawn, found)).toBeGreaterThan(0);
     await undo.click();
     await expect(undo).toBeDisabled();
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
 
     // With the pointer.
-    expect(span(found, 20, [60, 80])).toEqual(new Set([0]));
-    await stroke(page, 20, [60, 80]);
+    expect(span(found, 16, [50, 66])).toEqual(new Set([0]));
+    await stroke(page, 16, [50, 66]);
     const painted = await labelsOnCanvas(page);
-    expect(span(painted, 20, [60, 80])).toEqual(new Set([1]));
+    expect(span(painted, 16, [50, 66])).toEqual(new Set([1]));
     // Far away almost nothing has changed.
-    expect(differences(painted.slice(60 * WIDTH), found.slice(60 * WIDTH))).toBeLessThan(20);
+    expect(differences(painted.slice(58 * WIDTH), found.slice(58 * WIDTH))).toBeLessThan(20);
 
     await undo.click();
     await said(page, /^Undone in/);
@@ -62,10 +62,10 @@ test('masks are corrected with brush, eraser and the list', async ({ page }) => 
     await expect(undo).toBeDisabled();
 
     // The eraser removes pixels.
-    expect(span(found, 30, [20, 28])).toEqual(new Set([1]));
+    expect(span(found, 25, [16, 24])).toEqual(new Set([1]));
     await page.locator('#tools [value=eraser]').check();
-    await stroke(page, 30, [20, 28]);
-    expect(span(await labelsOnCanvas(page), 30, [20, 28])).not.toContain(1);
+    await stroke(page, 25, [16, 24]);
+    expect(span(await labelsOnCanvas(page), 25, [16, 24])).not.toContain(1);
     await undo.click();
     expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   });

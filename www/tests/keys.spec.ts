@@ -2,12 +2,12 @@
 
 import type { Locator, Page } from '@playwright/test';
 
-import { expect, openEmpty, openSegmented, smallFrames, test } from './support.js';
+import { expect, openEmpty, openSegmented, clipFrames, test } from './support.js';
 
 const at = (page: Page): Locator => page.locator('#caption');
 
 test('arrows step frames, with Shift ten; Space plays; B, E, V and brackets are about tools, which arrows never change', async ({ page }) => {
-  await openSegmented(page, await smallFrames(12));
+  await openSegmented(page, await clipFrames(12));
   const tool = page.locator('#tools [name=tool]:checked');
   await page.getByRole('slider', { name: 'Current frame' }).press('Home');
   await page.keyboard.press('ArrowRight');
@@ -75,7 +75,7 @@ test('arrows step frames, with Shift ten; Space plays; B, E, V and brackets are 
 });
 
 test('a click selects a name, a double click or F2 renames, Escape leaves it', async ({ page }) => {
-  await openSegmented(page, await smallFrames(4));
+  await openSegmented(page, await clipFrames(4));
   const rows = page.locator('#objects > li');
   const name = rows.nth(1).locator('.motion-name');
   await name.click({ position: { x: 12, y: 10 } });

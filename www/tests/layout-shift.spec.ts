@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeColourPng } from 'veronese/codecs';
 
-import { type Upload, clipFrames, done, expect, openEmpty, openSampleClip, said, segmentClip, shown, smallFrames, test, upload, withSmallSampleClip } from './support.js';
+import { type Upload, clipFrames, done, expect, openEmpty, openSampleClip, said, segmentClip, shown, test, upload, withSmallSampleClip } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -33,7 +33,7 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 
 test('three steps through a clip and choosing a tool shift nothing, on a desktop and on a phone', async ({ page }) => {
   await openEmpty(page, 'groups', 'best'); // a preview, then the result
-  await upload(page, await smallFrames(8));
+  await upload(page, await clipFrames(8));
   await expect(page.locator('#clip-name')).toContainText('8 frames');
   await done(page);
   for (const [from, width, height] of [[0, 1280, 860], [3, 390, 780]] as const) {

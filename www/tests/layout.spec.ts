@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { type Upload, clipFrames, done, expect, open, openSegmented, test, upload, withSmallSampleClip } from './support.js';
 
 async function openSegmentedClip(page: Page, named: (k: number) => string = (k) => `f${k}.png`): Promise<Upload[]> {
-  const files = (await clipFrames(4, 100, 70)).map((frame, k) => ({ ...frame, name: named(k) }));
+  const files = (await clipFrames(4)).map((frame, k) => ({ ...frame, name: named(k) }));
   await openSegmented(page, files);
   await page.evaluate(() => scrollTo(0, 0));
   return files;

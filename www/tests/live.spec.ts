@@ -55,7 +55,7 @@ async function withCamera(page: Page, present: boolean): Promise<void> {
 }
 
 test('a clip stays open if there is no camera; an object before one keeps its colour', async ({ page }) => {
-  await openClip(page, await clipFrames(4, 100, 70));
+  await openClip(page, await clipFrames(4));
   await withCamera(page, false);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#notice-code')).toHaveText('no-camera');

@@ -1,10 +1,10 @@
 //! Long work says how far it is, also in a tab that nobody looks at.
 
-import { cancelWhen, clipDone, clipPhase, drag, expect, hide, holdBack, openClip, openSegmented, smallFrames, test } from './support.js';
+import { cancelWhen, clipDone, clipPhase, drag, expect, hide, holdBack, openClip, openSegmented, clipFrames, test } from './support.js';
 
 test('the title of the tab says how far a clip is and, in the background, that it is done', async ({ page }) => {
   const own = 'Veronese: masks of what moves';
-  await openClip(page, await smallFrames(8));
+  await openClip(page, await clipFrames(8));
   await expect(page).toHaveTitle(own);
   const titles = await page.evaluateHandle(() => {
     const titles: string[] = [];
@@ -32,7 +32,7 @@ test('the title of the tab says how far a clip is and, in the background, that i
 
 test('a correction says how far it is and how long it takes, goes on in the background, and can be cancelled', async ({ page }) => {
   const own = 'Veronese: masks of what moves';
-  await openSegmented(page, await smallFrames(12));
+  await openSegmented(page, await clipFrames(12));
   await page.locator('#objects li').nth(1).locator('.motion-head').click();
   await page.locator('#tools [value=brush]').check();
   await expect(page.locator('#strokes .brush')).toBeAttached();

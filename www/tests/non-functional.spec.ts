@@ -7,7 +7,7 @@ import { gzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, axe, clipDone, done, drag, expect, kept, labelsOnCanvas, openEmpty, openExport, openSample, openSegmented, shown, smallFrames, square, test, unwatched, upload, withSamples } from './support.js';
+import { PAIR, axe, clipDone, done, drag, expect, kept, labelsOnCanvas, openEmpty, openExport, openSample, openSegmented, shown, clipFrames, square, test, unwatched, upload, withSamples } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
@@ -47,7 +47,7 @@ test('axe finds nothing serious, light and dark, and single-key shortcuts can be
 });
 
 test('axe finds nothing serious with a clip, whatever is done with it', async ({ page }) => {
-  await openSegmented(page, await smallFrames(4));
+  await openSegmented(page, await clipFrames(4));
   await kept(page);
   await test.step('one frame is accepted, both objects are selected, one of them is locked', async () => {
     await page.getByRole('button', { name: 'Lock Object 1' }).click();

@@ -644,8 +644,6 @@ const clipFrame = once(async (k: number, width: number, height: number): Promise
   return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
 });
 
-export const smallFrames = (count: number): Promise<Upload[]> => clipFrames(count);
-
 /** The serious and critical violations that axe finds, of some rules or of all. */
 export async function axe(page: Page, rules?: string[]): Promise<string[]> {
   const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');

@@ -170,7 +170,7 @@ test('fingers zoom, pan, scroll and draw, and strokes stay whoever ends them', a
 });
 
 test('a finger finds both handles of the timeline, and drags these; it selects several objects', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6, 100, 70));
+  await openSegmented(page, await clipFrames(6));
   await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
   const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
   const track = (await page.locator('#track').boundingBox())!;

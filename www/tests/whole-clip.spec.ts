@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipDone, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, holdBack, kept, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, said, savedClip, segmentClip, smallFrames, square, test, upload, withProcessors, withSamples } from './support.js';
+import { type Upload, clipDone, clipInNode, clipPhase, differences, done, drag, enter, expect, goTo, hide, holdBack, kept, labelsOnCanvas, leaves, masksOf, mergeWith, openClip, openEmpty, openSample, openSegmented, reopen, said, savedClip, segmentClip, clipFrames, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** A stroke over the disc in frame 3, a pixel under it, and a brush for it. */
 const OVER_DISC = [[0.26, 0.34], [0.36, 0.45]] as const;
@@ -20,7 +20,7 @@ async function shows(page: Page, index: number): Promise<void> {
 }
 
 test('the objects of a clip keep number, name and colour in all frames, also when its first run is cancelled at once', async ({ page }) => {
-  const files = await smallFrames(6);
+  const files = await clipFrames(6);
   const found = await clipInNode(files);
   // Three workers find the same.
   await withProcessors(page, 4);
@@ -128,7 +128,7 @@ test('a video is segmented as a whole, and gives exactly the requested frames me
 });
 
 test('a cancelled clip shows the masks of what is done, takes corrections, and continues from there after a reload', async ({ page }) => {
-  const files = await smallFrames(8);
+  const files = await clipFrames(8);
   // More workers would have begun all frames.
   await withProcessors(page, 2);
   await openClip(page, files);
@@ -173,7 +173,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
 });
 
 test('only the frames from the in point to the out point are segmented and exported', async ({ page }) => {
-  const files = await smallFrames(7);
+  const files = await clipFrames(7);
   await openClip(page, files);
   const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
   await expect(to).toHaveAttribute('aria-valuetext', 'Frame 6');
@@ -228,7 +228,7 @@ test('only the frames from the in point to the out point are segmented and expor
 });
 
 test('frames of another size and frames that are all the same are reported', async ({ page }) => {
-  const files = await smallFrames(4);
+  const files = await clipFrames(4);
   await openClip(page, [...files.slice(0, 3), await square('f03.png', 120, 90, 0, 0)]);
   // It is told at once.
   await expect(page.locator('#notice-sentence')).toHaveText('“f03.png” is 120 × 90, the first frame 100 × 70: only what is before it can be segmented as a clip.');
@@ -254,7 +254,7 @@ test('frames of another size and frames that are all the same are reported', asy
 });
 
 test('a stroke in one frame is carried through the clip and undone; corrections are there again with the clip', async ({ page }) => {
-  const files = await smallFrames(5);
+  const files = await clipFrames(6);
   await openSegmented(page, files);
   expect(await leaves(page)).toBe(true);
   const [fourth, third] = await masksOf(page, [4, 3]);
@@ -310,8 +310,9 @@ test('a stroke in one frame is carried through the clip and undone; corrections 
 });
 
 test('the main subject alone is one object, also on the next visit', { tag: '@soak' }, async ({ page }) => {
-  const files = await smallFrames(6);
-  await openSegmented(page, files);
+  const files = await clipFrames(6);
+  await openClip(page, files);
+  await segmentClip(page);
   const status = page.locator('#clip-status');
   await expect(status).toHaveText('2 objects in 6 frames.');
   const subject = page.getByRole('checkbox', { name: 'Main subject only' });
@@ -331,7 +332,7 @@ test('the main subject alone is one object, also on the next visit', { tag: '@so
 });
 
 test('corrections are applied again when the clip is segmented again, which leaves the masks until it is done', async ({ page }) => {
-  await openSegmented(page, await smallFrames(5));
+  await openSegmented(page, await clipFrames(6));
   const status = page.locator('#clip-status');
   const rows = page.locator('#objects > li');
   const again = page.getByRole('button', { name: 'Segment the clip again' });
@@ -351,7 +352,7 @@ test('corrections are applied again when the clip is segmented again, which leav
   const corrected = await labelsOnCanvas(page);
   expect(new Set(corrected)).toEqual(new Set([0, 1, 3]));
   await again.click();
-  await said(page, /^2 objects in 5 frames, corrected as before\.$/);
+  await said(page, /^2 objects in 6 frames, corrected as before\.$/);
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
 
   // In another quality the objects are found anew, but are the same.
@@ -364,10 +365,10 @@ test('corrections are applied again when the clip is segmented again, which leav
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
   await release();
   await clipPhase(page, 'cancelled');
-  await expect(status).toHaveText('Cancelled. 5 of 5 frames have masks.');
+  await expect(status).toHaveText('Cancelled. 6 of 6 frames have masks.');
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
   await page.locator('#clip-segment').click();
-  await said(page, /^2 objects in 5 frames, corrected as before\.$/);
+  await said(page, /^2 objects in 6 frames, corrected as before\.$/);
   const best = await labelsOnCanvas(page);
   expect(new Set(best)).toEqual(new Set([0, 1, 3]));
   expect(best[IN_DISC]).toBe(3);
@@ -377,7 +378,7 @@ test('corrections are applied again when the clip is segmented again, which leav
 });
 
 test('segmenting a part again changes nothing outside it, and both take corrections', async ({ page }) => {
-  const files = await smallFrames(6);
+  const files = await clipFrames(6);
   await openSegmented(page, files);
   const rows = page.locator('#objects > li');
   await rows.nth(1).locator('summary').click();
