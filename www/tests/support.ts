@@ -161,27 +161,6 @@ export async function drag(page: Page, from: Place, to: Place): Promise<void> {
   await page.mouse.up();
 }
 
-/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
-export async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
-  await page.locator('.layers').evaluate(
-    (layers, [lines, first, last]) => {
-      const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
-      press(first);
-      const box = layers.getBoundingClientRect();
-      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
-      for (const line of lines) {
-        ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
-          const [x, y] = line[Math.min(k, 1)]!;
-          const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
-          layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
-        });
-      }
-      press(last);
-    },
-    [lines, first, last] as const,
-  );
-}
-
 /** A function whose results are kept, for all tests of a process, by what it is given. */
 function once<F extends (...given: never[]) => unknown>(make: F, keyOf: (...given: Parameters<F>) => string = (...given) => given.join()): F {
   const made = new Map<string, unknown>();
