@@ -140,6 +140,8 @@ test('notes meanwhile are steps after it: a colour that is looked for in the pal
     colour(2);
     carrying.note({ names: { 'objects-1': 'Disc' } }, 'described');
     colour(3);
+    carrying.note({ names: { 'objects-1': 'Ball' } }, 'described');
+    carrying.undo(); // that
   });
   await carrying.correct(OVER);
   const steps: unknown[] = [];

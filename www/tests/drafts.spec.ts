@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { cancelWhen, clipDone, clipFrames, clipPhase, drag, expect, goTo, holdBack, labelsOnCanvas, openClip, openExport, test, withProcessors } from './support.js';
+import { axe, cancelWhen, clipDone, clipFrames, clipPhase, drag, expect, goTo, holdBack, labelsOnCanvas, openClip, openExport, test, withProcessors } from './support.js';
 
 /** How many rows of pixels the lanes have at a frame. */
 function heightOfLanes(page: Page, index: number, count: number): Promise<number> {
@@ -26,6 +26,7 @@ test('frames show drafts until the masks are there: they are marked and played, 
     expect(new Set(await labelsOnCanvas(page)).size).toBeGreaterThan(1);
   }
   const thin = await heightOfLanes(page, 0, 6);
+  expect(await axe(page)).toEqual([]);
 
   await page.locator('#lane-names button').first().click();
   await page.keyboard.press('p');

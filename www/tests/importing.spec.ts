@@ -3,12 +3,12 @@
 import { type Page } from '@playwright/test';
 import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeYolo } from 'veronese/formats';
 
-import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, test, upload } from './support.js';
+import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, said, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
 
 const SIZE = { width: 100, height: 70 };
 
-const corrected = (page: Page): Promise<void> => expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
+const corrected = (page: Page): Promise<void> => said(page, /^Corrected: the masks of \w+ frames have changed\.$/);
 const json = (name: string, value: unknown): Upload => ({ name, mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(value)) });
 
 /** The labels with a rectangle as another object. */
@@ -20,12 +20,12 @@ function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
 }
 
 test('a file of annotations corrects the frames that it is of, in one step that can be undone; masks that are dropped are no frames', async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(4));
   const found = await masksOf(page, [2, 3, 1]);
   // Objects 1 and 2 are gone in frames 2 and 3; there is a third one, and a frame that the clip does not have.
   const nothing = new Uint8Array(SIZE.width * SIZE.height);
-  const said = [2, 3].map((index) => withBox(nothing, 7, 10 + 2 * index));
-  const frames = [...said, withBox(nothing, 7, 0)].map((labels, k) => ({ labels, ...SIZE, image: `data/${['f02', 'f03', 'f99'][k]}.jpg` }));
+  const drawn = [2, 3].map((index) => withBox(nothing, 7, 10 + 2 * index));
+  const frames = [...drawn, withBox(nothing, 7, 0)].map((labels, k) => ({ labels, ...SIZE, image: `data/${['f02', 'f03', 'f99'][k]}.jpg` }));
   const document = encodeCocoImages(frames, { names: { 7: 'Plate' }, labels: [7], tracked: true });
   await openExport(page);
   await expect(page.locator('#import-masks')).toBeEnabled();
@@ -35,36 +35,36 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   await corrected(page);
   await page.keyboard.press('Escape');
   const changes = async (from: readonly Uint8Array[]): Promise<number[]> => (await masksOf(page, [2, 3])).map((labels, k) => differences(labels, from[k]!));
-  expect(await changes(said)).toEqual([0, 0]);
+  expect(await changes(drawn)).toEqual([0, 0]);
   // Their class is one of the list from now on.
   await expect(page.locator('#lane-names button')).toContainText(['Plate 7']);
   await expect(page.getByLabel('Class of Plate 7')).toHaveValue('Plate');
   await expect(page.locator('#class-names option')).toHaveText(['Plate']);
 
   await page.locator('#undo').click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await said(page, /^Undone/);
   expect(await changes(found)).toEqual([0, 0]);
   await expect(page.locator('#undo')).toBeDisabled();
 
   await test.step('masks that are dropped on the clip are no frames, and frames are', async () => {
     const drop = (files: Upload[]): Promise<void> => give(page, 'drop', files);
-    const said = withBox(found[2]!, 3, 50);
-    await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
+    const drawn = withBox(found[2]!, 3, 50);
+    await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(drawn, SIZE.width, SIZE.height)) }]);
     await corrected(page);
     await goTo(page, 1);
-    expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+    expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
 
     // A file that cannot be taken says why, and changes nothing.
     const notice = page.locator('#notice-sentence');
     await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
     await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 100 × 70.');
-    await drop([json('f01.json', encodeLabelMe(said, SIZE.width, SIZE.height, { image: 'other.png' }))]);
+    await drop([json('f01.json', encodeLabelMe(drawn, SIZE.width, SIZE.height, { image: 'other.png' }))]);
     await expect(notice).toHaveText('No frame with masks here is called other.');
     await drop([json('f01.json', { shapes: [] })]);
     await expect(notice).toHaveText(/^'f01\.json' is not an annotation in a format that is read/);
     await drop([{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('1 2') }, { name: 'b.csv', mimeType: 'text/csv', buffer: Buffer.from('') }]);
     await expect(notice).toHaveText('“b.csv” is not an image that this browser can read.');
-    expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+    expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
 
     await drop((await clipFrames(4)).slice(0, 3));
     await expect(page.locator('#clip-name')).toContainText('3 frames');
@@ -74,7 +74,7 @@ test('a file of annotations corrects the frames that it is of, in one step that 
 });
 
 test('boxes without masks point to objects; what is left out is said', { tag: '@soak' }, async ({ page }) => {
-  await openSegmented(page, await clipFrames(6));
+  await openSegmented(page, await clipFrames(4));
   const categories = [{ id: 1, name: 'Disc' }];
   const images = ['f01', 'f99'].map((name, k) => ({ id: k + 1, file_name: `${name}.png`, ...SIZE }));
   // The disc of frame 1, a box of a frame that is not there, and an annotation that says nothing.
@@ -103,12 +103,12 @@ test('the frames of a video are known by their numbers', { tag: '@soak' }, async
   await openEmpty(page, 'groups');
   await openSegmented(page, [await video(page, 6, 'webm', 'vp8')], 6);
   // Frames without a shape are not said: the first that is, is number 4.
-  const said = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));
-  const frames = Array.from({ length: 5 }, (_, k) => ({ labels: k < 4 ? new Uint8Array(said.length) : said, width: WIDTH, height: HEIGHT }));
+  const drawn = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));
+  const frames = Array.from({ length: 5 }, (_, k) => ({ labels: k < 4 ? new Uint8Array(drawn.length) : drawn, width: WIDTH, height: HEIGHT }));
   const xml = encodeCvatVideo(frames, { names: { 9: 'Strip' }, labels: [9] });
   await upload(page, [{ name: 'annotations.xml', mimeType: 'application/xml', buffer: Buffer.from(xml) }]);
   await corrected(page);
   await goTo(page, 4);
-  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
   await expect(page.locator('#notice')).toBeHidden();
 });

@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { differences, done, expect, give, labelsOnCanvas, motionsChosen, openEmpty, shown, square, test, withSmallSampleClip } from './support.js';
+import { axe, differences, done, expect, give, labelsOnCanvas, motionsChosen, openEmpty, shown, square, test, withSmallSampleClip } from './support.js';
 
 /** Drops files and folders from the disk. */
 async function dropPaths(page: Page, paths: string[]): Promise<void> {
@@ -118,6 +118,7 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
     for (const leave of ['Escape', 'Cancel']) {
       await dropPaths(page, [join(root, 'street')]);
       await expect(dialog.getByRole('button')).toHaveText(['street/day, 3 images', 'street/night, 4 images', 'street/night/masks, one image', 'All 8 images, folder by folder', 'Cancel']);
+      if (leave === 'Cancel') expect(await axe(page)).toEqual([]);
       if (leave === 'Escape') await page.keyboard.press('Escape');
       else await dialog.getByRole('button', { name: 'Cancel' }).click();
       await expect(dialog).toBeHidden();

@@ -3,7 +3,7 @@
 import type { Page } from '@playwright/test';
 import { encodeDavis } from 'veronese/formats';
 
-import { clipDone, clipFrames, expect, goTo, openClip, openSegmented, test, upload } from './support.js';
+import { clipDone, clipFrames, expect, goTo, openClip, openSegmented, said, test, upload } from './support.js';
 
 const COUNT = 20;
 
@@ -18,7 +18,7 @@ async function openMany(page: Page): Promise<void> {
     return x % 20 > 3 && y % 17.5 > 3 ? cell + 1 : 0;
   });
   await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(labels, width, height)) }]);
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   await expect(page.locator('#objects > li')).toHaveCount(1 + COUNT);
 }
 

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipDone, clipFrames, done, expect, held, holdSamples, openEmpty, openSample, shown, square, test, upload, withSamples } from './support.js';
+import { type Upload, clipDone, clipFrames, done, expect, held, holdSamples, openEmpty, openSample, said, shown, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -43,7 +43,7 @@ test('the worker starts and warms up while the first frames are on their way; a 
   });
   await page.mouse.up();
   await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image');
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   await expect(page.locator('#undo')).toBeEnabled();
 });
 

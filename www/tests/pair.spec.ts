@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeColourPng } from 'veronese/codecs';
 
-import { type Upload, chooseMotions, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOnCanvas, masksOf, motionsChosen, openAdvanced, openEmpty, openExport, openSample, reloadEmpty, rename, shown, square, test, undoAll, upload, withSamples, withoutStorage } from './support.js';
+import { type Upload, chooseMotions, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOnCanvas, masksOf, motionsChosen, openAdvanced, openEmpty, openExport, reloadEmpty, rename, said, shown, square, test, undoAll, upload, withoutStorage } from './support.js';
 
 /** Frames of a square that moves right and down. */
 function frames(count: number): Promise<Upload[]> {
@@ -46,7 +46,7 @@ test('two frames have objects in both, which are corrected, undone and kept like
   await test.step('a stroke is carried to the other frame; undo and redo, also after a reload', async () => {
     await page.locator('#tools [value=brush]').check();
     await drag(page, [0.75, 0.2], [0.85, 0.25]);
-    await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+    await said(page, /^Corrected/);
     const at = Math.round(0.225 * 64) * 100 + 80;
     expect((await labelsOnCanvas(page))[at]).toBe(1);
     await rename(page, '#objects', 1, 'Square');
@@ -58,7 +58,7 @@ test('two frames have objects in both, which are corrected, undone and kept like
     await upload(page, pair);
     await expect(undo(page)).toBeEnabled();
     await page.keyboard.press('Control+z');
-    await expect(page.locator('#clip-status')).toHaveText(/^Undone in /);
+    await said(page, /^Undone in /);
     expect(differences(await labelsOnCanvas(page), first)).toBe(0);
     await page.keyboard.press('Control+y');
     expect((await labelsOnCanvas(page))[at]).toBe(1);
@@ -80,9 +80,8 @@ test('two frames have objects in both, which are corrected, undone and kept like
     await expect(page.locator('#caption')).toHaveText('Frame 1');
     await expect(name).toHaveValue('Square');
     await page.locator('#swap').click();
-    await withSamples(page);
-    await openSample(page, 'Parallax');
-    await shown(page, 'first', '400 × 300');
+    await upload(page, files.slice(2));
+    await shown(page, 'first', 'f2.png');
     await upload(page, pair);
     await expect(name).toHaveValue('Square');
     await expect(undo(page)).toBeEnabled();
@@ -107,13 +106,13 @@ test('the motions of two frames are a view: tools and undo are about the objects
   await page.keyboard.press('b');
   await expect(page.locator('#look [value=objects]')).toBeChecked();
   await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   await page.keyboard.press('g');
   await done(page);
   await expect(page.locator('#look [value=groups]')).toBeChecked();
   await page.keyboard.press('Control+z');
   await expect(page.locator('#look [value=objects]')).toBeChecked();
-  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await said(page, /^Undone/);
 });
 
 test('the status says how many motions or groups are found, and whether as many as asked', async ({ page }) => {

@@ -10,7 +10,7 @@ import { fileOf, projectFromFile } from '../src/projects/file.js';
 import type { Project } from '../src/projects/project.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { type Span, type TrackedFrame, untracked, versionOf } from '../src/state/tracked.js';
-import { type Upload, clipFrames, differences, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, savedProject, test, upload } from './support.js';
+import { type Upload, clipFrames, differences, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, said, savedProject, test, upload } from './support.js';
 
 /** The names of objects in the only project of the browser; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {
@@ -24,7 +24,7 @@ async function correctedClip(page: Page, files: Upload[]): Promise<Uint8Array[]>
   await rename(page, '#objects', 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \d+ frames/);
+  await said(page, /^Corrected: the masks of \d+ frames/);
   return masksOf(page, [files.length - 1, 0]);
 }
 
@@ -56,10 +56,10 @@ test('a corrected clip is there after a reload, and can be corrected further', a
 
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Box' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await said(page, /^Corrected/);
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0]));
   await page.getByRole('button', { name: 'Undo' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await said(page, /^Undone/);
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 });
 

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
-import { type Browser, type CDPSession, type Locator, type Page, expect } from '@playwright/test';
+import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
 import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
@@ -134,7 +134,7 @@ export async function segmentClip(page: Page): Promise<void> {
  * Its status is that of work that goes on. Tests that are about a run call {@link segmentClip}.
  */
 export async function openSegmented(page: Page, files: Upload[], count = files.length): Promise<void> {
-  await openClip(page, [await projectOf(page.context().browser()!, files, count), ...files], { count });
+  await openClip(page, [await projectOf(page, files, count), ...files], { count });
   await clipDone(page);
 }
 
@@ -159,27 +159,6 @@ export async function drag(page: Page, from: Place, to: Place): Promise<void> {
   await page.mouse.down();
   await page.mouse.move(...at(to), { steps: 4 });
   await page.mouse.up();
-}
-
-/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
-export async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
-  await page.locator('.layers').evaluate(
-    (layers, [lines, first, last]) => {
-      const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
-      press(first);
-      const box = layers.getBoundingClientRect();
-      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
-      for (const line of lines) {
-        ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
-          const [x, y] = line[Math.min(k, 1)]!;
-          const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
-          layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
-        });
-      }
-      press(last);
-    },
-    [lines, first, last] as const,
-  );
 }
 
 /** A function whose results are kept, for all tests of a process, by what it is given. */
@@ -455,17 +434,15 @@ export async function savedProject(page: Page): Promise<Upload> {
   return { name, mimeType: '', buffer: bytes };
 }
 
-/** The project of a clip whose masks are of quality `fast` and not corrected. Another browser context makes it, where a test has changed nothing. */
-const projectOf = once(async (browser: Browser, files: Upload[], count: number): Promise<Upload> => {
-  const context = await browser.newContext();
-  try {
-    const page = await context.newPage();
-    await openClip(page, files, { count });
-    await segmentClip(page);
-    return await savedProject(page);
-  } finally {
-    await context.close();
-  }
+/** The project of a clip whose masks are of quality `fast` and not corrected. A page of its own makes it, which keeps nothing in the browser. */
+const projectOf = once(async (beside: Page, files: Upload[], count: number): Promise<Upload> => {
+  const page = await beside.context().newPage();
+  await withoutStorage(page);
+  await openClip(page, files, { count });
+  await segmentClip(page);
+  const project = await savedProject(page);
+  await page.close();
+  return project;
 }, (_, files) => keyOf(files, 'project'));
 
 /** Merges the mask of a row of the list, whose details are open, with another. */
