@@ -91,6 +91,12 @@ test('keys wait for what draws as pointers do, and are not about the clip meanwh
   await expect(page.locator('#undo')).toBeEnabled();
   await page.locator('#undo').click();
   await expect(page.locator('#undo')).toBeDisabled();
+  // Nor are they once it is there.
+  for (const key of ['Space', 'ArrowRight', 'Backspace']) await page.keyboard.press(key);
+  await expect(page.locator('#strokes .stroke.now')).toBeAttached();
+  await page.keyboard.press('Escape');
+  await expect(rows).toHaveCount(3);
+  await expect(page.locator('#undo')).toBeDisabled();
 });
 
 unwatched('without what draws there is a notice, and keys are about the clip; it is loaded once it is there', async ({ page }) => {

@@ -77,9 +77,10 @@ export class Brush {
       if (ends || tool.name === 'polygon') this.end(0, shiftKey);
     } else if (key === 'Escape' && this.painting) this.abandon();
     else if (key === 'Enter' && polygon) this.#close(shiftKey);
-    else if (key === 'Backspace' && polygon) {
-      if (takeBack(polygon)) this.#trace();
-      else this.abandon();
+    else if (key === 'Backspace' && this.painting) {
+      // Only a polygon has corners; of a stroke it takes nothing back, and is not about the selected object either.
+      if (polygon && takeBack(polygon)) this.#trace();
+      else if (polygon) this.abandon();
     }
     else if (right !== 0 || down !== 0) {
       const clamped: Point = [Math.min(Math.max(x + right * step, 0), width - 1), Math.min(Math.max(y + down * step, 0), height - 1)];
