@@ -151,11 +151,13 @@ export async function goTo(page: Page, index: number): Promise<void> {
 /** A point of the picture, 0…1 from its left and its top. */
 export type Place = readonly [number, number];
 
-/** Drags between two points of the picture, without waiting for the result. */
+/** Drags between two points of the picture, or presses where they are one, without waiting for the result. */
 export async function drag(page: Page, from: Place, to: Place): Promise<void> {
   const box = (await page.locator('.layers').boundingBox())!;
   const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
   await page.mouse.move(...at(from));
+  // What lasts is no press: nothing comes between its beginning and its end.
+  if (from.join() === to.join()) return void (await Promise.all([page.mouse.down(), page.mouse.up()]));
   await page.mouse.down();
   await page.mouse.move(...at(to), { steps: 4 });
   await page.mouse.up();
