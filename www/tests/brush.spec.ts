@@ -92,8 +92,9 @@ test('keys wait for what draws as pointers do, and are not about the clip meanwh
   await page.locator('#undo').click();
   await expect(page.locator('#undo')).toBeDisabled();
   // Nor are they once it is there.
+  await page.locator('.layers').focus();
   for (const key of ['Space', 'ArrowRight', 'Backspace']) await page.keyboard.press(key);
-  await expect(page.locator('#strokes .stroke.now')).toBeAttached();
+  await expect(page.locator('#strokes .stroke.now')).not.toHaveAttribute('d', '');
   await page.keyboard.press('Escape');
   await expect(rows).toHaveCount(3);
   await expect(page.locator('#undo')).toBeDisabled();
