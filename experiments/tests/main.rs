@@ -4,5 +4,6 @@ mod annotator;
 #[path = "../boundary.rs"]
 mod boundary;
 mod clip_scores;
+mod left_out;
 mod mask_scores;
 mod score;
