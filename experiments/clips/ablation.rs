@@ -23,24 +23,21 @@ const LEFT_OUT: [Row; 9] = [
     ("dropping of what lasts a few frames", &[("lasting", 0.0)]),
 ];
 
-/// Every so many of the real clips are measured, of the generated ones, and of these at a part of their usual speed.
-const EVERY_REAL: usize = 3;
-const EVERY_GENERATED: usize = 3;
-const EVERY_SLOW: usize = 2;
-/// That part.
+/// Every third clip is measured.
+const EVERY: usize = 3;
+/// Share of the usual speed of slow clips.
 const SLOW: f64 = 0.25;
 /// Frames of a real clip, from its first.
 const FRAMES: usize = 16;
 
-/// The clips of each table.
+/// The clips of each table. Generated ones of the usual speed are others than the slow ones.
 fn chosen(cases: Vec<Case>) -> Vec<(&'static str, Case)> {
     let (usual, real): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(Case::is_generated);
-    let usual: Vec<Case> = usual.into_iter().step_by(EVERY_GENERATED).collect();
     let mut slow = generated(SLOW);
     slow.retain(|case| usual.iter().any(|usual| usual.name == case.name));
-    let named = |table, cases: Vec<Case>, every| cases.into_iter().step_by(every).map(move |case| (table, case));
-    let slow = named("slow", slow, EVERY_SLOW);
-    named("real", real, EVERY_REAL).chain(slow).chain(named("generated", usual, 1)).collect()
+    let named = |table, cases: Vec<Case>| cases.into_iter().step_by(EVERY).map(move |case| (table, case));
+    let usual = usual.into_iter().skip(1).collect();
+    named("real", real).chain(named("slow", slow)).chain(named("generated", usual)).collect()
 }
 
 /// What pairs tell, unless it is known, and the labels of every frame.

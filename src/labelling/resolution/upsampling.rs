@@ -40,15 +40,15 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
 fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8], model: &Model) {
     let full = (guide.width(), guide.height());
     let guide = Patch::from_fn(tile.grown(2 * RADIUS, full.0, full.1), |x, y| guide.at(x, y));
-    let filter = model.flat_variance.is_finite().then(|| GuidedFilter::new(&guide, tile, full, model.flat_variance));
+    let filter = GuidedFilter::new(&guide, tile, full, model.flat_variance);
     let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
     // The masks sum to one and the filter is linear, so the strengths sum to one: the last is the remainder.
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
     for (k, &label) in labels.iter().enumerate() {
         let strength = if k + 1 < labels.len() {
-            let strength = match &filter {
-                Some(filter) => filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile),
-                None => grid.mask(label, tile.clone()),
+            let strength = match model.flat_variance.is_finite() {
+                true => filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile),
+                false => grid.mask(label, tile.clone()),
             };
             rest.values.iter_mut().zip(&strength.values).for_each(|(r, s)| *r -= s);
             strength

@@ -4,10 +4,8 @@
 #[allow(dead_code, reason = "the programs use the rest")]
 #[path = "../left_out.rs"]
 mod left_out;
-#[allow(dead_code, reason = "the programs use the rest")]
-#[path = "../score/statistics.rs"]
-mod statistics;
 
+use crate::statistics;
 use left_out::{Figures, Measured, Row, all_change, worth};
 use scenes::SceneOptions;
 use veronese::{Quality, SegmentOptions, segment_pair};
