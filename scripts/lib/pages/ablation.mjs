@@ -16,8 +16,9 @@ export function withoutParts(rows, name, columns) {
 
 function difference(estimate) {
   if (!estimate) return fixed(undefined);
-  const { mean, interval } = estimate;
-  const text = interval ? `${signed(mean, 3)} [${interval.map((end) => signed(end, 3)).join(', ')}]` : signed(mean, 3);
-  if (text === '0 [0, 0]') return '0';
-  return interval && (interval[0] > 0 || interval[1] < 0) ? `**${text}**` : text;
+  const mean = signed(estimate.mean, 3);
+  const ends = (estimate.interval ?? []).map((end) => signed(end, 3));
+  if (ends.every((end) => end === '0')) return mean;
+  const text = `${mean} [${ends.join(', ')}]`;
+  return ends[0][0] === ends[1][0] ? `**${text}**` : text;
 }
