@@ -16,6 +16,7 @@ const PROGRAMS = [
   ['bench', 'masks', '--ablation'],
   ['bench', 'masks', '--calibration'],
   ['bench', 'clips', '--pairs', PAIRS],
+  ['bench', 'clips', '--ablation'],
   ['annotator'],
   ['annotator', '--page', '--only', 'soccerball,car-turn'],
   ['bench', 'browser'],

@@ -205,7 +205,7 @@ model! {
     /// Regions smaller than this share of the frame are not objects. Generated.
     smallest_share: f64 = 0.004;
 
-    /// Guided filter: variance, grey levels², below which a window counts as flat. Generated.
+    /// Guided filter: variance, grey levels², below which a window counts as flat; if it is infinite, masks are enlarged alone. Generated.
     flat_variance: f32 = 40.0;
 
     /// Confidence: weight of windowed costs. Fit to generated scenes.
@@ -218,7 +218,7 @@ model! {
     unexplained: f32 = 1.4;
     /// Largest cost of a motion at a pixel that it moves behind another object. Generated.
     hidden_cost: f32 = 1.4;
-    /// Cost of a change of light. Generated; real.
+    /// Cost of a change of light; if it is infinite, none is looked for. Generated; real.
     light_price: f32 = 1.4;
     /// Confidence of being an object: weight of the probability of the motion. Fit to real pairs and generated scenes.
     doubt_motion: f64 = 0.55;
@@ -269,6 +269,20 @@ model! {
     follow_tolerance: f64 = 0.02;
     /// The same since the last search, where none is found missing. Real clips.
     follow_tolerance_searched: f64 = 0.05;
+
+    /// Whether a background that may be at rest is solved a second time, at rest. This and the next five are 1, and 0 where an ablation leaves
+    /// a part out that no other constant leaves nothing to do.
+    solves_at_rest: usize = 1;
+    /// Whether a labelled background is made static if that shortens the description.
+    tries_static: usize = 1;
+    /// Whether the search in large frames is carried on at a finer size.
+    adds_detail: usize = 1;
+    /// Whether labels are drafted on a coarser level, then sharpened.
+    drafts: usize = 1;
+    /// Whether regions are merged.
+    merges: usize = 1;
+    /// Whether regions are split.
+    splits: usize = 1;
 }
 
 model! {
@@ -401,6 +415,13 @@ model! {
     together: usize = 5;
     /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
     lasting: usize = 4;
+
+    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next two 1, and 0 where an ablation leaves it out.
+    looks_farther: usize = 1;
+    /// Whether parts that move together are joined.
+    joins: usize = 1;
+    /// Whether there are several objects, each with its number. Else all that is found is one.
+    identities: usize = 1;
 }
 
 impl Model {

@@ -1,10 +1,13 @@
 //! The clip benchmark: labels that persist through time, of generated and real clips, beside what OpenCV gives.
 //! `npm run bench -- clips` runs it.
 
+mod ablation;
 #[path = "../boundary.rs"]
 mod boundary;
 mod cases;
 mod figures;
+#[path = "../left_out.rs"]
+mod left_out;
 mod measure;
 mod methods;
 #[path = "../panels.rs"]
@@ -14,6 +17,9 @@ mod parallel;
 #[path = "../program.rs"]
 mod program;
 mod scores;
+#[allow(dead_code, reason = "the score uses the rest")]
+#[path = "../score/statistics.rs"]
+mod statistics;
 mod strips;
 
 use std::error::Error;
@@ -23,12 +29,17 @@ use std::path::PathBuf;
 use figures::Figures;
 use methods::Method;
 use parallel::in_parallel;
+use serde_json::json;
 
 const HELP: &str = "\
 Scores labels that persist through time, of generated and real clips, in two steps. OpenCV's methods run between them.
 
   frames       writes the generated clips and prints a line per clip: its name, a tab, its folder
   measure      measures and writes clips.json (means), clips.jsonl, a strip of every clip, and the labels of every method
+
+A step of its own, as npm run bench -- clips --ablation; it writes ablation.json:
+
+  ablation     measures the scores without parts of the way from pairs to objects
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
@@ -73,7 +84,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" => options.step = name,
+            "frames" | "measure" | "ablation" => options.step = name,
             "--quick" => options.quick = true,
             "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
@@ -88,7 +99,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames or measure.".into()),
+        true => Err("Say which step: frames, measure or ablation.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -113,6 +124,11 @@ fn run(options: &Options) -> Result<(), Failure> {
             println!("{}\t{}", case.name, folder.display());
         }
         return Ok(());
+    }
+    if options.step == "ablation" {
+        let rows = ablation::measure(cases)?;
+        fs::write(out.join("ablation.json"), serde_json::to_string(&json!({ "rows": rows }))?).map_err(cannot)?;
+        return Ok(left_out::all_change(&rows)?);
     }
     if cases.iter().all(cases::Case::is_generated)
         && !options.quick

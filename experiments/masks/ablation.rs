@@ -1,92 +1,87 @@
 //! The ablation: the same cases with one part of the pipeline left out.
 
-use serde::Serialize;
 use veronese::Model;
 
 use crate::Failure;
 use crate::cases::{Case, Set, a_third};
-use crate::outcome::{Method, Outcome, of_model};
+use crate::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
+use crate::outcome::{Method, Outcome, grouped, outcome, segmented};
 use crate::parallel::in_parallel;
-use crate::summary::Summary;
 
-/// What is left out, and the constants that leave it out, in the order of the table.
-const LEFT_OUT: [(&str, &[(&str, f64)]); 11] = [
+/// The rows of the table, in its order.
+const LEFT_OUT: [Row; 18] = [
     ("nothing", &[]),
     ("gain and bias", &[("largest_gain", 1.0)]),
     ("algebraic candidates", &[("degrees", 0.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
+    ("second solution at rest", &[("solves_at_rest", 0.0)]),
+    ("trial of a static background", &[("tries_static", 0.0)]),
+    ("detail pass", &[("adds_detail", 0.0)]),
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
     ("smoothness lower at edges", &[("noise_steps", 1e9)]),
-    ("occlusion handling and return of shadows", &[("unexplained", 1e3)]),
+    ("occlusion", &[("hidden_cost", f64::INFINITY), ("visibility_rounds", 0.0), ("visibility_rounds_fast", 0.0)]),
+    ("return of shadows", &[("light_price", f64::INFINITY)]),
     ("larger variance where nothing fits", &[("largest_inflation", 1.0)]),
     ("price of borders", &[("border_price", 0.0)]),
+    ("splitting", &[("splits", 0.0)]),
+    ("merging", &[("merges", 0.0)]),
     ("colour", &[("colour_price", 0.0)]),
-    ("guided upsampling", &[("flat_variance", 1e9)]),
+    ("drafts and sharpening", &[("drafts", 0.0)]),
+    ("guided upsampling", &[("flat_variance", f64::INFINITY)]),
 ];
 
-/// One form of the pipeline: its scores with `best` and with `fast`.
-#[derive(Serialize)]
-pub(crate) struct Worth {
-    without: &'static str,
-    best: Scored,
-    fast: Scored,
-}
+/// The width of the scenes that are measured, in their names.
+const SCENE_WIDTH: &str = "-320-";
+/// How many scenes of each set: the large ones are there for the detail pass.
+const SCENES: [(Set, usize); 4] = [(Set::Generated, 6), (Set::Colour, 6), (Set::Bare, 6), (Set::Large, 2)];
 
-/// The scores of generated scenes, of scenes with a bare ground, and of the real pairs of the sequences.
-#[derive(Serialize)]
-pub(crate) struct Scored {
-    scenes: Summary,
-    /// The scenes with a bare ground, which need the static background hypothesis.
-    bare: Summary,
-    /// `None` if there are no real pairs.
-    pairs: Option<Summary>,
-}
-
-/// Of the pairs that the score measures every fourth: eleven forms of the pipeline take their time.
-const EVERY: usize = 4;
-
-/// The cases that are measured: generated scenes, those with a bare ground, and a few pairs of some sequences.
+/// The cases that are measured: a pair of each sequence, and some scenes.
 fn chosen(cases: Vec<Case>) -> Vec<Case> {
-    let (pairs, mut chosen): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(|case| case.set == Set::Sequences);
-    chosen.retain(|case| matches!(case.set, Set::Generated | Set::Colour | Set::Bare));
-    chosen.extend(a_third(pairs.into_iter()).into_iter().step_by(EVERY));
+    let (pairs, scenes): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(|case| case.set == Set::Sequences);
+    // Intervals are those of sequences: a second pair of each makes them little narrower.
+    let mut chosen = a_third(pairs.into_iter());
+    chosen.dedup_by(|one, other| one.sequence() == other.sequence());
+    for (set, count) in SCENES {
+        let sized = |case: &&Case| matches!(set, Set::Bare | Set::Large) || case.name.contains(SCENE_WIDTH);
+        chosen.extend(scenes.iter().filter(|case| case.set == set).filter(sized).take(count).cloned());
+    }
     chosen
 }
 
-/// The model with some constants set to other values.
-fn with(values: &[(&str, f64)]) -> &'static Model {
-    let mut model = Model::DEFAULT;
-    for (name, value) in values {
-        assert!(model.set(name, *value), "there is no constant {name}");
+/// The figures of a case, named by what it is.
+fn figures(set: Set, Outcome { single, grouped, .. }: &Outcome) -> Figures {
+    let (Some(single), Some(grouped)) = (single, grouped) else { return Figures::new() };
+    let of = |name, figure: Option<f64>| Some((name, figure?));
+    match set {
+        Set::Sequences => {
+            let all = [of("j", grouped.j_background), of("f", grouped.boundary), of("byHand", single.j_oracle)];
+            all.into_iter().flatten().collect()
+        }
+        Set::Bare => Figures::from([("bare", single.miou)]),
+        Set::Large => Figures::from([("large", single.miou)]),
+        _ => Figures::from([("scenes", single.miou)]),
     }
-    // Kept to the end of the program: there are a dozen.
-    Box::leak(Box::new(model))
 }
 
-/// Measures the rows of the table on those of the cases that are chosen for it.
+/// Measures the rows on those of the cases that are chosen for it.
 pub(crate) fn measure(cases: Vec<Case>) -> Result<Vec<Worth>, Failure> {
-    let cases = &chosen(cases);
-    let models: Vec<&'static Model> = LEFT_OUT.iter().map(|(_, values)| with(values)).collect();
-    let measured: Vec<Vec<[Outcome; 2]>> = in_parallel(cases, |case| {
+    // Models are kept to the end of the program.
+    let model = |row| &*Box::leak(Box::new(with(Model::DEFAULT, row, Model::set)));
+    let models: Vec<&'static Model> = LEFT_OUT.iter().map(model).collect();
+    let measured: Vec<[Measured; 2]> = in_parallel(&chosen(cases), |case| {
         let data = case.load().map_err(|error| error.to_string())?;
-        let with_both = |&model: &&'static Model| -> veronese::Result<[Outcome; 2]> {
-            Ok([of_model(model, Method::Best, &data)?, of_model(model, Method::Fast, &data)?])
-        };
-        let outcomes = models.iter().map(with_both).collect::<Result<_, _>>()?;
-        eprintln!("{}", case.name);
-        Ok(outcomes)
-    })?;
-    let worth = |(k, (without, _)): (usize, &(&'static str, _))| {
-        let scored = |quality: usize| {
-            let of = |sets: &[Set]| {
-                let own = cases.iter().zip(&measured).filter(|(case, _)| sets.contains(&case.set));
-                Summary::of(own.map(|(case, outcomes)| (case, &outcomes[k][quality])))
+        let with_method = |method: Method| -> Result<Measured, Failure> {
+            let row = |model: &&'static Model| {
+                let (found, milliseconds) = timed(|| segmented(model, method, &data));
+                let found = found?;
+                let outcome = outcome(method, &data, &found.labels, &grouped(&found), milliseconds);
+                Ok((figures(case.set, &outcome), milliseconds))
             };
-            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0);
-            Scored { scenes: of(&[Set::Generated, Set::Colour]), bare: of(&[Set::Bare]), pairs }
+            let rows = models.iter().map(row).collect::<Result<_, Failure>>()?;
+            Ok(Measured { table: method.name(), sequence: case.sequence().to_owned(), rows })
         };
-        let [best, fast] = [0, 1].map(scored);
-        Worth { without, best, fast }
-    };
-    Ok(LEFT_OUT.iter().enumerate().map(worth).collect())
+        eprintln!("{}", case.name);
+        Ok([with_method(Method::Best)?, with_method(Method::Fast)?])
+    })?;
+    Ok(worth(&LEFT_OUT, &measured.into_iter().flatten().collect::<Vec<_>>()))
 }

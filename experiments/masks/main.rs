@@ -7,6 +7,8 @@ mod boundary;
 mod cases;
 mod figures;
 mod honesty;
+#[path = "../left_out.rs"]
+mod left_out;
 mod measure;
 mod outcome;
 #[path = "../panels.rs"]
@@ -17,6 +19,9 @@ mod pictures;
 #[path = "../program.rs"]
 mod program;
 mod scores;
+#[allow(dead_code, reason = "the score uses the rest")]
+#[path = "../score/statistics.rs"]
+mod statistics;
 mod summary;
 
 use std::error::Error;
@@ -27,7 +32,7 @@ use cases::Case;
 use figures::Figures;
 use outcome::Method;
 use parallel::in_parallel;
-use serde_json::json;
+use serde_json::{Value, json};
 
 const HELP: &str = "\
 Scores masks of generated scenes and real pairs against an OpenCV baseline, in two steps. The baseline runs between them.
@@ -109,14 +114,15 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let apart = match options.step.as_str() {
-        "ablation" => Some(json!({ "rows": ablation::measure(cases.clone())? })),
-        "calibration" => Some(honesty::json(&honesty::measure(&cases)?)),
-        _ => None,
-    };
-    if let Some(figures) = apart {
-        fs::write(out.join(format!("{}.json", options.step)), serde_json::to_string(&figures)?).map_err(cannot)?;
-        return Ok(());
+    let write =
+        |figures: Value| fs::write(out.join(format!("{}.json", options.step)), figures.to_string()).map_err(cannot);
+    if options.step == "ablation" {
+        let rows = ablation::measure(cases)?;
+        write(json!({ "rows": rows }))?;
+        return Ok(left_out::all_change(&rows)?);
+    }
+    if options.step == "calibration" {
+        return Ok(write(honesty::json(&honesty::measure(&cases)?))?);
     }
     if !here {
         eprintln!("{} is not there: only the generated cases are measured.", options.shared.display());

@@ -52,13 +52,18 @@ pub(crate) fn outcome(method: Method, data: &Data, labels: &[u8], groups: &[u8],
     Outcome { method, single: against(labels), grouped: against(groups), milliseconds }
 }
 
-/// What the pipeline gives with other constants, and with the quality of a method.
-pub(crate) fn of_model(model: &'static Model, method: Method, data: &Data) -> Result<Outcome> {
-    let (first, second) = (&data.first, &data.second);
+/// A case segmented with other constants, and with the quality of a method.
+pub(crate) fn segmented(model: &'static Model, method: Method, data: &Data) -> Result<Segmentation> {
     let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
     let options = SegmentOptions::default().with_quality(quality);
+    segment_pair_with(model, &data.first, &data.second, &options)
+}
+
+/// What that gives.
+#[allow(dead_code, reason = "not every program that shares this file measures one model at a time")]
+pub(crate) fn of_model(model: &'static Model, method: Method, data: &Data) -> Result<Outcome> {
     let start = Instant::now();
-    let found = segment_pair_with(model, first, second, &options)?;
+    let found = segmented(model, method, data)?;
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     Ok(outcome(method, data, &found.labels, &grouped(&found), milliseconds))
 }

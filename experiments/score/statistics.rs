@@ -1,5 +1,6 @@
 //! Means and their intervals. Cases of one sequence are alike, so that whole sequences are drawn.
 
+use serde::Serialize;
 use veronese::Random;
 
 /// Draws of the bootstrap (Efron 1979).
@@ -11,7 +12,7 @@ const OUTSIDE: f64 = 0.05;
 const LEAST_SEQUENCES: usize = 5;
 
 /// A mean, and where it lies in 95 % of the draws.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Estimate {
     pub(crate) cases: usize,
     pub(crate) mean: f64,

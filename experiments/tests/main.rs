@@ -1,8 +1,11 @@
 //! The figures of the programs, on cases whose figures follow from their definition. One program: it is linked once.
 
+mod ablation;
 mod annotator;
 #[path = "../boundary.rs"]
 mod boundary;
 mod clip_scores;
 mod mask_scores;
 mod score;
+#[path = "../score/statistics.rs"]
+mod statistics;

@@ -3,9 +3,8 @@
 
 #[path = "../score/report.rs"]
 mod report;
-#[path = "../score/statistics.rs"]
-mod statistics;
 
+use crate::statistics;
 use report::{Entry, changes, file, table};
 use statistics::{Verdict, estimate, verdict};
 

@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { present, withoutDocs } from '../lib/documented.mjs';
-import { experiment, measured, outOf, runPeers, wantsHelp } from '../lib/experiments.mjs';
+import { experiment, measured, measuredApart, outOf, runPeers, wantsHelp } from '../lib/experiments.mjs';
 import { root } from '../lib/project.mjs';
 import { command } from '../lib/run.mjs';
 
@@ -13,8 +13,12 @@ const DATA = { chosenOn: 'all real clips; the generated ones were looked at', he
 
 await command(async (args) => {
   if (wantsHelp(args)) return experiment('clips', ['--help']);
-  const { writeDocs, rest } = withoutDocs(args, ['--quick', '--only', '--methods']);
+  const { writeDocs, rest } = withoutDocs(args, ['--quick', '--only', '--methods', '--speed']);
   const out = outOf(args, 'out/clips');
+  if (args.includes('--ablation')) {
+    present('clips-ablation', { command: 'npm run bench -- clips --ablation', data: DATA }, await measuredApart('clips', 'ablation', rest, out), writeDocs);
+    return 0;
+  }
   const program = join(root, 'experiments', 'clips', 'peers.py');
   await runPeers('clips', rest, { out, old: ['labels', 'generated'], program, argumentsOf: (_, folder) => [folder, join(out, 'labels')] });
   await measured('clips', ['measure', ...rest]);

@@ -6,7 +6,7 @@ import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 import { present, withoutDocs } from '../lib/documented.mjs';
-import { experiment, measured, outOf, runPeers, valueOf, wantsHelp } from '../lib/experiments.mjs';
+import { experiment, measured, measuredApart, outOf, runPeers, valueOf, wantsHelp } from '../lib/experiments.mjs';
 import { root } from '../lib/project.mjs';
 import { command } from '../lib/run.mjs';
 
@@ -21,11 +21,9 @@ await command(async (args) => {
   if (wantsHelp(args)) return experiment('masks', ['--help']);
   const { writeDocs, rest } = withoutDocs(args, ['--quick', '--only']);
   const out = outOf(args, 'out/masks');
-  const read = (step) => JSON.parse(readFileSync(join(out, `${step}.json`), 'utf8'));
   const apart = APART.find((step) => args.includes(`--${step}`));
   if (apart) {
-    await measured('masks', [apart, ...rest.filter((name) => name !== `--${apart}`)]);
-    present(`masks-${apart}`, { command: `npm run bench -- masks --${apart}`, data: DATA }, read(apart), writeDocs);
+    present(`masks-${apart}`, { command: `npm run bench -- masks --${apart}`, data: DATA }, await measuredApart('masks', apart, rest, out), writeDocs);
     return 0;
   }
   const program = join(resolve(root, valueOf(args, '--shared') ?? '../shared'), 'tools', 'baseline.py');
@@ -34,6 +32,6 @@ await command(async (args) => {
     await runPeers('masks', rest, { out, old: ['frames'], program, argumentsOf: (name, frames) => [frames, '--out', join(out, 'baseline', name)] });
   } else console.error(`Without a baseline to compare with: ${program} is not there.`);
   await measured('masks', ['measure', ...rest]);
-  present('masks', { command: 'npm run bench -- masks', data: DATA }, read('masks'), writeDocs);
+  present('masks', { command: 'npm run bench -- masks', data: DATA }, JSON.parse(readFileSync(join(out, 'masks.json'), 'utf8')), writeDocs);
   return 0;
 });

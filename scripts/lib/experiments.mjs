@@ -1,6 +1,6 @@
 // The programs of experiments: Rust, compiled with all that the published crate leaves out, so that they share what is compiled.
 
-import { rmSync } from 'node:fs';
+import { readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
 import { findOpenCv, runOnAll } from './opencv.mjs';
@@ -29,6 +29,12 @@ export async function experiment(name, args) {
 export async function measured(name, args) {
   const code = await experiment(name, args);
   if (code !== 0) throw new Stop(`The program ${name} ended with code ${code}.`);
+}
+
+/** Runs a step that is measured by itself, `--STEP` among the arguments, and returns what it wrote to STEP.json in `out`. */
+export async function measuredApart(name, step, args, out) {
+  await measured(name, [step, ...args.filter((arg) => arg !== `--${step}`)]);
+  return JSON.parse(readFileSync(join(out, `${step}.json`), 'utf8'));
 }
 
 /** Whether help is asked for. */

@@ -7,6 +7,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 
 use super::evidence::odds;
+use super::options::model;
 use super::record::Newest;
 use crate::frame::Plane;
 use crate::frame::pyramid::FramePyramid;
@@ -42,7 +43,7 @@ impl Farther {
 
     /// What the newest frame and an earlier one tell, if they have something to tell that the newest frame and the last one have not.
     pub(super) fn look(&mut self, last: &Newest, newest: &Newest, settings: &Settings) -> Option<Told> {
-        if newest.back.as_ref().is_none_or(|(near, _)| shows_object(near)) {
+        if model().looks_farther == 0 || newest.back.as_ref().is_none_or(|(near, _)| shows_object(near)) {
             *self = Farther::new();
             return None;
         }

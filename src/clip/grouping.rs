@@ -142,7 +142,8 @@ impl Census {
 
 impl Meeting {
     fn is_of_one_object(&self) -> bool {
-        self.frames >= model().together
+        model().joins > 0
+            && self.frames >= model().together
             && self.difference <= f64::from(model().relative_motion) * self.displacement
             && self.distance <= model().search
     }

@@ -59,7 +59,7 @@ impl Identities {
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
     pub(crate) fn assign(&mut self, record: &Rc<Record>, mask: &[u8]) -> Vec<u8> {
         let smallest = (Model::DEFAULT.smallest_share * mask.len() as f64) as usize / 2;
-        if self.subject {
+        if self.subject || model().identities == 0 {
             let mut labels = vec![0u8; mask.len()];
             let found = components(mask, record.size()[0], Connectivity::Eight);
             regions(&found, smallest).iter().flatten().for_each(|&p| labels[p] = 1);

@@ -27,7 +27,7 @@ pub(super) fn solve(
     let dominant = pair.settle_dominant(Dominant::Sought(None), settings);
     let moving = under(pair, dominant, likely, settings, observer);
     let mut known = moving.motions.clone();
-    if known[BACKGROUND] == AffineMotion::STATIC {
+    if known[BACKGROUND] == AffineMotion::STATIC || settings.model.solves_at_rest == 0 {
         return moving;
     }
     let width = moving.pair.finest().width();

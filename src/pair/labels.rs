@@ -190,7 +190,7 @@ impl<'a> LabelEnergy<'a> {
     }
 
     fn uses_colour(&self) -> bool {
-        self.motions.len() > 1
+        self.motions.len() > 1 && self.settings.model.colour_price > 0.0
     }
 
     /// Adds the costs of the colours.
@@ -275,7 +275,7 @@ impl<'a> LabelEnergy<'a> {
     /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
     /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
     fn try_static_background(&mut self) {
-        if self.motions[BACKGROUND] == AffineMotion::STATIC {
+        if self.motions[BACKGROUND] == AffineMotion::STATIC || self.settings.model.tries_static == 0 {
             return;
         }
         let own = |plane: &Plane| -> f64 {
@@ -303,7 +303,7 @@ impl<'a> LabelEnergy<'a> {
 
     /// Merges regions that one motion explains better than two.
     fn merge(&mut self) {
-        while self.motions.len() > self.settings.least {
+        while self.motions.len() > self.settings.least && self.settings.model.merges > 0 {
             let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels) else { break };
             let [kept, gone] = merger.labels;
             self.motions[kept] = merger.motion;
@@ -323,7 +323,7 @@ impl<'a> LabelEnergy<'a> {
 
     /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
-        if self.motions.len() < 2 {
+        if self.motions.len() < 2 || self.settings.model.splits == 0 {
             return false;
         }
         let level = self.level;

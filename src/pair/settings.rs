@@ -106,7 +106,7 @@ impl Settings {
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,
             },
-            returns_shadows: true,
+            returns_shadows: model.light_price.is_finite(),
             follows: false,
             subject: options.subject,
             model,
@@ -135,6 +135,9 @@ impl Settings {
                 ..best
             },
         };
+        if model.drafts == 0 {
+            settings.draft_side = usize::MAX;
+        }
         if let MotionCount::Given(n) = options.motions {
             // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
             settings.most = n;
@@ -178,7 +181,8 @@ impl Settings {
     /// `fast` or the size of the frames asks for no more.
     pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
         let halvings = halvings_to(self.model.detail_side(), size);
-        let wanted = options.quality == Quality::Best && self.halvings > 1 && halvings < self.halvings;
+        let finer = self.halvings > 1 && halvings < self.halvings;
+        let wanted = options.quality == Quality::Best && finer && self.model.adds_detail > 0;
         wanted.then_some(Settings { halvings, draft_side: self.model.detail_side(), ..*self })
     }
 

@@ -1,11 +1,13 @@
 // The tables of docs/clips.md.
 
+import { withoutParts } from './ablation.mjs';
 import { amount, fixed, origin, percent, score, table } from './table.mjs';
 
 export const PARTS = {
   generated: ['clips', (figures) => [origin(figures), `${figures.generated[0]?.clips} clips:`, means(figures.generated, true)].join('\n\n')],
   events: ['clips', events],
   real: ['clips', ({ real }) => (real.length > 0 ? `${real[0].clips} clips:\n\n${means(real, false)}` : '')],
+  ablation: ['clips-ablation', ablation],
 };
 
 function means(rows, generated) {
@@ -23,3 +25,9 @@ function events({ events }) {
   return table(['event', 'clips', ...methods.flatMap((method) => [`${method}: auto`, 'assigned', 'switches'])], lines);
 }
 
+function ablation({ date, rows }) {
+  const columns = [['auto', 'auto'], ['F auto', 'fAuto'], ['assigned', 'assigned'], ['IDF1', 'idf1'], ['lost', 'lost'], ['switches', 'switches']];
+  const titles = { real: 'real clips', generated: 'generated clips', slow: 'generated clips at a quarter of the usual speed' };
+  const tables = Object.entries(titles).filter(([name]) => rows[0].tables[name]);
+  return [`${date}.`, ...tables.flatMap(([name, title]) => [`${rows[0].tables[name].cases} ${title}:`, withoutParts(rows, name, columns)])].join('\n\n');
+}

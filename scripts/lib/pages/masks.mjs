@@ -1,6 +1,7 @@
 // The tables of docs/masks.md.
 
-import { change, origin, percent, score, table } from './table.mjs';
+import { withoutParts } from './ablation.mjs';
+import { origin, percent, score, table } from './table.mjs';
 
 export const PARTS = {
   scenes: ['masks', (figures) => `${origin(figures)}\n\n${scenes(figures)}`],
@@ -24,24 +25,11 @@ function real(pairs) {
   return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand'], rows);
 }
 
-/** The scores of the whole pipeline, then by how much they change without each part. */
-function ablation({ date, rows: found }) {
-  const columns = [
-    ['mean IoU, best', ({ best }) => best.scenes.miou],
-    ['fast', ({ fast }) => fast.scenes.miou],
-    ['bare ground, best', ({ best }) => best.bare.miou],
-    ['fast', ({ fast }) => fast.bare.miou],
-    ['J, best', ({ best }) => best.pairs?.jBackground],
-    ['fast', ({ fast }) => fast.pairs?.jBackground],
-    ['F, best', ({ best }) => best.pairs?.groupedBoundary],
-    ['fast', ({ fast }) => fast.pairs?.groupedBoundary],
-  ];
-  const [all, ...parts] = found;
-  const rows = parts.map((part) => [part.without, ...columns.map(([, of]) => change(of(part), of(all)))]);
-  const head = ['without', ...columns.map(([title]) => title)];
-  const { scenes, bare, pairs } = all.best;
-  const counts = `${scenes.cases} scenes, ${bare.cases} of bare ground, ${pairs?.cases ?? 0} real pairs, ${date}:`;
-  return `${counts}\n\n${table(head, [[all.without, ...columns.map(([, of]) => score(of(all)))], ...rows])}`;
+function ablation({ date, rows }) {
+  const columns = [['J', 'j'], ['J by hand', 'byHand'], ['F', 'f'], ['scenes', 'scenes'], ['bare ground', 'bare'], ['large', 'large']];
+  const { scenes, bare, large, j } = rows[0].tables.best.figures;
+  const counts = `${j?.cases ?? 0} real pairs, ${scenes.cases} scenes, ${bare.cases} of bare ground, ${large.cases} large ones, ${date}.`;
+  return [counts, ...['best', 'fast'].flatMap((quality) => [`*${quality}*:`, withoutParts(rows, quality, columns)])].join('\n\n');
 }
 
 const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);

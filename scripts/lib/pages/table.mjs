@@ -22,14 +22,10 @@ export function percent(share, decimals = 0) {
   return there(share) ? `${(100 * share).toFixed(decimals)} %` : NONE;
 }
 
-/** How much a score rose or fell since another; 0 where rounding leaves nothing. */
-export function change(value, before = 0) {
-  return there(value) && there(before) ? signed(value - before) : NONE;
-}
-
-function signed(value) {
-  const text = Math.abs(value).toFixed(2);
-  if (text === '0.00') return '0';
+/** A change with its sign; 0 where rounding leaves nothing. */
+export function signed(value, decimals) {
+  const text = Math.abs(value).toFixed(decimals);
+  if (Number(text) === 0) return '0';
   return `${value < 0 ? '−' : '+'}${text}`;
 }
 

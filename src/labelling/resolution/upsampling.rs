@@ -46,7 +46,10 @@ fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winne
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
     for (k, &label) in labels.iter().enumerate() {
         let strength = if k + 1 < labels.len() {
-            let strength = filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile);
+            let strength = match model.flat_variance.is_finite() {
+                true => filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile),
+                false => grid.mask(label, tile.clone()),
+            };
             rest.values.iter_mut().zip(&strength.values).for_each(|(r, s)| *r -= s);
             strength
         } else {
