@@ -35,12 +35,10 @@ const SCENE_WIDTH: &str = "-320-";
 /// How many scenes of each set: the large ones are there for the detail pass.
 const SCENES: [(Set, usize); 4] = [(Set::Generated, 6), (Set::Colour, 6), (Set::Bare, 6), (Set::Large, 2)];
 
-/// The cases that are measured: a pair of each sequence, and some scenes.
+/// The cases that are measured: a third of the pairs, two of each sequence, and some scenes.
 fn chosen(cases: Vec<Case>) -> Vec<Case> {
     let (pairs, scenes): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(|case| case.set == Set::Sequences);
-    // Intervals are those of sequences: a second pair of each makes them little narrower.
     let mut chosen = a_third(pairs.into_iter());
-    chosen.dedup_by(|one, other| one.sequence() == other.sequence());
     for (set, count) in SCENES {
         let sized = |case: &&Case| matches!(set, Set::Bare | Set::Large) || case.name.contains(SCENE_WIDTH);
         chosen.extend(scenes.iter().filter(|case| case.set == set).filter(sized).take(count).cloned());
