@@ -2,8 +2,9 @@
 // other programs, or looks at the same things in many more ways.
 //
 // Of each part: a title, what set-up has to prepare for it, and `run`, which returns counts as those of tests.mjs. Of daily ones also the lane,
-// the `budget` in seconds of processor, and `inputs`: what a part depends on, for unchanged.mjs. Parts with `named` can run those tests alone whose
-// file or name has `word`; `stressed` has the ways in which stress.mjs runs them.
+// `inputs`, what a part depends on (unchanged.mjs), and the `budget`: seconds of processor when everything is new, 15 % more than two cores of
+// a Xeon took. Parts with `named` can run those tests alone whose file or name has `word`; `stressed` has the ways in which stress.mjs runs
+// them.
 
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -45,7 +46,7 @@ export const DAILY = {
   compile: {
     lane: 'cargo',
     title: 'compiling the native tests',
-    budget: 300,
+    budget: 230,
     run: async () => {
       await must('The native tests could not be compiled.', 'cargo', [...NATIVE, '--tests', '--no-run']);
       return NOTHING;
@@ -55,7 +56,7 @@ export const DAILY = {
     lane: 'cargo',
     title: 'native tests',
     named: true,
-    budget: 200,
+    budget: 150,
     inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs', 'python/tests', 'python/package'] },
     // The names of these tests begin with their files, as modules or paths.
     run: async ({ word }) => {
@@ -67,7 +68,7 @@ export const DAILY = {
     lane: 'cargo',
     title: 'the algebra in WebAssembly, under Node',
     named: true,
-    budget: 100,
+    budget: 12,
     inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs', 'examples', 'experiments', 'python'] },
     // Its library is that of the modules, compiled once.
     run: async ({ word }) => {
@@ -82,7 +83,7 @@ export const DAILY = {
     title: 'the Python package',
     named: true,
     needs: { ownPython: true },
-    budget: 100,
+    budget: 72,
     inputs: { build: buildPackage, apart: [...NOTES, ...PAGE, 'pkg/test', 'experiments'] },
     run: async (setup) => added(await ofPython('python', setup, buildTestWheel), await ofStart(setup, ['start-python'])),
     stressed: { busy: (setup) => ofPython('python', setup, buildTestWheel) },
@@ -91,14 +92,14 @@ export const DAILY = {
     lane: 'cargo',
     title: 'lints of Rust',
     needs: { checks: true },
-    budget: 150,
+    budget: 60,
     inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs'] },
     run: runLints,
   },
   builds: {
     lane: 'node',
     title: 'the modules, the package and the page',
-    budget: 200,
+    budget: 56,
     run: async () => {
       await buildPage();
       return NOTHING;
@@ -108,7 +109,7 @@ export const DAILY = {
     lane: 'node',
     title: 'package tests',
     named: true,
-    budget: 300,
+    budget: 140,
     inputs: { build: buildPackage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, ...PAGE, 'site', 'python'] },
     run: ({ word }) => ofPackage('test', {}, word),
     stressed: { busy: ({ word }) => ofPackage('test', {}, word, ['--test-concurrency=1']) },
@@ -118,7 +119,7 @@ export const DAILY = {
     title: 'the packed package, in Node and with Vite',
     named: true,
     needs: { browser: true },
-    budget: 60,
+    budget: 22,
     inputs: { build: buildPackage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, ...PAGE, 'tests', 'python'] },
     run: (setup) =>
       withInstalled(async (env) => {
@@ -131,7 +132,7 @@ export const DAILY = {
     title: 'page tests in Chromium',
     named: true,
     needs: { browser: true },
-    budget: 700,
+    budget: 585,
     inputs: { build: buildPage, built: BUILT, apart: [...NOTES, ...CRATES_OF_MODULES, 'pkg/test', 'tests', 'site', 'python', 'docs'] },
     // Playwright looks for it in files and names alike.
     run: (setup) => ofPage('test', setup, {}, named(setup.word)),
@@ -144,7 +145,7 @@ export const DAILY = {
   check: {
     lane: 'either',
     title: 'checks',
-    budget: 80,
+    budget: 30,
     // They ask the types of the package too.
     inputs: { build: buildPackage, apart: [] },
     run: runChecks,

@@ -10,10 +10,11 @@ import { run } from './run.mjs';
 const FOLDER = join(toolsFolder, 'passed');
 
 /**
- * What a part depends on, as one text: the contents of all files of the project but those below `apart`, of what is built, and the `versions`
- * of programs. Undefined where git does not say which files belong to the project: then everything runs.
+ * What a part depends on, as one text: the contents of all files of the project but those below `apart`, of what `build` builds, and the
+ * `versions` of programs. Undefined where git does not say which files belong to the project: then everything runs.
  */
-export async function stateOf({ apart, built = [] }, versions) {
+export async function stateOf({ apart, build, built = [] }, versions) {
+  await build?.();
   const { code, stdout } = await run('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'], { output: 'collect' });
   if (code !== 0) return undefined;
   const isApart = (path) => apart.some((other) => (other.startsWith('*') ? path.endsWith(other.slice(1)) : path === other || path.startsWith(`${other}/`)));
