@@ -120,7 +120,10 @@ export class Frames {
     return opening.open(
       async (signal) => {
         const frames = await load(signal);
-        return { frames, project: await projects.find(place(frames, this.#store.get().pair)) };
+        const project = await projects.find(place(frames, this.#store.get().pair));
+        // What was begun on the frame that is still on screen is of that frame.
+        if (as === 'step') await objects.drawn();
+        return { frames, project };
       },
       ({ frames, project }) => {
         const pair = place(frames, this.#store.get().pair);
@@ -160,6 +163,7 @@ export class Frames {
       this.#parts.opening.stay();
       return Promise.resolve();
     }
+    this.#parts.objects.finishStroke();
     this.#store.set({ timeline: wanted });
     return this.open(
       async () => {

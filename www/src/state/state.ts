@@ -4,7 +4,7 @@ import type { ClipPropagation, Segmentation } from 'veronese';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { ImageFolder } from '../frames/files.js';
-import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
+import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
@@ -171,6 +171,13 @@ export function isAwaited({ result, run }: State): boolean {
 /** Whether the frames on screen are left at once, so that their pair is not segmented. */
 export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
   return playing || scrubbing;
+}
+
+/** The frame of a clip that is on screen, which the timeline may have left for one that is being read; `null` if there is none. */
+export function seenIn({ pair, look }: Pick<State, 'pair' | 'look'>): { readonly index: number; readonly frame: LoadedFrame } | null {
+  const slot = look.view === 'second' ? 'second' : 'first';
+  const [index, frame] = [timelineOf(pair)?.[slot], pair[slot]];
+  return index === undefined || frame === null ? null : { index, frame };
 }
 
 /** The objects that are selected. */

@@ -36,6 +36,8 @@ export class Brush {
   #pressed = false;
   /** The last position of the brush. */
   #at: Point | null = null;
+  /** Called when nothing is being drawn any more. */
+  #waiting: (() => void)[] = [];
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
@@ -43,6 +45,7 @@ export class Brush {
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#prompt, this.#path, this.#corners, this.#circle);
     session.objects.finishStroke = () => this.#finish();
+    session.objects.drawn = () => this.drawn();
     this.#fit(store.get());
     this.#dress(store.get());
     mountPointing(document, this.#prompt, store);
@@ -103,6 +106,11 @@ export class Brush {
     this.#trace();
   }
 
+  /** Ends when nothing is being drawn. */
+  async drawn(): Promise<void> {
+    if (this.painting) await new Promise<void>((resolve) => this.#waiting.push(resolve));
+  }
+
   /** Hides the circle when the pointer leaves. */
   leave(): void {
     if (!this.painting) this.#circle.setAttribute('r', '0');
@@ -112,6 +120,7 @@ export class Brush {
   begin(point: Point, pointing: Pointing | null = null): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
+    this.#store.set({ playing: false });
     this.#pressed = true;
     if (!this.#polygon) {
       const take = tool.name === 'box' ? this.drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.drawing.beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
@@ -160,6 +169,7 @@ export class Brush {
   #clear(): void {
     this.#now = null;
     this.#trace();
+    for (const go of this.#waiting.splice(0)) go();
   }
 
   /** The points of the polygon that is being drawn. */

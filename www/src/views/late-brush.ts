@@ -12,6 +12,7 @@ export class LateBrush {
   /** `null` until it is loaded. */
   now: Brush | null = null;
   readonly #store: Store;
+  readonly #session: Session;
   readonly #load: () => Promise<Brush>;
   #loading: Promise<Brush> | null = null;
   /** The pair on which a key that waits has begun to draw. */
@@ -19,6 +20,7 @@ export class LateBrush {
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
+    this.#session = session;
     const layers = find(stage, '.layers', HTMLElement);
     let over: PointerEvent | null = null;
     layers.addEventListener('pointermove', (event) => (over = event));
@@ -60,7 +62,9 @@ export class LateBrush {
     if (this.now !== null) return what(this.now);
     const { pair } = this.#store.get();
     const later = (brush: Brush): void => (this.#store.get().pair === pair ? what(brush) : undefined);
-    this.#loading?.then(later, () => undefined);
+    const done = this.#loading?.then(later, () => undefined);
+    // Other frames wait for it as for what is being drawn.
+    if (done !== undefined) this.#session.objects.drawn = () => done.then(() => this.now?.drawn());
   }
 
   /** A key while the picture has the focus, or while something is being drawn. Returns whether it is the brush's. */

@@ -1,7 +1,7 @@
 //! The meaning of a press with the box tool: a new object, or more or less of the selected one, whose clicks and box are shown.
 
 import { promptOf } from '../session/clip/drawing.js';
-import type { Pointing, State, Store } from '../state/state.js';
+import { type Pointing, type State, type Store, seenIn } from '../state/state.js';
 import type { Prompt } from '../state/annotation.js';
 import { drawn, find } from './markup.js';
 
@@ -20,8 +20,9 @@ export function pointingIn(state: State): Pointing {
 }
 
 /** The prompt of the selected object in the frame on screen, which can be refined; `null` if there is none. */
-function promptIn({ tracked, timeline, look }: State): Prompt | null {
-  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, timeline?.first ?? null, look.selected);
+function promptIn(state: State): Prompt | null {
+  const { tracked, look } = state;
+  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, seenIn(state)?.index ?? null, look.selected);
 }
 
 export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store): void {
@@ -41,7 +42,7 @@ export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store
     marks.replaceChildren(...(isShown && masks ? marksOf(prompt, (now.pair.first?.width ?? masks.width) / masks.width, unit) : []));
   };
   store.subscribe((now, before) => {
-    if ((['tool', 'look', 'tracked', 'timeline', 'viewport', 'pair'] as const).some((part) => now[part] !== before[part])) render(now);
+    if ((['tool', 'look', 'tracked', 'viewport', 'pair'] as const).some((part) => now[part] !== before[part])) render(now);
   });
   render(store.get());
 }

@@ -2,7 +2,7 @@
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
-import type { Store } from '../state/state.js';
+import { type Store, seenIn } from '../state/state.js';
 import { acceptedIn, changedIn, isTracked, masksIn, toReview } from '../state/tracked.js';
 import { contextOf, find } from './markup.js';
 
@@ -20,14 +20,15 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
   all.addEventListener('click', () => accept(session, 'all'));
   next.addEventListener('click', () => session.frames.goToChanged());
 
-  store.subscribe(({ tracked, look, timeline }, before) => {
-    if (tracked === before.tracked && look === before.look && timeline === before.timeline) return;
+  store.subscribe((now, before) => {
+    const { tracked, look, pair } = now;
+    if (tracked === before.tracked && look === before.look && pair === before.pair) return;
     box.hidden = bar.hidden = !isTracked(tracked) || tracked.spans.length === 0 || look.kind !== 'objects';
     if (box.hidden || tracked === null) return;
     const { frames, clip } = tracked;
     const accepted = acceptedIn(tracked);
     status.textContent = strings.accepted(accepted.length, masksIn(frames, { first: 0, last: clip.count - 1 }));
-    one.disabled = accepted.includes(timeline?.first ?? -1) && toReview(tracked) === null;
+    one.disabled = accepted.includes(seenIn(now)?.index ?? -1) && toReview(tracked) === null;
     all.disabled = toReview(tracked) === null;
     bar.width = clip.count;
     const context = contextOf(bar);

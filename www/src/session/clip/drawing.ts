@@ -9,7 +9,7 @@ import { type Path, type StrokeTool, eachPixel } from '../../correction/strokes.
 import { UNLABELLED, keyOf, maskOf } from '../../result/masks.js';
 import { type Spread, seenOf } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
-import type { Pointing, Store } from '../../state/state.js';
+import { type Pointing, type Store, seenIn } from '../../state/state.js';
 import { type Box, type Click, type Painted, type Prompt, isPrompt, namesObjects, paintedOf, points } from '../../state/annotation.js';
 import type { Version } from '../../state/tracked.js';
 import type { Objects } from './objects.js';
@@ -121,8 +121,8 @@ export class Drawing {
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
   split(id: number): void {
-    const { tracked, timeline } = this.#store.get();
-    const frame = timeline?.first ?? null;
+    const { tracked } = this.#store.get();
+    const frame = seenIn(this.#store.get())?.index ?? null;
     const masks = frame === null ? undefined : tracked?.frames[frame]?.runs;
     if (!this.#objects.takesCorrections() || masks === undefined || !tracked || frame === null || this.#objects.areLocked(id)) return;
     const pieces = smallerPieces(unpacked(masks), masks.width, id);

@@ -8,7 +8,7 @@ import type { Colour } from '../../drawing/palette.js';
 import { keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
-import type { Store } from '../../state/state.js';
+import { type Store, seenIn } from '../../state/state.js';
 import { type Notes, isDrafting, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
@@ -27,6 +27,8 @@ export class Objects {
   drawing: () => Promise<Drawing | null> = () => Promise.resolve(null);
   /** Ends the stroke that is being drawn, before other frames are shown. Set by the brush. */
   finishStroke: () => void = () => undefined;
+  /** Ends when nothing is being drawn. Set by the brush. */
+  drawn: () => Promise<void> = () => Promise.resolve();
 
   constructor(store: Store, carrying: Carrying) {
     this.#store = store;
@@ -92,10 +94,10 @@ export class Objects {
    * nothing could be accepted.
    */
   accept(which: 'shown' | 'all'): number | null {
-    const { tracked, timeline } = this.#store.get();
+    const { tracked } = this.#store.get();
     if (!this.takesCorrections() || tracked === null) return null;
     const { frames, accepted } = tracked;
-    const masks = (which === 'all' ? frames : [frames[timeline?.first ?? -1] ?? null]).filter((frame) => frame !== null);
+    const masks = (which === 'all' ? frames : [frames[seenIn(this.#store.get())?.index ?? -1] ?? null]).filter((frame) => frame !== null);
     if (masks.length === 0) return this.refuse(strings.notTracked);
     const now = new Set([...frames.filter((frame) => frame !== null && accepted.has(frame)), ...masks].filter((frame) => frame !== null));
     if (masks.some((frame) => !accepted.has(frame))) this.carrying.note({ accepted: now }, 'accepted');
@@ -147,10 +149,10 @@ export class Objects {
 
   /** The frame on screen and its index; `null`, with a notice, if it takes no corrections. */
   frameToCorrect(): { readonly index: number; readonly frame: LoadedFrame } | null {
-    const { tracked, timeline, pair } = this.#store.get();
-    const index = timeline?.first ?? null;
-    if (!this.takesCorrections() || tracked === null || index === null || pair.first === null) return null;
-    return spanAt(tracked.spans, index) === null ? this.refuse(strings.notTracked) : { index, frame: pair.first };
+    const { tracked } = this.#store.get();
+    const seen = seenIn(this.#store.get());
+    if (!this.takesCorrections() || tracked === null || seen === null) return null;
+    return spanAt(tracked.spans, seen.index) === null ? this.refuse(strings.notTracked) : seen;
   }
 
   takesCorrections(): boolean {
