@@ -149,3 +149,69 @@ test('notes meanwhile are steps after it: a colour that is looked for in the pal
   for (see(); tracked().past.length > 0; see()) carrying.undo();
   expect(steps).toEqual([['Disc', 3, 36], ['Disc', undefined, 36], [undefined, undefined, 36], [undefined, undefined, 0]]);
 });
+
+test('strokes that wait are carried together, and each is a step of its own', async () => {
+  const clip = await segmented();
+  const { runs, carrying, tracked } = clip;
+  const found = versionOf(tracked());
+  let count = 0;
+  const { segmenter } = runs;
+  const segmentClip = segmenter.segmentClip.bind(segmenter);
+  segmenter.segmentClip = (...given) => ((count += 1), segmentClip(...given));
+  const THIRD = rectangle(5, 4, 30);
+  await Promise.all([OVER, BESIDE, THIRD].map((one) => carrying.correct(one)));
+  expect(count).toBe(2);
+  const all = versionOf(tracked());
+  // As if they had been said at once.
+  const { carrying: other, tracked: othersTracked } = await segmented();
+  await other.correct(OVER);
+  await other.correct({ annotations: [...BESIDE.annotations, ...THIRD.annotations] });
+  expect(othersTracked().frames).toEqual(all.frames);
+  const has = ({ frames }: Pick<Tracked, 'frames'>): boolean[] => [3, 4, 5].map((id) => unpacked(frames[COUNT - 1]!.runs).includes(id));
+  expect(has(all)).toEqual([true, true, true]);
+
+  const undone = async (): Promise<void> => {
+    carrying.undo();
+    await expect.poll(() => tracked().run.phase).toBe('done');
+  };
+  await undone();
+  expect([has(tracked()), sizes(tracked())]).toEqual([[true, true, false], [36, 36]]);
+  carrying.redo();
+  expect(versionOf(tracked())).toEqual(all);
+  await undone();
+  await undone();
+  expect(has(tracked())).toEqual([true, false, false]);
+  await undone();
+  expect(versionOf(tracked())).toEqual(found);
+
+  // While they are carried it takes back the last.
+  atFirstFrame(clip, () => {
+    atFirstFrame(clip, () => carrying.undo());
+  });
+  await Promise.all([OVER, BESIDE, THIRD].map((one) => carrying.correct(one)));
+  expect(has(tracked())).toEqual([true, true, false]);
+});
+
+test('what is not carried yet is known, with the masks before it, until it is; a clip that is left goes on with it', async () => {
+  const { store, runs, carrying, tracked } = await segmented();
+  const found = versionOf(tracked());
+  const told: (readonly [boolean, number] | null)[] = [];
+  store.subscribe(({ tracked: now }, before) => {
+    if (now!.pending !== before.tracked!.pending) told.push(now!.pending && [now!.pending.settled.frames === found.frames, now!.pending.corrections.length]);
+  });
+  await Promise.all([carrying.correct(OVER), carrying.correct(BESIDE)]);
+  expect(told).toEqual([[true, 1], [true, 2], [false, 1], null]);
+  const both = versionOf(tracked());
+
+  for (const _ of tracked().past) carrying.undo();
+  expect(versionOf(tracked())).toEqual(found);
+  const left = carrying.correct(OVER);
+  runs.stop();
+  await left;
+  expect(versionOf(tracked())).toEqual(found);
+  expect(tracked().pending).toEqual({ settled: found, corrections: [OVER] });
+  carrying.resume();
+  await carrying.correct(BESIDE);
+  await expect.poll(() => tracked().pending).toBeNull();
+  expect(tracked().frames).toEqual(both.frames);
+});

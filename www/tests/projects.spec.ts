@@ -10,7 +10,7 @@ import { fileOf, projectFromFile } from '../src/projects/file.js';
 import type { Project } from '../src/projects/project.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { type Span, type TrackedFrame, untracked, versionOf } from '../src/state/tracked.js';
-import { type Upload, clipFrames, differences, enter, expect, goTo, hide, kept, labelsOnCanvas, leaves, masksOf, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, said, savedProject, test, upload } from './support.js';
+import { type Upload, clipDone, clipFrames, differences, drag, enter, expect, goTo, hide, holdBack, kept, labelsOnCanvas, leaves, masksOf, openAdvanced, openClip, openExport, openSegmented, projectsInBrowser, reloadEmpty, rename, reopen, said, savedProject, test, upload } from './support.js';
 
 /** The names of objects in the only project of the browser; undefined before there is one. */
 async function namesInBrowser(page: Page): Promise<unknown> {
@@ -61,6 +61,52 @@ test('a corrected clip is there after a reload, and can be corrected further', a
   await page.getByRole('button', { name: 'Undo' }).click();
   await said(page, /^Undone/);
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
+});
+
+test('what is said is kept while it is being carried through the clip, and carried on after the page was left', async ({ page }) => {
+  const files = await clipFrames(6);
+  await openSegmented(page, files);
+  await kept(page);
+  const found = await masksOf(page, [5, 2]);
+  await page.keyboard.press('1');
+  await page.keyboard.press('p');
+  await page.locator('#tools [name=radius]').fill('4');
+  await holdBack(page, 'f05.png');
+  await drag(page, [0.1, 0.85], [0.2, 0.85]);
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
+  await kept(page);
+  // Another one waits for it.
+  await drag(page, [0.8, 0.15], [0.9, 0.15]);
+  expect(await leaves(page)).toBe(false);
+  await kept(page);
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
+
+  // A write that was ended leaves a file that is no project.
+  await page.evaluate(async () => {
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
+    for await (const name of folder.keys()) {
+      const content = await (await folder.getFileHandle(name)).getFile();
+      const swap = await (await folder.getFileHandle(`${name}.1.crswap`, { create: true })).createWritable();
+      await swap.write(content);
+      await swap.close();
+    }
+  });
+  await reopen(page, files);
+  await said(page, /^Corrected/);
+  await clipDone(page);
+  await goTo(page, 2);
+  const drawn = await labelsOnCanvas(page);
+  expect([59 * 100 + 15, 10 * 100 + 85].map((p) => drawn[p])).toEqual([1, 1]);
+  await kept(page);
+  await openExport(page);
+  await expect(page.locator('#project summary')).toHaveText('One project in this browser');
+  await page.keyboard.press('Escape');
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await said(page, /^(Undone|Corrected)/);
+  await clipDone(page);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(page.getByRole('button', { name: 'Undo' })).toBeDisabled();
+  expect((await masksOf(page, [5, 2])).map((labels, k) => differences(labels, found[k]!))).toEqual([0, 0]);
 });
 
 test('classes are those of the project, and their list is there for the next clip', async ({ page }) => {

@@ -236,7 +236,7 @@ test('what is drawn exactly stays under later annotations elsewhere, and follows
   const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
   const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
   const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
-  const drawn = withCorrection(start, { drawn: new Map([[0, row(255, 3, 3, 255, 0, 255)]]) });
+  const drawn = withCorrection(start, { drawn: new Map([[0, packed(row(255, 3, 3, 255, 0, 255), 6, 1)]]) });
   expect(shown(drawn)).toEqual([1, 3, 3, 2, 0, 0]);
   expect(drawn.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [2, 1, 3, 0, 1, 1], [3, 2, 1, 0, 2, 1]]);
   expect(drawn.frames[1]).toBe(start.frames[1]);

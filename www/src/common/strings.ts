@@ -174,7 +174,6 @@ export const strings = {
       return without ? 'Your work is kept in this browser. Open the same frames again to continue.' : 'Your work is kept in this browser, with its frames.';
     },
     nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
-    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
     saved: (name: string): string => `Saved as ${name}.`,
     damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
     newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,

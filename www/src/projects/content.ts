@@ -12,13 +12,17 @@ export type Content = Pick<Project, 'settings' | 'classList' | 'clip'>;
 export function isContent(value: unknown, frames: number): value is Content {
   if (!isProject(value)) return false;
   const { clip } = value as Content;
-  const { range, past, future } = clip;
-  return isWithin(range, frames) && clip.at < frames && [clip, ...past, ...future].every((version) => isWhole(version, frames));
+  const { range, past, future, pending } = clip;
+  const versions = [{ ...clip, together: pending }, ...past, ...future];
+  return isWithin(range, frames) && clip.at < frames && versions.every((version) => isWhole(version, frames));
 }
 
 /** Whether the parts of a version fit each other. */
-function isWhole({ frames, found, annotations, exact, spans }: Version, count: number): boolean {
-  const masks = [...frames.map((frame) => frame?.runs ?? null), ...found, ...annotations.map((one) => ('labels' in one ? one.labels : null)), ...exact.values()];
+function isWhole({ frames, found, annotations: carried, exact, spans, together = [] }: Version, count: number): boolean {
+  const annotations = [...carried, ...together.flatMap((one) => ('annotations' in one ? one.annotations : []))];
+  const drawn = together.flatMap((one) => ('drawn' in one ? [...one.drawn] : []));
+  if (drawn.some(([index]) => !frames[index])) return false;
+  const masks = [...frames.map((frame) => frame?.runs ?? null), ...found, ...annotations.map((one) => ('labels' in one ? one.labels : null)), ...exact.values(), ...drawn.map(([, runs]) => runs)];
   const images = masks.filter((image) => image !== null);
   const inside = spans.every(({ range }) => isWithin(range, count)) && annotations.every((one) => isInside(one, frames[one.frame]?.runs));
   return frames.length === count && found.length === count && inside && images.every((image) => sameSize(image, images[0]!));
@@ -67,19 +71,24 @@ const isPropagation = isOne('both', 'forward', 'backward', 'none');
 const isPainted = objectOf({ frame: isIndex, object: isFrom(0, 254), propagate: isPropagation, labels: isRuns });
 const isClick: Check<Click> = (value): value is Click => listOf(isNumber, 3)(value) && isIndex(value[0]) && isIndex(value[1]) && Math.abs(value[2]!) === 1;
 const isPrompted = objectOf({ frame: isIndex, object: isFrom(1, 254), propagate: isPropagation, clicks: listOf(isClick), box: orNull(listOf(isIndex, 4)) });
+const NOTES = { names: recordOf(isText), classes: recordOf(isText), colours: recordOf(isColour), locked: setOf(isFrom(1, 254)), accepted: setOf(isFrame) };
+const isNumbers = listOf(isFrom(1, 254));
+const isCorrection = objectOf({
+  annotations: optional(listOf(either(isPainted, isPrompted))),
+  edits: optional(objectOf({ merge: optional(listOf(isNumbers)), delete: optional(isNumbers) })),
+  drawn: optional(mapOf(isIndex, isRuns)),
+  notes: optional(objectOf({ names: optional(NOTES.names), classes: optional(NOTES.classes), colours: optional(NOTES.colours), locked: optional(NOTES.locked), accepted: optional(NOTES.accepted) })),
+});
 const VERSION = {
+  ...NOTES,
   longestSide: isSide,
   largest: isFrom(0, 254),
-  names: recordOf(isText),
-  classes: recordOf(isText),
-  colours: recordOf(isColour),
+  together: optional(listOf(isCorrection)),
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
   annotations: listOf(either(isPainted, isPrompted)),
   exact: mapOf(isIndex, isRuns),
   became: mapOf(isFrom(1, 254), isFrom(0, 254)),
-  locked: setOf(isFrom(1, 254)),
-  accepted: setOf(isFrame),
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: mapOf(isFrom(1, 254), isFrom(0, 254)) })),
 };
 const isClip = objectOf({
@@ -89,6 +98,7 @@ const isClip = objectOf({
   future: listOf(objectOf(VERSION)),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),
+  pending: optional(listOf(isCorrection)),
   solved: orNull(objectOf({ settings: isText, pairs: mapOf(isIndex, isBlob) })),
 });
 

@@ -41,6 +41,7 @@ class Folder implements Place {
   async sizes(): Promise<ReadonlyMap<string, number>> {
     const sizes = new Map<string, number>();
     for await (const name of this.folder.keys()) {
+      if (isLeft(name)) continue;
       const file = await this.read(name);
       if (file !== null) sizes.set(name, file.size);
     }
@@ -67,7 +68,13 @@ class Folder implements Place {
 
   async remove(name: string): Promise<void> {
     await this.folder.removeEntry(name);
+    for await (const other of this.folder.keys()) if (other.startsWith(name) && isLeft(other)) await this.folder.removeEntry(other).catch(() => undefined);
   }
+}
+
+/** Whether it is what a browser writes until it is the file: it stays where the browser is ended meanwhile. */
+function isLeft(name: string): boolean {
+  return name.endsWith('.crswap');
 }
 
 const FILES = 'files';

@@ -5,7 +5,7 @@ import { type FramePair, timelineOf } from '../state/pair.js';
 import { DEFAULT_SETTINGS } from '../state/settings.js';
 import type { State } from '../state/state.js';
 import { isPrompt } from '../state/annotation.js';
-import { type SolvedPairs, type Tracked, type TrackedFrame, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
+import { type Pending, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
 
 /** The objects of a clip. */
 export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'past' | 'future'> {
@@ -14,6 +14,8 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'past' | '
   readonly hidden: readonly number[];
   /** The solved pairs, while frames to segment have no masks; `null` if all have. */
   readonly solved: SolvedPairs | null;
+  /** What was said and is not carried through the clip yet: it is carried when the clip is opened. */
+  readonly pending?: Pending['corrections'] | undefined;
 }
 
 export interface Project extends Pick<State, 'settings' | 'classList'> {
@@ -46,12 +48,13 @@ function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: S
   const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
   // A complete clip can be corrected without its pairs.
-  return { ...versionOf(tracked), ...stepsOf(tracked), range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
+  const { settled = tracked, corrections: pending } = tracked.pending ?? {};
+  return { ...versionOf(settled), ...stepsOf(tracked), pending, range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
 }
 
 /** A version without what was accepted of earlier ones. */
 function stepOf(version: Version): Version {
-  return { ...versionOf(version), accepted: new Set(version.frames.filter((frame) => frame !== null && version.accepted.has(frame)) as TrackedFrame[]) };
+  return { ...versionOf(version), together: version.together, accepted: new Set(version.frames.filter((frame) => frame !== null && version.accepted.has(frame)) as TrackedFrame[]) };
 }
 
 /** As many steps of undo and redo are kept as have parts of so many bytes, the nearest first. */
@@ -83,7 +86,7 @@ function withClip({ tracked, keptClips }: State, of: string, change: (clip: Trac
 
 /** The state in which what the project has counts as saved, unless it has changed since. */
 export function withSaved(state: State, { of, clip }: Project): Partial<State> {
-  return withClip(state, of, (now) => ({ ...now, saved: savedOf(clip) }));
+  return withClip(state, of, (now) => ({ ...now, saved: savedOf({ ...clip, corrections: clip.pending }) }));
 }
 
 const NOTHING: Tracked['saved'] = { frames: [], locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
@@ -111,7 +114,7 @@ export function withProject(state: State, { of, settings, classList: saved, clip
 }
 
 /** Masks of a project that replace others are one more step. */
-function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip }: ProjectClip): Tracked {
+function continued(before: Tracked, { solved, at: _at, hidden: _hidden, pending: corrections, ...clip }: ProjectClip): Tracked {
   const complete = isComplete(clip);
   const begun = (solved?.pairs.size ?? 0) > 0 || clip.frames.some((frame) => frame !== null);
   return {
@@ -120,6 +123,7 @@ function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip 
     run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: begun ? 'cancelled' : 'idle' },
     solved: complete ? lengthOf(clip.range) : (solved?.pairs.size ?? 0),
     ...(isTracked(before) ? { past: [...before.past, versionOf(before)], future: [] } : {}),
-    saved: savedOf(clip),
+    pending: corrections === undefined ? null : { settled: versionOf(clip), corrections },
+    saved: savedOf({ ...clip, corrections }),
   };
 }

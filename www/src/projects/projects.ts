@@ -7,15 +7,17 @@ import { strings } from '../common/strings.js';
 import { type Sample, sampleCalled } from '../frames/samples.js';
 import { type FramePair, timelineOf } from '../state/pair.js';
 import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
-import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
+import { type SolvedPairs, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
 import type { Listed } from './shelf.js';
 
-/** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
+/** How long a change waits for others, milliseconds; and one by a run while it goes on, which changes all the time. */
 const SOON = 500;
 const LATER = 10_000;
 
-const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'solved', 'run', 'range', 'past', 'future'] as const;
+/** The parts of a clip that a person changes, and those that runs change. */
+const BY_PERSON = ['names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'range', 'past', 'future', 'pending'] as const;
+const BY_RUNS = ['frames', 'spans', 'solved', 'run'] as const;
 
 type Shelf = typeof import('./shelf.js');
 
@@ -173,9 +175,12 @@ export class Projects {
     if (clip === null || clip.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
     const listed = now.classList !== before.classList;
-    if (!ticked && !listed && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
+    const byPerson = ticked || listed || BY_PERSON.some((part) => clip[part] !== clipBefore[part]);
+    // While corrections are carried, what is written is what was said.
+    const byRun = clip.pending === null && BY_RUNS.some((part) => clip[part] !== clipBefore[part]);
+    if (!byPerson && !byRun) return;
     // The page segments a sample by itself: that is not kept.
-    if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
+    if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, byPerson || clip.run.phase !== 'working' ? SOON : LATER);
   }
 
   #touch(of: string, delay: number): void {
@@ -196,7 +201,7 @@ export class Projects {
   /** The clips that can be written: not one between two states, whose masks do not belong together. */
   #ready(): string[] {
     const { tracked } = this.#store.get();
-    const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0));
+    const between = tracked !== null && tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0;
     return [...this.#changed].filter((of) => !between || of !== tracked.clip.fingerprint);
   }
 

@@ -209,6 +209,7 @@ export class Frames {
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && !sameClip) left.clip.close();
+    objects.carrying.resume();
   }
 }
 

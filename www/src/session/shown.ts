@@ -5,7 +5,7 @@ import type { Kind } from '../result/masks.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import type { FramePair } from '../state/pair.js';
 import { FRESH, type Look, type Run, type State, type Store, isPassing } from '../state/state.js';
-import { type ClipRun, type Tracked, type Version, isDrafting, isSeen, versionOf } from '../state/tracked.js';
+import { type ClipRun, type Pending, type Tracked, type Version, isDrafting, isSeen, versionOf } from '../state/tracked.js';
 import { type PairSegmenting, STARTING } from './pair/segmenting.js';
 
 export class Shown {
@@ -65,14 +65,14 @@ export class Shown {
   }
 
   /** Shows another version of the clip's masks. */
-  version(version: Version, run: ClipRun): void {
+  version(version: Version, run: ClipRun, pending: Pending | null = null): void {
     const { tracked, look } = this.#store.get();
     if (tracked === null) return;
     const { names, classes, colours, became } = version;
     const into = became.get(look.selected ?? 0);
     const selected = into === undefined ? look.selected : into === 0 ? null : into;
     // At once, so that the focus goes on from a row that is gone to the one that is selected.
-    this.#store.set({ tracked: { ...tracked, ...versionOf(version), run }, look: { ...look, selected, ...(look.kind === 'objects' && { names, classes, colours }) } });
+    this.#store.set({ tracked: { ...tracked, ...versionOf(version), run, pending }, look: { ...look, selected, ...(look.kind === 'objects' && { names, classes, colours }) } });
     if (tracked.spans.length === 0 && !this.#chosen) this.kind('objects');
     this.objects(tracked);
   }

@@ -1,7 +1,7 @@
 //! A person's annotations of a clip, and the masks as they are before these have been carried to the other frames.
 
 import type { ClipOptions, ClipPropagation } from 'veronese';
-import { over, packed, unpacked } from '../correction/runs.js';
+import { type Runs, over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
@@ -20,7 +20,7 @@ export interface Annotated {
 
 /** Labels drawn exactly in frames, by index. */
 export interface Drawn {
-  readonly drawn: ReadonlyMap<number, Uint8Array>;
+  readonly drawn: ReadonlyMap<number, Runs>;
 }
 
 /** Notes in the place of those before: they change no masks. */
@@ -39,7 +39,7 @@ export function seenOf(version: Version, frame: number, object: number, labels: 
 export function withCorrection<V extends Version>(version: V, correction: Correction): V {
   const noted = { ...version, ...correction.notes };
   if ('edits' in correction) return withEdits(noted, correction.edits);
-  if ('drawn' in correction) return [...correction.drawn].reduce((before, [index, labels]) => withLabels(before, index, labels, true), noted);
+  if ('drawn' in correction) return [...correction.drawn].reduce((before, [index, labels]) => withLabels(before, index, unpacked(labels), true), noted);
   return 'annotations' in correction ? correction.annotations.reduce(annotated, noted) : noted;
 }
 

@@ -5,6 +5,7 @@ import type { Clip } from '../clips/clip.js';
 import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
 import type { Annotation } from './annotation.js';
+import type { Correction } from './correction.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -78,6 +79,14 @@ export interface Version {
   readonly colours: Readonly<Record<string, Colour>>;
   /** The largest number that an object ever had. Numbers are not used again. */
   readonly largest: number;
+  /** Of an earlier version: what was said of it and carried together, without the last; undoing that one carries these. */
+  readonly together?: readonly Correction[] | undefined;
+}
+
+/** What was said and has not been carried through the clip as a whole, in its order, and the masks before it. */
+export interface Pending {
+  readonly settled: Version;
+  readonly corrections: readonly Correction[];
 }
 
 /** The parts of a version that change no masks. */
@@ -86,6 +95,8 @@ export type Notes = Pick<Version, 'locked' | 'accepted' | 'names' | 'classes' | 
 export interface Tracked extends Version {
   readonly clip: Clip;
   readonly run: ClipRun;
+  /** While corrections are carried: the masks are those before these, as far as these have changed them. `null` if there are none. */
+  readonly pending: Pending | null;
   /** The frames to segment, from the in point to the out point. */
   readonly range: Range;
   /**
@@ -104,7 +115,7 @@ export interface Tracked extends Version {
   readonly saved: Saved;
 }
 
-type Saved = Notes & Pick<Version, 'frames'>;
+type Saved = Notes & Pick<Version, 'frames'> & { readonly corrections?: Pending['corrections'] | undefined };
 
 const NO_NOTES: Notes = { locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
@@ -113,6 +124,7 @@ export function untracked(clip: Clip): Tracked {
   return {
     clip,
     run: { phase: 'idle' },
+    pending: null,
     range: { first: 0, last: clip.count - 1 },
     previews: frames,
     solved: 0,
@@ -141,8 +153,8 @@ export function notesOf({ locked, accepted, names, classes, colours }: Notes): N
 }
 
 /** The record of a clip that is kept or exported as it is. */
-export function savedOf({ frames, ...others }: Saved): Saved {
-  return { frames, ...notesOf(others) };
+export function savedOf({ frames, corrections, ...others }: Saved): Saved {
+  return { frames, corrections, ...notesOf(others) };
 }
 
 /** The frames that a person corrected, by index, and of which objects. A frame may be there several times. */
@@ -163,11 +175,12 @@ export function unchanged<V extends Pick<Version, 'frames'>>(before: Pick<Versio
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, saved, past, future, run, ...others }: Tracked): boolean {
+export function isUnsavedClip({ saved, past, future, pending, ...others }: Tracked): boolean {
+  const settled = pending?.settled ?? others;
   // An undone step is a correction as well: the next visit would have it still.
-  const corrected = past.length > 0 || future.length > 0 || isCorrecting(run);
-  const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => others[part] !== saved[part]);
-  return noted || (frames !== saved.frames && corrected);
+  const corrected = past.length > 0 || future.length > 0;
+  const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => settled[part] !== saved[part]);
+  return noted || pending?.corrections !== saved.corrections || (settled.frames !== saved.frames && corrected);
 }
 
 /** Whether a correction is being carried through the clip. */

@@ -40,7 +40,7 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   };
 
   const button = find(root, '#save-project', HTMLButtonElement);
-  button.addEventListener('click', () => void saveProject(store, session));
+  button.addEventListener('click', () => void saveProject(session));
 
   panel.addEventListener('toggle', () => void refresh());
   watch(() => void (panel.matches(':popover-open') && refresh()));

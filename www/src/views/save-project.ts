@@ -4,12 +4,8 @@ import { codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { save } from '../export/save.js';
 import type { Session } from '../session/session.js';
-import type { Store } from '../state/state.js';
-import { isCorrecting } from '../state/tracked.js';
 
-export async function saveProject(store: Store, session: Session): Promise<void> {
-  const { tracked } = store.get();
-  if (tracked !== null && isCorrecting(tracked.run)) return session.say(strings.projects.correcting);
+export async function saveProject(session: Session): Promise<void> {
   try {
     const file = await session.projects.file();
     if (file === null) return session.say(strings.projects.nothingYet);

@@ -11,7 +11,7 @@ export function mountSaving(root: HTMLElement, store: Store, session: Session): 
   const button = find(root, 'button', HTMLButtonElement);
   const sentence = find(button, 'span', HTMLElement);
   const status = find(root, '[role=status]', HTMLElement);
-  button.addEventListener('click', () => void saveProject(store, session));
+  button.addEventListener('click', () => void saveProject(session));
 
   const show = ({ keeping }: State): void => {
     button.hidden = keeping.is === 'nothing';

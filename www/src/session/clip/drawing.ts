@@ -143,7 +143,7 @@ export class Drawing {
     if (tracked === null) return;
     if (spread !== 'exact') return void this.#objects.carrying.correct({ annotations: all.flatMap(([object, labels]) => painted(tracked, frame, object, labels, spread)) });
     const seen = all.map(([object, labels]) => seenOf(tracked, frame, object, labels));
-    this.#objects.carrying.draw({ drawn: new Map([[frame, seen[0]!.map((label, p) => seen.findLast((labels) => labels[p] !== UNLABELLED)?.[p] ?? label)]]) });
+    this.#objects.carrying.draw(new Map([[frame, seen[0]!.map((label, p) => seen.findLast((labels) => labels[p] !== UNLABELLED)?.[p] ?? label)]]));
   }
 
   #spread(): Spread {
