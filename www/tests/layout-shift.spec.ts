@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeColourPng } from 'veronese/codecs';
 
-import { type Upload, clipFrames, done, expect, openEmpty, openSampleClip, said, segmentClip, shown, test, upload, withSmallSampleClip } from './support.js';
+import { type Upload, clipDone, clipFrames, differences, done, drag, expect, labelsOnCanvas, openEmpty, openSampleClip, openSegmented, said, screen, segmentClip, shown, test, upload, withSmallSampleClip } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -54,6 +54,39 @@ test('three steps through a clip and choosing a tool shift nothing, on a desktop
       await page.locator(`#tools [value=${tool}]`).check();
       expect(await places()).toEqual(before);
     }
+  }
+});
+
+test('the picture never moves under the pen, whatever is said of a correction', async ({ page }) => {
+  await openSegmented(page, await clipFrames(6));
+  await page.keyboard.press('1');
+  for (const [width, height] of [[1280, 720], [1440, 900], [390, 844]] as const) {
+    await page.setViewportSize({ width, height });
+    await page.locator('#tools [value=brush]').check({ force: true });
+    await page.locator('.layers').scrollIntoViewIfNeeded();
+    await page.evaluate(() => {
+      const places = new Set<string>();
+      const look = (): void => {
+        const { x, y, width, height } = document.querySelector('.layers')!.getBoundingClientRect();
+        places.add([x, y + scrollY, width, height].join(' '));
+        requestAnimationFrame(look);
+      };
+      look();
+      Object.assign(window, { places });
+    });
+    const places = (): Promise<string[]> => page.evaluate(() => [...(window as unknown as { places: Set<string> }).places]);
+    const before = await labelsOnCanvas(page);
+    await drag(page, [0.1, 0.85], [0.3, 0.85]);
+    await expect.poll(async () => differences(await labelsOnCanvas(page), before)).toBeGreaterThan(0);
+    await clipDone(page);
+    // Sentences are longer in clips that are.
+    await page.locator('#clip-status').evaluate((status) => (status.textContent = 'Corrected: the masks of 1,234 frames have changed. 1,200 accepted frames stay as they are. '.repeat(3)));
+    await page.locator('#clip-detail').evaluate((detail) => (detail.textContent = 'Your correction has come to 1,234 of 2,345 frames; about 12 minutes left. '.repeat(2)));
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+    expect(await places(), `${width} × ${height}`).toHaveLength(1);
+    await page.screenshot({ path: screen(`correcting-${width}`) });
+    await page.keyboard.press('Control+z');
+    await clipDone(page);
   }
 });
 
