@@ -107,6 +107,6 @@ window.addEventListener('hashchange', () => {
 
 const opened = linked.sample ?? SAMPLES[0];
 if (location.hash === '') mountShowing(window, store, session, opened);
-void (location.hash === '' ? session.open.begin(opened) : session.open.sample(opened));
+void (linked.sample === null ? session.open.begin(opened) : session.open.sample(opened));
 // Later than the sample: what a person has chosen already is newer.
 mountPicker(document, store, session);

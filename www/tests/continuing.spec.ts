@@ -130,11 +130,14 @@ test('the next visit shows the work, and one click opens it with its frames', as
 test('the page opens again with the last work, unless another tab has it; the samples are still there', async ({ page, context }) => {
   await withSmallSampleClip(page);
   await keptWork(page);
-  await page.goto('about:blank');
-  await page.goto('./');
-  await expect(page.locator('#clip-name')).toContainText('4 frames');
-  await said(page, /^Continued/);
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  // Settings in the address are no other work.
+  for (const address of ['./#quality=fast', './']) {
+    await page.goto('about:blank');
+    await page.goto(address);
+    await expect(page.locator('#clip-name')).toContainText('4 frames');
+    await said(page, /^Continued/);
+    await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  }
   await expect(page.locator('#samples .sample')).toHaveCount(3);
   await rename(page, '#objects', 1, 'Ball');
   await kept(page);

@@ -394,6 +394,9 @@ test('the frame that lost an object is looked at first, unless it left through t
     [1, 0, 2, { index: 3, confidence: 0 }],
     [2, 0, 1, { index: 1, confidence: 0.7 }],
   ]);
-  expect(toReview({ frames, accepted: new Set() })).toBe(3);
-  expect(toReview({ frames, accepted: new Set([frames[3]!]) })).toBe(0);
+  expect(toReview({ frames, accepted: new Set() }, 0)).toBe(3);
+  expect(toReview({ frames, accepted: new Set([frames[3]!]) }, 3)).toBe(0);
+  // Of several that are as doubtful, the next one.
+  const alike = [0, 1, 2, 3].map(() => frame([1, 2, 0.6]));
+  expect([0, 1, 3].map((from) => toReview({ frames: alike, accepted: new Set() }, from))).toEqual([1, 2, 0]);
 });

@@ -241,11 +241,13 @@ export const strings = {
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
   newObject: 'New object',
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, isBackground: boolean): string => {
+  /** `why`: why nothing can be drawn. */
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, isBackground: boolean, why: string | null): string => {
+    if (tool !== 'look' && why !== null) return why;
     if (isBackground && tool === 'eraser') return 'Background is selected, and cannot be erased: select an object first.';
     if (isBackground && (tool === 'brush' || tool === 'polygon')) return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
     if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
-    return isClip ? `${TOOLS[tool]} ${isExact ? 'Nothing else changes.' : 'The other frames follow.'}` : strings.notices.notReady;
+    return `${TOOLS[tool]} ${isExact ? 'Nothing else changes.' : 'The other frames follow.'}`;
   },
 
   tab: {

@@ -43,7 +43,7 @@ export class Opening {
     this.#giveUp(work);
     const own = new AbortController();
     this.#current.set(work, own);
-    this.#store.set(as === 'step' ? { notice: null } : { opening: true, notice: null });
+    if (as !== 'step') this.#store.set({ opening: true, notice: null });
     const slow = setTimeout(() => !own.signal.aborted && this.#store.set({ opening: true }), PATIENCE);
     try {
       const opened = await load(own.signal);

@@ -231,12 +231,16 @@ export function acceptedIn({ frames, accepted }: Pick<Version, 'frames' | 'accep
   return [...frames.keys()].filter((index) => frames[index] != null && accepted.has(frames[index]));
 }
 
-/** The frame that most needs a look: of those with masks that are not accepted, the one that lost an object, or with the least certain one; `null` if none is left. */
-export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>): number | null {
+/**
+ * The frame that most needs a look: of those with masks that are not accepted, one that lost an object, or with the least certain one, and of
+ * several the next after frame `from`; `null` if none is left.
+ */
+export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>, from: number): number | null {
   const left = [...frames.keys()].filter((index) => frames[index] != null && !accepted.has(frames[index]));
   const certainty = (index: number): number =>
     Math.min(lostIn(frames, index).length > 0 ? 0 : 1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
-  const [first] = left.toSorted((one, other) => certainty(one) - certainty(other));
+  const ahead = (index: number): number => (index - from - 1 + frames.length) % frames.length;
+  const [first] = left.toSorted((one, other) => certainty(one) - certainty(other) || ahead(one) - ahead(other));
   return first ?? null;
 }
 

@@ -26,6 +26,7 @@ export class Brush {
   readonly #store: Store;
   readonly drawing: Drawing;
   readonly #picture: SVGSVGElement;
+  readonly #help: HTMLElement;
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #corners = drawn('path', { class: 'corners' });
@@ -43,6 +44,7 @@ export class Brush {
     this.#store = store;
     this.drawing = new Drawing(store, session.objects);
     this.#picture = find(stage, '#strokes', SVGSVGElement);
+    this.#help = find(stage, '#tool-help', HTMLElement);
     this.#picture.append(this.#prompt, this.#path, this.#corners, this.#circle);
     session.objects.finishStroke = () => this.#finish();
     session.objects.drawn = () => this.drawn();
@@ -56,7 +58,10 @@ export class Brush {
         this.#at = null;
         this.#fit(now);
       }
-      if (now.tool.name !== before.tool.name) this.#finish();
+      if (now.tool.name !== before.tool.name) {
+        this.#finish();
+        this.#help.classList.remove('read');
+      }
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
     });
   }
@@ -121,6 +126,7 @@ export class Brush {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
     this.#store.set({ playing: false });
+    this.#help.classList.add('read');
     this.#pressed = true;
     if (!this.#polygon) {
       const take = tool.name === 'box' ? this.drawing.beginPrompt(pointing ?? pointingIn(this.#store.get())) : this.drawing.beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');

@@ -47,7 +47,10 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   };
   const paints = (): boolean => store.get().tool.name !== 'look';
 
-  layers.addEventListener('pointerdown', (event) => {
+  // What is drawn may begin beside the picture.
+  const stage = layers.parentElement!;
+  stage.addEventListener('pointerdown', (event) => {
+    if (event.target === stage ? !paints() : !layers.contains(event.target as Node)) return;
     const points = store.get().tool.name === 'box';
     const removes = points && (event.button === 2 || event.altKey);
     if ((event.button !== 0 && !removes) || event.target instanceof HTMLInputElement || event.target instanceof HTMLButtonElement) return;

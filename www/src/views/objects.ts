@@ -123,7 +123,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;
     if (life !== null) {
       doubtful.textContent = strings.doubtful(life.doubtful.index);
-      doubtful.setAttribute('aria-label', strings.doubtfulOf(called, life.doubtful.index));
+      doubtful.ariaLabel = doubtful.title = strings.doubtfulOf(called, life.doubtful.index);
     }
     mergeWith.setAttribute('aria-label', strings.mergeWithOf(called));
     merge.setAttribute('aria-label', strings.mergeOf(called));

@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { type Store, seenIn } from '../state/state.js';
-import { acceptedIn, changedIn, isTracked, masksIn, toReview } from '../state/tracked.js';
+import { acceptedIn, changedIn, isTracked, masksIn } from '../state/tracked.js';
 import { contextOf, find } from './markup.js';
 
 /** The colours of frames in the bar. */
@@ -28,8 +28,8 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
     const { frames, clip } = tracked;
     const accepted = acceptedIn(tracked);
     status.textContent = strings.accepted(accepted.length, masksIn(frames, { first: 0, last: clip.count - 1 }));
-    one.disabled = accepted.includes(seenIn(now)?.index ?? -1) && toReview(tracked) === null;
-    all.disabled = toReview(tracked) === null;
+    all.disabled = accepted.length === masksIn(frames, { first: 0, last: clip.count - 1 });
+    one.disabled = all.disabled && accepted.includes(seenIn(now)?.index ?? -1);
     bar.width = clip.count;
     const context = contextOf(bar);
     const changed = [...changedIn(tracked).keys()];

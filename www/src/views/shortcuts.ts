@@ -76,7 +76,9 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['f2'], run: renameSelected },
     { keys: ['t'], run: toClass },
     { keys: ['l'], run: () => session.objects.toggleLock(...chosen(store)), shift: true },
-    { keys: ['delete', 'backspace'], run: () => session.objects.remove(...chosen(store)) },
+    { keys: ['delete'], run: () => session.objects.remove(...chosen(store)) },
+    // With a polygon it takes corners back; one press too many deletes nothing.
+    { keys: ['backspace'], run: () => session.objects.remove(...chosen(store)), when: () => store.get().tool.name !== 'polygon' },
     { keys: ['>'], run: () => void copyMask(session, 1) },
     { keys: ['<'], run: () => void copyMask(session, -1) },
     { keys: ['f'], run: () => toggleBlinking(store), shift: true },

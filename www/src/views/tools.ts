@@ -1,10 +1,12 @@
 //! The tools: view, brush, eraser, polygon, box; the size of the brush, what follows, whether drawing is exact; undo and redo.
 
 import type { ClipPropagation } from 'veronese';
+import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
-import type { Store, ToolName } from '../state/state.js';
-import { isCorrecting } from '../state/tracked.js';
+import { spanAt } from '../state/spans.js';
+import { type State, type Store, type ToolName, seenIn } from '../state/state.js';
+import { isCorrecting, isDrafting } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -44,17 +46,28 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     spread.parentElement!.hidden = clip === null;
     spread.disabled = exact.checked = tool.exact;
     for (const { name, help } of helps) {
-      help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0);
+      help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0, whyNot(store.get(), name));
       help.classList.toggle('away', tool.name !== name);
     }
     undo.disabled = tracked === null || (tracked.past.length === 0 && !isCorrecting(tracked.run));
     redo.disabled = tracked === null || tracked.future.length === 0;
   };
   store.subscribe((now, before) => {
-    const same = (['tool', 'result', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
+    const same = (['tool', 'result', 'live', 'tracked', 'pair'] as const).every((part) => now[part] === before[part]);
     if (!same || now.look.kind !== before.look.kind || now.look.selected !== before.look.selected) render();
   });
   render();
+}
+
+/** Why nothing can be drawn with a tool on the frame that is seen; `null` if something can. */
+function whyNot(state: State, tool: ToolName): string | null {
+  const { tracked, look } = state;
+  if (tracked === null || look.kind !== 'objects' || tracked.spans.length === 0) return isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady;
+  const seen = seenIn(state);
+  if (seen !== null && spanAt(tracked.spans, seen.index) === null) return strings.notTracked;
+  if (tool === 'box') return null;
+  if (look.selected === null) return strings.notices.chooseMask;
+  return tracked.locked.has(look.selected) ? strings.notices.isLocked(nameOf(look, look.selected)) : null;
 }
 
 /** Selects a tool. For drawing it shows the first frame and the objects of the clip, and selects one if none is. */

@@ -77,6 +77,8 @@ export class Drawing {
       const [left, top] = [Math.min(...columns), Math.min(...rows)];
       const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
       const isClick = pointing === 'remove' || Math.max(width, height) <= Math.max(STILL * masks.width, 1);
+      const isBeside = Math.min(x, y) < -0.5 || x >= frame.width - 0.5 || y >= frame.height - 0.5;
+      if (isClick && isBeside) return;
       const spread = this.#spread();
       const prompt: Prompt = { clicks: [], box: null, ...before, frame: index, object, propagate: spread === 'exact' ? 'none' : spread };
       const now = refined(prompt, isClick ? [columns[0]!, rows[0]!, pointing === 'remove' ? -1 : 1] : [left, top, width, height]);

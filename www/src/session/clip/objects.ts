@@ -97,11 +97,12 @@ export class Objects {
     const { tracked } = this.#store.get();
     if (!this.takesCorrections() || tracked === null) return null;
     const { frames, accepted } = tracked;
-    const masks = (which === 'all' ? frames : [frames[seenIn(this.#store.get())?.index ?? -1] ?? null]).filter((frame) => frame !== null);
+    const at = seenIn(this.#store.get())?.index ?? -1;
+    const masks = (which === 'all' ? frames : [frames[at] ?? null]).filter((frame) => frame !== null);
     if (masks.length === 0) return this.refuse(strings.notTracked);
     const now = new Set([...frames.filter((frame) => frame !== null && accepted.has(frame)), ...masks].filter((frame) => frame !== null));
     if (masks.some((frame) => !accepted.has(frame))) this.carrying.note({ accepted: now }, 'accepted');
-    return toReview({ frames, accepted: now });
+    return toReview({ frames, accepted: now }, at);
   }
 
   /** Sets the name or colour of an object. An empty name restores the default. `goesOn`: in the same step of undo as the last one. */
