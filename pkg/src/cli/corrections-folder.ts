@@ -15,7 +15,7 @@ import type { Output } from './output.js';
 import { note } from './terminal.js';
 
 /** Of files in a folder those that can be annotations, or name their classes. */
-const POSSIBLE = /\.(json|xml|png|jpe?g|txt|ya?ml|zip)$/i;
+const POSSIBLE = /\.(json|xml|png|jpe?g|txt|ya?ml|names|labels|zip)$/i;
 /** Of a JPEG the size alone is wanted, which is near its beginning, bytes. */
 const HEAD = 2 ** 18;
 
