@@ -518,9 +518,9 @@ describe('what is none of that', () => {
     'half of an archive': [zipSync({ 'a.json': bytesOf(coco()) }).slice(0, 40), /archive is damaged/],
 
     'no image': [coco({ images: {} }), /"images" must be a list of objects/],
-    'an image of no size': [coco({ images: [{ ...image, width: 0 }] }), /width and height of an image must be whole numbers from 1 to 4096/],
-    'an image too large': [coco({ images: [{ ...image, height: 4097 }] }), /from 1 to 4096/],
-    'an image of half pixels': [coco({ images: [{ ...image, height: 3.5 }] }), /from 1 to 4096/],
+    'an image of no size': [coco({ images: [{ ...image, width: 0 }] }), /width and height of an image must be whole numbers from 1 to 16384/],
+    'an image too large': [coco({ images: [{ ...image, height: 16_385 }] }), /from 1 to 16384/],
+    'an image of half pixels': [coco({ images: [{ ...image, height: 3.5 }] }), /from 1 to 16384/],
     'an image without a name': [coco({ images: [{ id: 1, width: 4, height: 4 }] }), /image must be text/],
     'an image that leads elsewhere': [coco({ images: [{ ...image, file_name: '..' }] }), /cannot be the name of a file/],
     'an image without an id': [coco({ images: [{ ...image, id: undefined }] }), /an image must have an id/],
@@ -589,7 +589,7 @@ describe('what is none of that', () => {
 
     'lines of MOTS that end early': ['1 1001 1 4 4 0<\n2 1001', /line 2 is not "frame id class height width run-lengths"/],
     'sizes of MOTS that differ': ['1 1001 1 1 4 04\n1 1002 1 1 5 05', /line 2: the frame has had another size/],
-    'a large frame of MOTS': ['1 1001 1 1 5000 0', /width and height of line 1/],
+    'a large frame of MOTS': ['1 1001 1 1 20000 0', /width and height of line 1/],
 
     'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
     'a polygon of Supervisely without points': [supervisely({ geometryType: 'polygon' }), /object 1, "a": its points must be lists/],

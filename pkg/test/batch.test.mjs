@@ -148,11 +148,13 @@ describe('veronese batch', () => {
 
   test('refuses what cannot be a batch, with one line', async (t) => {
     const { frames, one, path, file } = clip(t, 1);
-    mkdirSync(path('empty'));
-    for (const [args, errorCode] of [
+    for (const name of ['empty', 'tiff']) mkdirSync(path(name));
+    writeFileSync(path('tiff', 'f1.tif'), 'II*');
+    for (const [args, errorCode, sentence = /./] of [
       [[one(0)], 'too-few-frames'],
       [[frames], 'too-few-frames'],
       [[path('empty')], 'file-not-found'],
+      [[path('tiff')], 'unreadable-image', /no image in the folder '.*tiff' is read, such as 'f1\.tif': frames are PNG, JPEG, WebP, BMP or PNM/],
       [[path('none*.png')], 'file-not-found'],
       [['--list', path('none')], 'file-not-found'],
       [['--list', path('empty')], 'unreadable-file'],
@@ -162,6 +164,7 @@ describe('veronese batch', () => {
       const { stderr, stdout } = await batch(args, { code: 1 });
       assert.match(stderr, /^veronese: error: [^\n]+\n$/);
       assert.equal(stderr.split(': ')[2], errorCode, stderr);
+      assert.match(stderr, sentence);
       assert.equal(stdout, '');
     }
   });

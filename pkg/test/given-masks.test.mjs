@@ -146,6 +146,12 @@ describe('what a mask is taken for', () => {
     assert.deepEqual(notes, [{ code: 'numbers-changed', message: "'f1.png': objects have other numbers here, each its own from 1 to 254: 300 is 1, 255 is 2" }]);
   });
 
+  test('masks of frames that are scaled down are as large as these were', () => {
+    const large = { width: 5000, height: 3 };
+    const { size, frames } = read(encode({ ...large, channels: 1, depth: 8, data: new Uint8Array(15_000).fill(7, 0, 5000) }));
+    assert.deepEqual([size, frames.get('f1').read()[4999], frames.get('f1').read()[5000]], [large, 7, 0]);
+  });
+
   test('more objects than numbers, in one file and in all', () => {
     const many = { width: 144, height: 72 };
     const grid = (first) => Uint16Array.from({ length: many.width * many.height }, (_, p) => (p % 6 < 4 && Math.floor(p / 144) % 6 < 4 ? first + Math.floor(p / 864) * 24 + Math.floor((p % 144) / 6) : 0));

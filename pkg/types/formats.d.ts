@@ -402,6 +402,8 @@ export interface Annotations {
   format: AnnotationFormat;
   /** By the names of their files, without folder and extension. */
   frames: Map<string, AnnotatedFrame>;
+  /** Of all frames, pixels. */
+  size: { width: number; height: number };
   /** Names of the objects, or of their classes, where there are some. */
   names: Record<number, string>;
   /** Objects of which a frame has a box and no mask: prompts for `segmentClip`, [first column, first row, width, height]. */

@@ -241,7 +241,7 @@ function readVeronese(document: Record<string, unknown>, file: string): ReadFram
  * Objects keep the numbers that they have in the file, where that is possible; the others get those that are free, in their order. What they are
  * called by in the file is their name, if they have no other one.
  */
-function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'names' | 'boxes' | 'notes'> {
+function numbered(read: readonly ReadFrame[]): Omit<Annotations, 'format'> {
   const objects = new Map<string, Known & { file: string }>();
   for (const { file, objects: some } of read) for (const object of some) objects.set(object.key, { file, ...object, ...objects.get(object.key) });
   const labels = new Map<string, number>();
@@ -273,14 +273,15 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
   const frames = new Map<string, AnnotatedFrame>();
   const files = new Map<string, string>();
   const boxes: Annotations['boxes'] = [];
+  const { width: w = 0, height: h = 0 } = read[0] ?? {};
+  const size = { width: w, height: h };
   for (const { name, file, width, height, draw, boxes: some = [], isOpen } of read) {
     const before = files.get(keyOf(name));
     if (before === file) throw wrong(file, `has two frames called '${name}'`);
     if (before !== undefined) throw wrong(file, `and '${before}' are both of the frame '${name}'`);
     files.set(keyOf(name), file);
-    const [one = { width, height }] = frames.values();
-    if (one.width !== width || one.height !== height) {
-      const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${one.width}×${one.height}`;
+    if (size.width !== width || size.height !== height) {
+      const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${size.width}×${size.height}`;
       throw new VeroneseError('frame-size-mismatch', sentence);
     }
     for (const { key, box } of some) if (labels.get(key)) boxes.push({ frame: name, object: labels.get(key) as number, box });
@@ -296,7 +297,7 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
         }),
     });
   }
-  return { frames, names, boxes, notes };
+  return { frames, size, names, boxes, notes };
 }
 
 function isArchive(bytes: Uint8Array): boolean {

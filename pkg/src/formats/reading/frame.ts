@@ -1,6 +1,6 @@
 // The result of the readers of all formats: frames, each with what draws its labels, and the objects that they know.
 
-import { invalidInput, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
+import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../names.js';
 import type { Canvas } from './canvas.js';
@@ -217,8 +217,8 @@ export function stemOf(image: unknown): string {
 }
 
 export function checkSize(width: unknown, height: unknown, whose: string): { width: number; height: number } {
-  if (isWhole(width, 1, LONGEST_SIDE) && isWhole(height, 1, LONGEST_SIDE)) return { width, height };
-  throw invalidInput(`the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_SIDE}`);
+  if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS) return { width, height };
+  throw invalidInput(`the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_LABEL_SIDE}, of ${MOST_LABELS} pixels at most`);
 }
 
 /** A box inside the frame. */

@@ -185,7 +185,7 @@ function readingOf({ isColour, values, seen, isPlain, width, height, white, note
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
   const objects = all.filter((value) => value !== ground);
   const [pixels, channels] = 'levels' in seen ? [seen.levels, 1 as const] : [seen.colours, 3 as const];
-  if (isPlain && said === undefined) checkCrisp(pixels, { width, height }, { channels, ground, white });
+  if (isPlain && said === undefined) decoding('it', () => checkCrisp(pixels, { width, height }, { channels, ground, white }));
   if (isColour && !all.includes(ground)) throw invalidInput('it has neither black nor white, one of which is the background of colours');
   if (objects.length >= UNLABELLED + Number(objects.includes(white))) throw invalidInput(`it has more than ${UNLABELLED - 1} objects`);
   if (isColour) return colours(objects, ground);

@@ -1,6 +1,7 @@
 // Whether values look as if edges were smoothed, or compressed with loss: there are some that have no inside, only pixels between others.
 
-import { invalidInput } from '../../common/checks.js';
+import { invalidInput, UNLABELLED } from '../../common/checks.js';
+import type { Levels } from './frame.js';
 
 /** Share of the pixels without an inside that lie between two others where edges are smoothed. */
 const SMOOTH = 0.9;
@@ -24,12 +25,18 @@ interface Kind {
   white: number;
 }
 
-/** Throws `invalid-input` where values look so. */
+/** Throws `invalid-input` where values look so. The sentence follows what it is about. */
 export function checkCrisp(values: Int32Array, grid: Grid, kind: Kind): void {
   const count = smoothedValues(values, grid, kind);
   if (count === 0) return;
   const what = `${count === MOST ? 'more than ' : ''}${count} ${kind.channels === 1 ? 'levels' : 'colours'} only between others`;
-  throw invalidInput(`it has ${what}, as smoothed edges or lossy compression give them: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`);
+  throw invalidInput(`has ${what}, as smoothed edges or lossy compression give them: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`);
+}
+
+/** Grey levels as labels: those from a level on are object 1 where that is said, else each is a number. Throws as {@link checkCrisp} does. */
+export function crispLevels(levels: Uint8Array, grid: Grid, said: Levels | undefined): Uint8Array {
+  if (said === undefined) checkCrisp(Int32Array.from(levels), grid, { channels: 1, ground: 0, white: UNLABELLED });
+  return typeof said === 'number' ? levels.map((level) => Number(level >= said)) : levels;
 }
 
 /** The number of values that look so, 0 where nothing does. */
