@@ -125,7 +125,7 @@ function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, b
     }),
   );
   if (parts.some((part) => 'draw' in part)) return parts;
-  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || Number(value) > 0))) return [...parts, shape(() => ({ box: bbox.map(Number) }))];
+  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0))) return [...parts, shape(() => ({ box: bbox.map(Number) }))];
   return parts.length > 0 ? parts : [{ leftOut: 'annotations without a mask' }];
 }
 
