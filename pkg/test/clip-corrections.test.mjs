@@ -143,7 +143,7 @@ describe('veronese clip --corrections', () => {
     cpSync(join(frames, 'f1.png'), join(corrections, 'clip-a', 'f1.png'));
     for (const option of ['--corrections', '--masks']) {
       const { stderr } = await run([frames, option, corrections, '--out', out], { code: 1 });
-      assert.match(stderr, /^veronese: error: invalid-input: nothing is read of the folder '.*said': .*; 'clip-a' is not read/);
+      assert.match(stderr, /^veronese: error: invalid-input: nothing is read of the folder '.*said': .*; 'clip-a' is not read: 'convert/);
       assert.equal(existsSync(out), false);
     }
     const empty = await run([frames, '--masks', masks, '--corrections', corrections, '--out', out], { code: 1 });
@@ -221,8 +221,8 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"propagate": {"f1": "none"}, "accepted": ["f2"]}', 'invalid-input', /'propagate' has 'f1', of which nothing is said/],
       ['f1.png', soft, 'invalid-input', /f1\.png'(: it)? has \d+ levels only between others, .* --levels 128/],
       ['edits.json', '{"names": {}, "accepted": [], "merge": []}', 'invalid-input', /nothing is read of the folder '.*said': (masks|labels) are NAME\.png.*; 'edits\.json' says nothing/],
-      ['f1.tif', 'II*', 'invalid-input', /nothing is read of the folder .*'f1\.tif' is not read/],
-      ['coco.json', '{}', 'invalid-input', /nothing is read of the folder .*'coco\.json' is not read; 'convert --to corrections' may read it/],
+      ['f1.tif', 'II*', 'invalid-input', /nothing is read of the folder .*'f1\.tif' is not read: save it as PNG/],
+      ['coco.json', '{}', 'invalid-input', /nothing is read of the folder .*'coco\.json' is not read: 'convert --to corrections' reads annotations/],
       ['notes.txt', 'none', 'invalid-input', /nothing is read of the folder .*there is no file of these/],
       ['edits.json', '{"size": [50, 50], "accepted": ["f1"]}', 'frame-size-mismatch', /edits\.json': it is about frames of 50×50 pixels, these have 96×72/],
       ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],

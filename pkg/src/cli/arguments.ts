@@ -83,7 +83,7 @@ function convert(values: Values, files: string[], given: readonly string[]) {
   const back = to.split(',').includes(BACK);
   for (const option of given) {
     const isOfBack = ['clip', 'levels', 'first-frame'].includes(option);
-    if (back ? isOfBack || ['to', 'out', 'force'].includes(option) : !isOfBack) continue;
+    if (back ? isOfBack || ['to', 'out', 'force', 'quiet'].includes(option) : !isOfBack) continue;
     throw usage(back ? `'--to ${BACK}' has no option '--${option}'` : `'--${option}' needs '--to ${BACK}'`);
   }
   if (back) {

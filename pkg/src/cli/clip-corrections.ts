@@ -131,7 +131,8 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
   const lists = [said, prompts, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
   if (lists.every((list) => list.length === 0)) {
     const [left] = found.left;
-    const which = left === undefined ? (hasEdits ? `'${EDITS}' says nothing` : 'there is no file of these') : `'${left}' is not read; 'convert --to corrections' may read it`;
+    const remedy = left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
+    const which = left !== undefined ? `'${left}' is not read: ${remedy}` : hasEdits ? `'${EDITS}' says nothing` : 'there is no file of these';
     throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
   }
   const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
