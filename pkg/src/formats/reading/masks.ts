@@ -21,7 +21,7 @@ interface Values {
   width: number;
   height: number;
   /** The levels, or else the colours, that a person sees. */
-  seen: { levels: Int32Array } | { colours: Int32Array };
+  seen: () => { levels: Int32Array } | { colours: Int32Array };
   /** Whether these may be smoothed. */
   isPlain: boolean;
   /** The level that says nothing beside others: the largest one. */
@@ -134,10 +134,10 @@ function valuesOf({ bytes }: Source, said: Levels | undefined): Values {
   const png = decoding('it', () => decodeSamples(bytes));
   const found = png.palette ? indexed(png, png.palette) : direct(png);
   if (typeof said !== 'number') return found;
-  const { seen, width, height } = found;
+  const seen = found.seen();
   const brightest = (colour: number) => Math.max(colour >> 16, (colour >> 8) & 255, colour & 255);
   const levels = 'levels' in seen ? seen.levels : seen.colours.map(brightest);
-  return { ...found, isColour: false, white: UNLABELLED, values: levels.map((level) => (level >= said ? UNLABELLED : 0)), width, height };
+  return { ...found, isColour: false, white: UNLABELLED, values: levels.map((level) => (level >= said ? UNLABELLED : 0)) };
 }
 
 /** Transparent pixels are background; without any colours of its own, what is not transparent is one object. */
@@ -150,42 +150,46 @@ function direct({ width, height, channels, depth, samples }: Samples): Values {
     colours[p] = isGrey ? (samples[at] as number) : (byte(at) << 16) | (byte(at + 1) << 8) | byte(at + 2);
   }
   const plain = { isColour: !isGrey, white: isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE, isPlain: true, width, height };
-  const all = { ...plain, values: colours, seen: isGrey ? { levels: colours } : { colours } };
+  const all = { ...plain, values: colours, seen: () => (isGrey ? { levels: colours } : { colours }) };
   if (channels % 2 === 1) return all;
   const alpha = Int32Array.from(colours, (_, p) => byte(channels * (p + 1) - 1));
-  const opaque = new Set(colours.filter((_, p) => alpha[p] !== 0));
+  const opaque = valuesIn(colours.filter((_, p) => alpha[p] !== 0));
   if (!alpha.includes(0) || opaque.size === 0) return all;
   if (opaque.size > 1 && opaque.size <= OF_A_PICTURE) {
     const values = colours.map((colour, p) => (alpha[p] === 0 ? BLACK : colour));
-    return { ...plain, values, seen: isGrey ? { levels: values } : { colours: values } };
+    return { ...plain, values, seen: () => (isGrey ? { levels: values } : { colours: values }) };
   }
   const note = { code: 'mask-alpha', message: 'what is not transparent is the object' };
-  return { ...plain, isColour: false, white: UNLABELLED, values: alpha.map((level) => (level > 0 ? UNLABELLED : 0)), seen: { levels: alpha }, note };
+  return { ...plain, isColour: false, white: UNLABELLED, values: alpha.map((level) => (level > 0 ? UNLABELLED : 0)), seen: () => ({ levels: alpha }), note };
 }
 
 /** Indices are numbers of objects, 0 the background, unless black has another index. */
 function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array): Values {
   const indices = new Int32Array(samples);
   const isClear = (index: number) => alpha?.[index] === 0;
-  const colours = Array.from({ length: 256 }, (_, index) => {
+  const colours = Int32Array.from({ length: 256 }, (_, index) => {
     const [red = 0, green = 0, blue = 0] = isClear(index) ? [] : palette.subarray(3 * index);
     return (red << 16) | (green << 8) | blue;
   });
-  const used = [...new Set(indices)];
-  const seen = indices.map((index) => colours[index] as number);
+  const used = [...valuesIn(indices)];
+  const seen = () => ({ colours: indices.map((index) => colours[index] as number) });
   const isMoved = used.includes(0) && !isClear(0) && colours[0] !== BLACK && used.some((index) => colours[index] === BLACK);
-  if (isMoved) return { isColour: true, values: seen, seen: { colours: seen }, isPlain: true, white: WHITE, width, height };
+  if (isMoved) return { isColour: true, values: seen().colours, seen, isPlain: true, white: WHITE, width, height };
   const isGrey = used.every((index) => colours[index] === ((colours[index] as number) & 255) * 0x010101);
-  const values = indices.map((index) => (isClear(index) ? 0 : index));
-  return { isColour: false, values, seen: isGrey ? { levels: seen.map((colour) => colour & 255) } : { colours: seen }, isPlain: isGrey, white: UNLABELLED, width, height };
+  const values = alpha?.includes(0) ? indices.map((index) => (isClear(index) ? 0 : index)) : indices;
+  const levels = () => ({ levels: indices.map((index) => (colours[index] as number) & 255) });
+  return { isColour: false, values, seen: isGrey ? levels : seen, isPlain: isGrey, white: UNLABELLED, width, height };
 }
 
 function readingOf({ isColour, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
-  const all = [...new Set(values)];
+  const all = [...valuesIn(values)];
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
   const objects = all.filter((value) => value !== ground);
-  const [pixels, channels] = 'levels' in seen ? [seen.levels, 1 as const] : [seen.colours, 3 as const];
-  if (isPlain && said === undefined) decoding('it', () => checkCrisp(pixels, { width, height }, { channels, ground, white }));
+  if (isPlain && said === undefined) {
+    const looks = seen();
+    const [pixels, channels] = 'levels' in looks ? [looks.levels, 1 as const] : [looks.colours, 3 as const];
+    decoding('it', () => checkCrisp(pixels, { width, height }, { channels, ground, white }));
+  }
   if (isColour && !all.includes(ground)) throw invalidInput('it has neither black nor white, one of which is the background of colours');
   if (objects.length >= UNLABELLED + Number(objects.includes(white))) throw invalidInput(`it has more than ${UNLABELLED - 1} objects`);
   if (isColour) return colours(objects, ground);
@@ -197,6 +201,13 @@ function readingOf({ isColour, values, seen, isPlain, width, height, white, note
   }
   const meaningOf = (value: number) => (value === 0 ? 0 : value === white ? UNLABELLED : known(`number ${value}`, value, undefined));
   return { meaning: new Map(all.map((value) => [value, meaningOf(value)])) };
+}
+
+/** Most pixels have the value of the one before. */
+function valuesIn(values: Int32Array): Set<number> {
+  const seen = new Set<number>();
+  for (let at = 0; at < values.length; at++) if (values[at] !== values[at - 1]) seen.add(values[at] as number);
+  return seen;
 }
 
 /** Colours of the DAVIS palette have its numbers if all are of it. */
