@@ -235,8 +235,16 @@ describe('numbers', () => {
       const [frame] = frames.values();
       assert.deepEqual([...frame.read()], [1, 2, 3, 255]);
       assert.deepEqual(names, { 1: '1000', 2: '2000', 3: '26000' });
-      assert.match(notes[0].message, /1000 is 1, 2000 is 2, 26000 is 3$/);
+      assert.match(notes.at(-1).message, /1000 is 1, 2000 is 2, 26000 is 3$/);
     }
+  });
+
+  test('pictures are said to be MOTS where that leaves something out, and are masks where nothing would be left', () => {
+    const deep = (...levels) => read(pngOf([4, 1, 16, 0], ['IDAT', deflateSync(Buffer.from([0, ...levels.flatMap((level) => [level >> 8, level & 255])]))]));
+    const { format, notes } = deep(0, 1001, 10_000, 0);
+    assert.deepEqual([format, notes], ['mots-png', [{ code: 'mots-ignored', message: "'file-0': pictures with levels from 1000 on are MOTS, in which 10000 says nothing" }]]);
+    const alone = deep(0, 10_000, 10_000, 0);
+    assert.deepEqual([alone.format, [...alone.frames.get('file-0').read()], alone.names], ['png', [0, 1, 1, 0], { 1: '10000' }]);
   });
 
   test('frames of MOTS count from 0 where one is 0, or where that is said', () => {
@@ -432,7 +440,7 @@ describe('annotations as people have them', () => {
     for (const [name, content] of Object.entries(CLICKED)) {
       const found = readAnnotations([file('0001.png.json', content)]);
       assert.deepEqual([at(found, 6, 5), at(found, 2, 2), at(found, 0, 0)], [255, 1, 0], name);
-      assert.match(found.notes[0].message, /left out polygons of one or two vertices \(1\)/, name);
+      assert.match(found.notes[0].message, /left out polygons of fewer than three vertices \(1\)/, name);
       assert.deepEqual(found.names, { 1: 'car' }, name);
     }
   });
@@ -546,7 +554,7 @@ describe('what is none of that', () => {
     'text without end': [rle('o'.repeat(100_000)), /run lengths is damaged/],
     'text of negative counts': [rle('0O'), /whole numbers from 0/],
     'a polygon of a list': [segmentation([3]), /three vertices or more/],
-    'a polygon of two vertices': [segmentation([[0, 0, 1, 1]]), /annotates no frame: .*left out polygons of one or two vertices \(1\)/],
+    'a polygon of two vertices': [segmentation([[0, 0, 1, 1]]), /annotates no frame: .*left out polygons of fewer than three vertices \(1\)/],
     'a polygon of an odd number': [segmentation([[0, 0, 1, 1, 2, 2, 3]]), /three vertices or more/],
     'a polygon far away': [segmentation([[0, 0, 1e9, 1, 2, 2]]), /no pair of numbers up to/],
     'a polygon at infinity': ['{"images":[{"id":1,"file_name":"f","width":4,"height":4}],"annotations":[{"image_id":1,"segmentation":[[0,0,1e999,1,2,2]]}]}', /no pair of numbers up to/],
@@ -565,7 +573,7 @@ describe('what is none of that', () => {
     'a box of CVAT without sides': [cvat('<box label="a" xtl="0" ytl="0" xbr="2"/>'), /image "f\.jpg": a box must have four numbers/],
     'a line of CVAT': [cvat('<polyline label="a" points="0,0;1,1"/>'), /annotates no frame: .*left out <polyline> elements \(1\)/],
     'an image of CVAT without size': [cvat('<polygon label="a" points="0,0;1,0;1,1"/>', 'name="f.jpg"'), /width and height of an image/],
-    'no points': [polygon(''), /three vertices or more/],
+    'no points': [polygon(''), /annotates no frame: .*polygons of fewer than three vertices \(1\)/],
     'points that are no numbers': [polygon('0,0;NaN,1;2,2'), /no pair of numbers/],
     'points with gaps': [polygon('0,0;,1;2,2'), /no pair of numbers/],
     'a mask outside': [mask('rle="0, 4" left="3" top="0" width="2" height="2"'), /must lie inside the frame/],

@@ -113,7 +113,7 @@ describe('what a mask is taken for', () => {
     // A sliver of another object along the edge of one.
     const labels = TWO.map((number, p) => (number === 2 && p % 48 === 26 ? 1 : number === 1 ? 200 : number && 250));
     const lined = labels.map((label) => (label === 1 ? 100 : label));
-    assert.throws(() => read(file(lined.map((label) => (label === 200 ? 0 : label)).map((label, p) => (label === 250 && (p % 48 === 39 || p < 11 * 48 || p >= 29 * 48) ? 100 : label)))), /1 levels only between others/);
+    assert.throws(() => read(file(lined.map((label) => (label === 200 ? 0 : label)).map((label, p) => (label === 250 && (p % 48 === 39 || p < 11 * 48 || p >= 29 * 48) ? 100 : label)))), /1 level only between others/);
     const { frames } = readAnnotations([{ name: 'f1.png', bytes: file(lined) }], { levels: 'exact' });
     assert.deepEqual([...frames.get('f1').read()], lined);
     for (const levels of [0, 'some', 65_536, 1.5]) assert.throws(() => readAnnotations([], { levels }), { code: 'invalid-option' });
@@ -200,7 +200,7 @@ describe('what a mask is taken for', () => {
     'colours without a background': [coloured([9, 9, 90], RED, BLUE), /neither black nor white/],
     'noise at every edge': [file(picture((x, y) => (square(x, y) ? 255 : square(x - 1, y - 1) || square(x + 1, y + 1) ? 20 + ((x * 37 + y * 91) % 200) : other(x, y) ? 40 + ((x * 37 + y * 91) % 150) : 0))), /levels only between others/],
     'two objects that touch, smoothed': [file(mixed(picture((x) => Math.min(1, Math.max(0, (x - 22) / 4))), RED, BLUE).map((pixel, p) => (p < 6 * 48 ? BLACK : pixel))), /colours only between others/],
-    'one level between black and white': [file(picture((x, y) => (x === y ? 128 : x > y ? 255 : 0))), /1 levels only between others/],
+    'one level between black and white': [file(picture((x, y) => (x === y ? 128 : x > y ? 255 : 0))), /1 level only between others/],
   };
   for (const [name, [bytes, message]] of Object.entries(UNCLEAR)) {
     test(`${name}: nobody knows`, () => {

@@ -25,7 +25,7 @@ import { readDatumaro } from './datumaro.js';
 import { readLabelMe } from './labelme.js';
 import { readLabelStudio } from './label-studio.js';
 import { readMasks } from './masks.js';
-import { areMots, isMots, readMots, readMotsPng } from './mots.js';
+import { IGNORED, isMots, numbersOfMots, readMots, readMotsPng } from './mots.js';
 import { sizeOfPicture } from './pictures.js';
 import { readSupervisely } from './supervisely.js';
 import { isYolo, namesInYaml, readYolo } from './yolo.js';
@@ -79,9 +79,12 @@ function unknownIn(all: readonly Source[], documents: readonly Recognised[]): An
 /** Annotations that are pictures themselves. */
 function ofPictures(all: readonly Source[], clip: Clip): Annotations {
   const pictures = all.filter(({ bytes }) => isPng(bytes));
-  if (areMots(pictures)) {
+  const numbers = numbersOfMots(pictures);
+  if (numbers) {
     const context = contextOf(all, clip, new LeftOut());
-    return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))) };
+    const found = numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context))));
+    const message = `'${pictures[0]?.name}': pictures with levels from 1000 on are MOTS, in which ${IGNORED} says nothing`;
+    return { format: 'mots-png', ...found, notes: [...(numbers.has(IGNORED) ? [{ code: 'mots-ignored', message }] : []), ...found.notes] };
   }
   const { frames, notes } = readMasks(pictures, clip.levels);
   const found = numbered(frames);

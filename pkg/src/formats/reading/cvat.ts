@@ -103,7 +103,7 @@ function layered(place: string, element: XmlElement, objectOf: () => Known): Lay
 
 function drawing({ name, attributes }: XmlElement): Drawing | LeftOut {
   const { points = '', rle = '', left, top, width, height, rotation } = attributes;
-  if (name === 'polygon') return polygonOf(points.split(/[,;]/).map(number));
+  if (name === 'polygon') return polygonOf(points.trim() === '' ? [] : points.split(/[,;]/).map(number));
   if (name === 'box') return { box: boxOf(attributes) };
   if (name === 'ellipse') {
     const [x, y, across, down] = ['cx', 'cy', 'rx', 'ry'].map((part) => number(attributes[part])) as [number, number, number, number];

@@ -102,9 +102,10 @@ export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes
     for (const shape of masks) shape.draw(canvas, labelOf(shape.key));
     for (const box of open) canvas.open(box);
   };
+  const isOpen = masks.length === 0 && (open.length > 0 || shapes.some((shape) => 'leftOut' in shape));
   const isSeen = ({ key }: Known) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key);
   const objects = shapes.flatMap((shape) => ('leftOut' in shape || !isSeen(shape) ? [] : [known(shape.key, shape.number, shape.name, shape.original)]));
-  return { ...frame, objects, draw, ...(boxes.length > 0 && { boxes }), ...(masks.length === 0 && open.length > 0 && { isOpen: true }) };
+  return { ...frame, objects, draw, ...(boxes.length > 0 && { boxes }), ...(isOpen && { isOpen }) };
 }
 
 /** The pixels of a box that are in the frame. */
@@ -123,11 +124,11 @@ export function boxAround(points: readonly (readonly unknown[])[]): [number, num
   return [left, top, Math.max(...x) - left, Math.max(...y) - top];
 }
 
-/** A polygon, x and y of one vertex after another. One of one or two vertices, as a click makes it, is left out. */
+/** A polygon, x and y of one vertex after another. One of fewer than three vertices, as a click makes it, is left out. */
 export function polygonOf(ring: readonly unknown[]): Drawing | LeftOut {
   if (ring.length > 4 || ring.length % 2 === 1) return { draw: (canvas, label) => canvas.polygon(ring, label) };
   const [x, y, width, height] = boxAround([ring.slice(0, 2), ring.slice(-2)]);
-  return { leftOut: 'polygons of one or two vertices', place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)] };
+  return { leftOut: 'polygons of fewer than three vertices', place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)] };
 }
 
 /** The shape of a drawing; what is left out is of no object. */

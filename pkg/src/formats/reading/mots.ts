@@ -21,7 +21,7 @@ import {
 } from './frame.js';
 
 const CLASS = 1000;
-const IGNORED = 10_000;
+export const IGNORED = 10_000;
 const WHITE = 65_535;
 const LINE = /^(\d+) (\d+) (\d+) (\d+) (\d+) (\S+)$/;
 
@@ -30,15 +30,16 @@ export function isMots(text: string): boolean {
   return LINE.test(/^.*/.exec(text)?.[0].trimEnd() ?? '');
 }
 
-/** Whether pictures are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
-export function areMots(pictures: readonly Source[]): boolean {
-  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return false;
+/** The numbers in pictures that are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
+export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefined {
+  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return undefined;
   const seen = new Set<number>();
   for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodeDeep(bytes))).levels) seen.add(level);
   seen.delete(0);
   const [first] = seen;
-  // White on black is no number.
-  return first !== undefined && !(seen.size === 1 && first === WHITE) && [...seen].every((level) => level >= CLASS);
+  // White on black is no number, and what is ignored alone an object.
+  const isMask = first === undefined || (seen.size === 1 && [WHITE, IGNORED].includes(first));
+  return !isMask && [...seen].every((level) => level >= CLASS) ? seen : undefined;
 }
 
 /** Frames without objects are left out: they may not have been annotated. */

@@ -29,8 +29,8 @@ interface Kind {
 export function checkCrisp(values: Int32Array, grid: Grid, kind: Kind): void {
   const count = smoothedValues(values, grid, kind);
   if (count === 0) return;
-  const what = `${count === MOST ? 'more than ' : ''}${count} ${kind.channels === 1 ? 'levels' : 'colours'} only between others`;
-  throw invalidInput(`has ${what}, as smoothed edges or lossy compression give them: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`);
+  const what = `${count === MOST ? 'more than ' : ''}${count} ${kind.channels === 1 ? 'level' : 'colour'}${count === 1 ? '' : 's'} only between others`;
+  throw invalidInput(`has ${what}, as smoothed edges or lossy compression give: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`);
 }
 
 /** Grey levels as labels: those from a level on are object 1 where that is said, else each is a number. Throws as {@link checkCrisp} does. */
