@@ -15,6 +15,7 @@ const ENTRIES = sources({
   slim: 'entries/slim',
   inline: 'entries/inline',
   codecs: 'entries/codecs',
+  colours: 'entries/colours',
   'worker-node': 'worker/worker-node',
   element: 'element/element',
   'element-class': 'element/element-class',

@@ -221,10 +221,39 @@ describe('numbers', () => {
   });
 
   test('instances of MOTS that have one number in two classes', () => {
-    const { frames, names } = read('1 1001 1 1 4 013\n1 2001 2 1 4 112\n1 10000 10 1 4 31\n2 1001 1 1 4 31\n');
+    const { frames, names, notes } = read('1 1001 1 1 4 013\n1 2001 2 1 4 112\n1 10000 10 1 4 31\n2 1001 1 1 4 31\n');
     assert.deepEqual([...frames.get('00000').read()], [1, 2, 0, 255]);
     assert.deepEqual([...frames.get('00001').read()], [0, 0, 0, 1]);
-    assert.deepEqual(names, {});
+    // Nobody has said what the classes are called.
+    assert.deepEqual(names, { 1: '1001', 2: '2001' });
+    assert.deepEqual(notes.map(({ message }) => message), ["'file-0': objects have other numbers here, each its own from 1 to 254: 2001 is 2"]);
+  });
+
+  test('instances of MOTS from 0, as text and as pictures: 10000 alone is ignored', () => {
+    const deep = (...levels) => pngOf([4, 1, 16, 0], ['IDAT', deflateSync(Buffer.from([0, ...levels.flatMap((level) => [level >> 8, level & 255])]))]);
+    for (const { frames, names, notes } of [read('1 1000 1 1 4 013\n1 2000 2 1 4 112\n1 10000 10 1 4 31\n1 26000 26 1 4 211\n'), read(deep(1000, 2000, 26_000, 10_000))]) {
+      const [frame] = frames.values();
+      assert.deepEqual([...frame.read()], [1, 2, 3, 255]);
+      assert.deepEqual(names, { 1: '1000', 2: '2000', 3: '26000' });
+      assert.match(notes.at(-1).message, /1000 is 1, 2000 is 2, 26000 is 3$/);
+    }
+  });
+
+  test('pictures are said to be MOTS where that leaves something out, and are masks where nothing would be left', () => {
+    const deep = (...levels) => read(pngOf([4, 1, 16, 0], ['IDAT', deflateSync(Buffer.from([0, ...levels.flatMap((level) => [level >> 8, level & 255])]))]));
+    const { format, notes } = deep(0, 1001, 10_000, 0);
+    assert.deepEqual([format, notes], ['mots-png', [{ code: 'mots-ignored', message: "'file-0': pictures with levels from 1000 on are MOTS, in which 10000 says nothing" }]]);
+    const alone = deep(0, 10_000, 10_000, 0);
+    assert.deepEqual([alone.format, [...alone.frames.get('file-0').read()], alone.names], ['png', [0, 1, 1, 0], { 1: '10000' }]);
+  });
+
+  test('frames of MOTS count from 0 where one is 0, or where that is said', () => {
+    const frames = (text, options) => [...readAnnotations([file('a.txt', text)], options).frames.keys()];
+    const line = (frame) => `${frame} 1001 1 1 4 013\n`;
+    assert.deepEqual(frames(line(1) + line(0)), ['00000', '00001']);
+    assert.deepEqual(frames(line(1) + line(2)), ['00000', '00001']);
+    assert.deepEqual(frames(line(1) + line(2), { firstFrame: 0 }), ['00001', '00002']);
+    assert.throws(() => frames(line(1), { firstFrame: 2 }), { code: 'invalid-option' });
   });
 });
 
@@ -344,7 +373,81 @@ describe('annotations as people have them', () => {
     assert.deepEqual(notes, [{ code: 'shapes-left-out', message: "'file-0': left out shapes of type \"point\" (2), shapes of type \"linestrip\" (1)" }]);
     assert.match(read(cvat('<polygon label="car" points="1,1;5,1;5,4"/><points label="a" points="1,1"/>')).notes[0].message, /<points> elements \(1\)/);
     assert.match(read(coco({ segmentation: [ring] }, { segmentation: null })).notes[0].message, /without a mask \(1\)/);
-    assert.match(read(coco({ segmentation: [ring] }, { segmentation: [], bbox: [20, 20, 3, 3] })).notes[0].message, /boxes outside the frame \(1\)/);
+    assert.match(read(coco({ segmentation: [ring] }, { segmentation: [], bbox: [20, 20, 3, 3] })).notes[0].message, /boxes without a pixel of the frame \(1\)/);
+  });
+
+  const at = (found, x, y) => found.frames.get('0001')?.read()[8 * y + x];
+  const circle = [...'00000000', ...'00000000', ...'00011000', ...'00111100', ...'00111100', ...'00011000'].map(Number);
+  const ROUND = {
+    labelme: labelMe({ shape_type: 'circle', points: [[4, 4], [4, 2]] }),
+    cvat: cvat('<ellipse label="car" cx="4" cy="4" rx="2" ry="2"/>'),
+    'label-studio': task({ type: 'ellipselabels', value: { x: 50, y: 100 / 1.5, radiusX: 25, radiusY: 100 / 3, rotation: 0, ellipselabels: ['car'] } }),
+    datumaro: datumaro({ type: 'ellipse', points: [2, 2, 6, 6] }),
+  };
+  for (const [format, content] of Object.entries(ROUND)) {
+    test(`${format}: circles and ellipses are drawn`, () => {
+      const { frames, notes } = readAnnotations([file('0001.png.json', content)]);
+      assert.deepEqual([[...frames.get('0001').read()], notes], [circle, []]);
+    });
+  }
+
+  test('ellipses that are turned; those without a size', () => {
+    const turned = read(cvat('<ellipse label="car" cx="4" cy="3" rx="1" ry="3" rotation="90"/>'));
+    assert.deepEqual([[1, 3], [6, 3], [4, 0], [4, 5]].map(([x, y]) => at(turned, x, y)), [1, 1, 0, 0]);
+    assert.throws(() => read(cvat('<ellipse label="car" cx="4" cy="3" rx="1"/>')).frames.get('0001').read(), { message: /image "0001\.png", shape 1: an ellipse must have a middle and radii/ });
+  });
+
+  test('rectangles of four corners, upright or turned, are boxes', () => {
+    const corners = [[1, 2], [5, 2], [5, 5], [1, 5]];
+    for (const type of ['rectangle', 'rotation']) assert.deepEqual(read(labelMe({ shape_type: type, points: corners })).boxes, [{ frame: '0001', object: 1, box: [1, 2, 4, 3] }]);
+    const value = { x: 50, y: 0, width: 25, height: 50, rotation: 90, rectanglelabels: ['car'] };
+    assert.deepEqual(read(task({ type: 'rectanglelabels', value })).boxes, [{ frame: '0001', object: 1, box: [1, 0, 3, 2] }]);
+  });
+
+  const point = { ...polygon, points: [[7, 5]] };
+  const UNREAD = {
+    labelme: labelMe(polygon, { ...point, shape_type: 'point' }),
+    cvat: cvat('<polygon label="car" points="1,1;5,1;5,4;1,4"/><polyline label="car" points="6,4;7,5"/>'),
+    coco: coco({ segmentation: [ring] }, { keypoints: [7, 5, 2] }),
+    supervisely: supervisely({ geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]], interior: [] } }, { geometryType: 'point', points: { exterior: [[7, 5]] } }),
+    'label-studio': task({ type: 'polygonlabels', value: { points: polygon.points.map(percent), polygonlabels: ['car'] } }, { type: 'keypointlabels', value: { x: 90, y: 90 } }),
+    datumaro: datumaro({ type: 'polygon', points: ring }, { type: 'points', points: [7, 5] }),
+  };
+  for (const [format, content] of Object.entries(UNREAD)) {
+    test(`${format}: where a shape is not read, nothing is said of the ground`, () => {
+      const found = readAnnotations([file('0001.png.json', content)]);
+      assert.deepEqual([at(found, 2, 2), at(found, 7, 5), at(found, 0, 0)], [1, 255, 255]);
+      assert.deepEqual(found.notes.map(({ code }) => code), ['shapes-left-out']);
+      assert.deepEqual(found.names, { 1: 'car' });
+    });
+  }
+
+  test('a frame of which no shape is read says nothing', () => {
+    assert.throws(() => read(labelMe({ ...point, shape_type: 'point' })), { message: /annotates no frame: .*left out shapes of type "point" \(1\)/ });
+    const { frames } = readAnnotations([file('a.json', labelMe({ ...point, shape_type: 'point' })), file('b.json', { ...labelMe(polygon), imagePath: '0002.png' })]);
+    assert.deepEqual([...frames.keys()], ['0002']);
+  });
+
+  test('a polygon of one or two vertices is left out, and the rest is read', () => {
+    const CLICKED = {
+      labelme: labelMe({ points: [[6, 5], [7, 5]] }, polygon),
+      coco: coco({ segmentation: [[6, 5]] }, { segmentation: [ring] }),
+      'coco, beside another part': coco({ segmentation: [[6, 5, 7, 5], ring] }),
+      cvat: cvat('<polygon label="car" points="6,5;7,5"/><polygon label="car" points="1,1;5,1;5,4;1,4"/>'),
+      supervisely: supervisely({ geometryType: 'polygon', points: { exterior: [[6, 5]] } }, { geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]] } }),
+      datumaro: datumaro({ type: 'polygon', points: [6, 5, 7, 5] }, { type: 'polygon', points: ring }),
+    };
+    for (const [name, content] of Object.entries(CLICKED)) {
+      const found = readAnnotations([file('0001.png.json', content)]);
+      assert.deepEqual([at(found, 6, 5), at(found, 2, 2), at(found, 0, 0)], [255, 1, 0], name);
+      assert.match(found.notes[0].message, /left out polygons of fewer than three vertices \(1\)/, name);
+      assert.deepEqual(found.names, { 1: 'car' }, name);
+    }
+  });
+
+  test('the second box of an object says nothing of the ground either', () => {
+    const found = read(labelMe({ ...polygon, group_id: 3 }, { shape_type: 'rectangle', group_id: 3, points: [[6, 4], [8, 6]] }));
+    assert.deepEqual([at(found, 2, 2), at(found, 7, 5), at(found, 0, 0)], [3, 255, 0]);
   });
 
   test("COCO: a polygon without a list around it, and numbers that Python writes", () => {
@@ -423,9 +526,9 @@ describe('what is none of that', () => {
     'half of an archive': [zipSync({ 'a.json': bytesOf(coco()) }).slice(0, 40), /archive is damaged/],
 
     'no image': [coco({ images: {} }), /"images" must be a list of objects/],
-    'an image of no size': [coco({ images: [{ ...image, width: 0 }] }), /width and height of an image must be whole numbers from 1 to 4096/],
-    'an image too large': [coco({ images: [{ ...image, height: 4097 }] }), /from 1 to 4096/],
-    'an image of half pixels': [coco({ images: [{ ...image, height: 3.5 }] }), /from 1 to 4096/],
+    'an image of no size': [coco({ images: [{ ...image, width: 0 }] }), /width and height of an image must be whole numbers from 1 to 16384/],
+    'an image too large': [coco({ images: [{ ...image, height: 16_385 }] }), /from 1 to 16384/],
+    'an image of half pixels': [coco({ images: [{ ...image, height: 3.5 }] }), /from 1 to 16384/],
     'an image without a name': [coco({ images: [{ id: 1, width: 4, height: 4 }] }), /image must be text/],
     'an image that leads elsewhere': [coco({ images: [{ ...image, file_name: '..' }] }), /cannot be the name of a file/],
     'an image without an id': [coco({ images: [{ ...image, id: undefined }] }), /an image must have an id/],
@@ -437,7 +540,7 @@ describe('what is none of that', () => {
     'a category without a name': [coco({ categories: [{ id: 1, name: 3 }] }), /name of a category must be text/],
     'neither mask nor box': [segmentation([]), /annotates no frame: .*left out annotations without a mask \(1\)/],
     'no mask': [segmentation(null), /annotates no frame/],
-    'a mask that is wrong, of many': [coco({}, { id: 77, segmentation: [[0, 0, 1, 1]] }), /image "f\.jpg", annotation 77: a polygon must have three/],
+    'a mask that is wrong, of many': [coco({}, { id: 77, segmentation: [[0, 0, 1, 1, 2]] }), /image "f\.jpg", annotation 77: a polygon must have three/],
     'too few counts': [rle([0, 15]), /must be of 16 pixels, not 15/],
     'too many': [rle([0, 17]), /must be of 16 pixels, not 17/],
     'a negative count': [rle([0, 17, -1]), /whole numbers from 0/],
@@ -451,7 +554,7 @@ describe('what is none of that', () => {
     'text without end': [rle('o'.repeat(100_000)), /run lengths is damaged/],
     'text of negative counts': [rle('0O'), /whole numbers from 0/],
     'a polygon of a list': [segmentation([3]), /three vertices or more/],
-    'a polygon of two vertices': [segmentation([[0, 0, 1, 1]]), /three vertices or more/],
+    'a polygon of two vertices': [segmentation([[0, 0, 1, 1]]), /annotates no frame: .*left out polygons of fewer than three vertices \(1\)/],
     'a polygon of an odd number': [segmentation([[0, 0, 1, 1, 2, 2, 3]]), /three vertices or more/],
     'a polygon far away': [segmentation([[0, 0, 1e9, 1, 2, 2]]), /no pair of numbers up to/],
     'a polygon at infinity': ['{"images":[{"id":1,"file_name":"f","width":4,"height":4}],"annotations":[{"image_id":1,"segmentation":[[0,0,1e999,1,2,2]]}]}', /no pair of numbers up to/],
@@ -470,7 +573,7 @@ describe('what is none of that', () => {
     'a box of CVAT without sides': [cvat('<box label="a" xtl="0" ytl="0" xbr="2"/>'), /image "f\.jpg": a box must have four numbers/],
     'a line of CVAT': [cvat('<polyline label="a" points="0,0;1,1"/>'), /annotates no frame: .*left out <polyline> elements \(1\)/],
     'an image of CVAT without size': [cvat('<polygon label="a" points="0,0;1,0;1,1"/>', 'name="f.jpg"'), /width and height of an image/],
-    'no points': [polygon(''), /three vertices or more/],
+    'no points': [polygon(''), /annotates no frame: .*polygons of fewer than three vertices \(1\)/],
     'points that are no numbers': [polygon('0,0;NaN,1;2,2'), /no pair of numbers/],
     'points with gaps': [polygon('0,0;,1;2,2'), /no pair of numbers/],
     'a mask outside': [mask('rle="0, 4" left="3" top="0" width="2" height="2"'), /must lie inside the frame/],
@@ -493,16 +596,15 @@ describe('what is none of that', () => {
     'LabelMe without a size': [labelMe({ points: corners }, { imageWidth: null }), /width and height of the image/],
 
     'lines of MOTS that end early': ['1 1001 1 4 4 0<\n2 1001', /line 2 is not "frame id class height width run-lengths"/],
-    'frames of MOTS from 0': ['0 1001 1 1 4 04', /line 1: frames count from 1/],
     'sizes of MOTS that differ': ['1 1001 1 1 4 04\n1 1002 1 1 5 05', /line 2: the frame has had another size/],
-    'a large frame of MOTS': ['1 1001 1 1 5000 0', /width and height of line 1/],
+    'a large frame of MOTS': ['1 1001 1 1 20000 0', /width and height of line 1/],
 
     'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
     'a polygon of Supervisely without points': [supervisely({ geometryType: 'polygon' }), /object 1, "a": its points must be lists/],
     'a bitmap without data': [supervisely({}), /object 1, "a": it is a bitmap without data/],
     'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
 
-    'a picture': [pngOf([32, 32, 8, 2], ['IDAT', deflateSync(Buffer.from(Array.from({ length: 32 * 97 }, (_, at) => (at % 97 === 0 ? 0 : at * 7919))))]), /it has \d+ colours, so nobody knows which pixels are of which object: save it/],
+    'a picture': [pngOf([32, 32, 8, 2], ['IDAT', deflateSync(Buffer.from(Array.from({ length: 32 * 97 }, (_, at) => (at % 97 === 0 ? 0 : at * 7919))))]), /it has \d+ colours only between others/],
     'half of a PNG': [png.slice(0, png.length - 30), /it is damaged/, 'unreadable-image'],
     'the beginning of a PNG': [png.slice(0, 20), /it has no header/, 'unreadable-image'],
     'a large PNG': [Uint8Array.from(png).fill(255, 18, 20), /it has 65535 × 4 pixels|it has \d+ × 4 pixels/, 'unreadable-image'],
@@ -585,6 +687,8 @@ describe('YOLO', () => {
     'over lines in brackets': ['set/data.yaml', `names: [\n  person,\n  'a "b": c',\n]\n`],
     'in braces': ['set/data.yaml', `names: {1: 'a "b": c', 0: person}`],
     'in a text': ['set/classes.txt', 'person\na "b": c\n'],
+    'of Darknet': ['set/obj.names', 'person\r\na "b": c\r\n'],
+    'of Roboflow': ['set/labels/_darknet.labels', 'person\na "b": c'],
   };
   for (const [how, list] of Object.entries(LISTS)) {
     test(`names of classes ${how}`, () => {

@@ -6,7 +6,7 @@ import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { byNumbers, findFrames } from '../build/cli/frames.js';
 import { ProgressBar } from '../build/cli/terminal.js';
-import { pixmaps } from '../build/cli/video.js';
+import { hear, notesOnVideo, pixmaps } from '../build/cli/video.js';
 import { clip as framesOf, lines, tree } from './support/folders.mjs';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
@@ -148,11 +148,13 @@ describe('veronese batch', () => {
 
   test('refuses what cannot be a batch, with one line', async (t) => {
     const { frames, one, path, file } = clip(t, 1);
-    mkdirSync(path('empty'));
-    for (const [args, errorCode] of [
+    for (const name of ['empty', 'tiff']) mkdirSync(path(name));
+    writeFileSync(path('tiff', 'f1.tif'), 'II*');
+    for (const [args, errorCode, sentence = /./] of [
       [[one(0)], 'too-few-frames'],
       [[frames], 'too-few-frames'],
       [[path('empty')], 'file-not-found'],
+      [[path('tiff')], 'unreadable-image', /no image in the folder '.*tiff' is read, such as 'f1\.tif': frames are PNG, JPEG, WebP, BMP or PNM/],
       [[path('none*.png')], 'file-not-found'],
       [['--list', path('none')], 'file-not-found'],
       [['--list', path('empty')], 'unreadable-file'],
@@ -162,6 +164,7 @@ describe('veronese batch', () => {
       const { stderr, stdout } = await batch(args, { code: 1 });
       assert.match(stderr, /^veronese: error: [^\n]+\n$/);
       assert.equal(stderr.split(': ')[2], errorCode, stderr);
+      assert.match(stderr, sentence);
       assert.equal(stdout, '');
     }
   });
@@ -362,6 +365,34 @@ describe('veronese video', () => {
     const { code, stderr } = await veroneseProcess(['video', file], { env: { PATH: '/nowhere' } });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
+  });
+
+  test('says what is interlaced, and what changes its size', () => {
+    const line = (k, size = '320x240', fields = 'P') => `[Parsed_showinfo_0 @ 0x55] [info] n:   ${k} pts:  ${k} pts_time:${k / 25}  duration:1 duration_time:0.04 fmt:yuv420p cl:left sar:1/1 s:${size} i:${fields} iskey:1 type:I`;
+    const notes = (lines) => {
+      const about = { times: [] };
+      for (const each of lines) hear(about, each);
+      assert.deepEqual(about.times, lines.map((_, k) => k / 25));
+      return notesOnVideo('a.ts', about).map(({ code, message }) => `${code}: ${message}`);
+    };
+    assert.deepEqual(notes([0, 1, 2].map((k) => line(k))), []);
+    assert.deepEqual(notes([0, 1, 2].map((k) => line(k, '320x240', k === 1 ? 'T' : 'P'))), [
+      "video-interlaced: 'a.ts' is interlaced, its frames are of two moments each: what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away",
+    ]);
+    assert.deepEqual(notes([line(0), line(1, '160x120'), line(2, '80x60', 'B')]).map((note) => note.slice(0, 90)), [
+      "video-interlaced: 'a.ts' is interlaced, its frames are of two moments each: what moves is ",
+      "video-size: the frames of 'a.ts' change from 320x240 to 160x120 pixels, the first time at ",
+    ]);
+  });
+
+  test('an interlaced video is told so', { skip }, async (t) => {
+    const { film: file, path } = film(t);
+    const [woven, out] = [path('woven.mkv'), path('woven')];
+    const done = spawnSync('ffmpeg', ['-v', 'error', '-i', file, '-vf', 'setfield=tff', '-c:v', 'mpeg2video', '-flags', '+ildct+ilme', '-q:v', '1', woven]);
+    assert.equal(done.status, 0, String(done.stderr));
+    const { code, stderr } = await veronese(['clip', '--quality', 'fast', woven, '--out', out]);
+    assert.equal(code, 0, stderr);
+    assert.match(stderr, /'.*woven\.mkv' is interlaced/);
   });
 
   test('pixmaps are cut apart wherever the stream is', async () => {

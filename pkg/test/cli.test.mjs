@@ -6,7 +6,7 @@ import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { davisPalette, fitMotions, groupLabels, segmentPair } from 'veronese';
 import { Output } from '../build/cli/output.js';
-import { overlay } from '../build/calls/labels.js';
+import { overlay } from '../build/cli/overlay.js';
 import { bmp, frame, pair, png, points, ppm, ramp } from './support/frames.mjs';
 import { entries, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 import { signalledAt } from './support/stopping.mjs';

@@ -102,8 +102,9 @@ describe('veronese clip --corrections', () => {
     assert.deepEqual(lines.slice(0, -1).map(({ objects }) => objects), Array(COUNT).fill([1]), 'what was found is there again');
     assert.notEqual(tracksOf(out).settings.corrections, first);
     for (const name of ['f3.png', 'edits.json']) rmSync(join(corrections, name));
-    await run([frames, '--corrections', corrections, '--out', out]);
-    assert.deepEqual(tree(out), base, 'a folder without corrections corrects nothing');
+    await run([frames, '--corrections', corrections, '--out', out], { code: 1 });
+    await run([frames, '--out', out]);
+    assert.deepEqual(tree(out), base, 'without corrections nothing is corrected');
     await run([frames, '--mark-unknown', '--out', out]);
     assert.ok(labelsOf(out, 0).includes(255));
     assert.equal(written(state), at, 'the state was never written again');
@@ -136,9 +137,59 @@ describe('veronese clip --corrections', () => {
     assert.deepEqual(await straight(), bits);
   });
 
+  test('a folder of which nothing is read is an error; what is not read beside others is said', async (t) => {
+    const { frames, corrections, said, given, masks, out } = clip(t);
+    mkdirSync(join(corrections, 'clip-a'));
+    cpSync(join(frames, 'f1.png'), join(corrections, 'clip-a', 'f1.png'));
+    for (const option of ['--corrections', '--masks']) {
+      const { stderr } = await run([frames, option, corrections, '--out', out], { code: 1 });
+      assert.match(stderr, /^veronese: error: invalid-input: nothing is read of the folder '.*said': .*; 'clip-a' is not read: 'convert/);
+      assert.equal(existsSync(out), false);
+    }
+    const empty = await run([frames, '--masks', masks, '--corrections', corrections, '--out', out], { code: 1 });
+    assert.match(empty.stderr, /folder '.*masks': masks are NAME\.png, or 3\/NAME\.png of object 3, .*; there is no file of these/);
+    said('f3.png', await mask());
+    said('f4.tif', 'II*');
+    given('f3.png', await mask());
+    const { stderr, code } = await veronese(['clip', '--quality', 'fast', frames, '--corrections', corrections, '--out', out]);
+    assert.deepEqual([code, stderr.replace(corrections, 'said')], [0, "veronese: note: 'said': not read: clip-a, f4.tif\n"]);
+    assert.deepEqual(tracksOf(out).notes.map((note) => note.code), ['file-left-out']);
+  });
+
+  test('masks, labels and prompts of the original size are scaled with the frames', async (t) => {
+    const { frames, corrections, said, given, masks, out, path } = clip(t);
+    const options = [frames, '--max-size', '48', '--out'];
+    const half = { width: 48, height: 36 };
+    const scaled = Uint8Array.from({ length: 48 * 36 }, (_, p) => LABELS[(2 * Math.floor(p / 48) + 1) * 96 + 2 * (p % 48) + 1]);
+    for (const [option, write, folder] of [['--corrections', said, corrections], ['--masks', given, masks]]) {
+      write('f3.png', await mask());
+      write('edits.json', '{"size": [96, 72], "prompts": [{"frame": "f1", "object": 9, "clicks": [[41, 31, 1]], "box": [23, 17, 38, 39]}]}');
+      await run([...options, out, option, folder]);
+      write('f3.png', await mask(scaled, half));
+      write('edits.json', '{"prompts": [{"frame": "f1", "object": 9, "clicks": [[20, 15, 1]], "box": [11, 8, 20, 20]}]}');
+      await run([...options, path('small'), option, folder]);
+      for (let k = 0; k < COUNT; k++) assert.deepEqual(labelsOf(out, k), labelsOf(path('small'), k));
+      write('f3.png', await mask(new Uint8Array(80 * 72), { width: 80, height: 72 }));
+      const { stderr } = await run([...options, out, option, folder], { code: 1 });
+      assert.match(stderr, /f3\.png' has 80×72 pixels, the frames have 48×36/);
+    }
+  });
+
+  test('--levels says what smoothed levels are', async (t) => {
+    const { frames, given, masks, out } = clip(t);
+    const soft = LABELS.map((_, p) => Math.min(200, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36)))));
+    given('f3.png', await encodeGreyPng(SIZE.width, SIZE.height, soft));
+    await run([frames, '--masks', masks, '--out', out], { code: 1 });
+    await run([frames, '--masks', masks, '--levels', '100', '--out', out]);
+    assert.deepEqual(labelsOf(out, 3), soft.map((level) => Number(level >= 100)));
+    assert.match((await run([frames, '--levels', 'some', '--masks', masks, '--out', out], { code: 2 })).stderr, /'--levels' must be 'exact' or a level from 1 to 65535, not 'some'/);
+    assert.match((await run([frames, '--levels', '5', '--out', out], { code: 2 })).stderr, /'--levels' needs '--masks' or '--corrections'/);
+  });
+
   test('names what is wrong before anything is written', async (t) => {
     const { frames, corrections, said, out, path } = clip(t);
     const colours = await encodeColourPng(SIZE.width, SIZE.height, Uint8Array.from({ length: 3 * PIXELS }, (_, at) => at * 7919));
+    const soft = await encodeGreyPng(SIZE.width, SIZE.height, LABELS.map((_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36))))));
     const small = await mask(new Uint8Array(64), { width: 8, height: 8 });
     const cases = [
       ['g1.png', await mask(), 'invalid-input', /g1\.png' has the name of no frame/],
@@ -146,7 +197,7 @@ describe('veronese clip --corrections', () => {
       ['f1.png', small, 'frame-size-mismatch', /f1\.png' has 8×8 pixels, the frames have 96×72/],
       ['f1.png', 'no picture', 'unreadable-image', /f1\.png/],
       ['f1.png', (await mask()).subarray(0, -30), 'unreadable-image', /f1\.png/],
-      ['f1.png', colours, 'invalid-input', /f1\.png'(: it has \d+ colours, so nobody knows| has no labels: it is not an indexed or grey PNG)/],
+      ['f1.png', colours, 'invalid-input', /f1\.png'(: it has \d+ colours only between others| has no labels: it is not an indexed or grey PNG)/],
       ['edits.json', '{"merge": [[1, 2]]', 'invalid-json', /edits\.json/],
       ['edits.json', '[]', 'invalid-input', /edits\.json': must be an object/],
       ['edits.json', '{"remove": [1]}', 'invalid-input', /edits\.json': there is no edit 'remove'/],
@@ -167,6 +218,13 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: is not within the frame/],
       ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'boxes' of 'f1', object 3: has a click already/],
       ['edits.json', '{"locked": [3], "delete": [3]}', 'object-locked', /object 3 is locked/],
+      ['edits.json', '{"propagate": {"f1": "none"}, "accepted": ["f2"]}', 'invalid-input', /'propagate' has 'f1', of which nothing is said/],
+      ['f1.png', soft, 'invalid-input', /f1\.png'(: it)? has \d+ levels only between others, .* --levels 128/],
+      ['edits.json', '{"names": {}, "accepted": [], "merge": []}', 'invalid-input', /nothing is read of the folder '.*said': (masks|labels) are NAME\.png.*; 'edits\.json' says nothing/],
+      ['f1.tif', 'II*', 'invalid-input', /nothing is read of the folder .*'f1\.tif' is not read: save it as PNG/],
+      ['coco.json', '{}', 'invalid-input', /nothing is read of the folder .*'coco\.json' is not read: 'convert --to corrections' reads annotations/],
+      ['notes.txt', 'none', 'invalid-input', /nothing is read of the folder .*there is no file of these/],
+      ['edits.json', '{"size": [50, 50], "accepted": ["f1"]}', 'frame-size-mismatch', /edits\.json': it is about frames of 50×50 pixels, these have 96×72/],
       ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],
     ];
     for (const [name, content, code, message] of cases) {

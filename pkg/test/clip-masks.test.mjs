@@ -211,6 +211,7 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
     test('refuses what it cannot use before any pair is solved', async () => {
       const mask = (rest) => ({ masks: [{ frame: 0, ...rest }] });
       const colours = await encodeColourPng(4, 3, new Uint8Array(36));
+      const soft = Uint8Array.from({ length: PIXELS }, (_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36)))));
       const rle = { size: [72, 96], counts: [PIXELS] };
       const pixel = (...rgba) => ({ ...SIZE, data: new Uint8ClampedArray(4 * PIXELS).fill(255).map((value, at) => (at < 4 ? rgba[at] : value)) });
       const cases = [
@@ -226,6 +227,8 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
         [mask({ png: new Uint8Array(99) }), /number 0 has a png that is not a PNG/],
         [mask({ png: encodeDavis(new Uint8Array(12), 4, 3) }), /'masks': that of frame 0 has 12 labels/],
         [mask({ png: colours }), /number 0 has a png that has no labels: it is not an indexed or grey PNG/],
+        [mask({ png: await encodeGreyPng(SIZE.width, SIZE.height, soft) }), /number 0 has a png that has \d+ levels only between others, as smoothed edges/],
+        [mask({ labels: { ...SIZE, data: Uint8ClampedArray.from([...soft].flatMap((level) => [level, level, level, 255])) } }), /number 0 has \d+ levels only between others/],
         [mask({ rle }), /number 0 must have an id, numbers from 1 to 254/],
         [mask({ id: 1, rle: { size: [96], counts: [] } }), /number 0 must have an rle with a size/],
         [mask({ id: 1, rle: { size: [72, 96] } }), /number 0 must have an rle with counts/],

@@ -123,7 +123,9 @@ test('wrong usage and files that cannot be read', async (t) => {
   await usage([file, '--to', 'corrections,coco', '--out', out], /cannot be with formats that are written/);
   await usage([file, '--to', 'corrections', '--out', out, '--tolerance', '1'], /'--to corrections' has no option '--tolerance'/);
   await usage([file, '--to', 'coco', '--clip', out], /'--clip' needs '--to corrections'/);
-  await refused([file, '--to', 'corrections', '--out', out], 'invalid-input', /'.*a\.json' annotates no frame/);
+  await usage([file, '--to', 'coco', '--levels', '9'], /'--levels' needs '--to corrections'/);
+  await refused([file, '--to', 'corrections', '--out', out, '--first-frame', '2'], 'invalid-option', /'--first-frame'/, 2);
+  await refused([file, '--to', 'corrections', '--quiet', '--out', out], 'invalid-input', /'.*a\.json' annotates no frame/);
   await refused([folder.path('none.json'), '--to', 'corrections', '--out', out], 'file-not-found', /none\.json/);
   await refused([folder.file('b.json', '{'), '--to', 'corrections', '--out', out], 'invalid-input', /b\.json': it is not JSON/);
   await refused([file, '--to', 'corrections', '--out', out, '--clip', folder.path('none')], 'file-not-found', /tracks\.json/);

@@ -15,8 +15,8 @@ const OPTIONS = {
   pair: OF_PAIRS,
   batch: [...OF_PAIRS, 'list', 'every', 'shard', 'jobs'],
   video: [...OF_PAIRS, 'every', 'shard', 'jobs'],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'subject', 'mark-unknown', 'max-size', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
-  convert: ['to', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out', 'force'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'levels', 'subject', 'mark-unknown', 'max-size', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
+  convert: ['to', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'levels', 'first-frame', 'out', 'force'],
   points: ['motions', 'method', 'seed'],
   completion: [],
 };

@@ -129,7 +129,7 @@ describe('files with ten thousand entries', () => {
     'of objects without numbers': coco(() => ({})),
     'of boxes': coco((id) => ({ segmentation: [], track_id: id % 200, bbox: [1, 1, 2, 2] })),
     'of images': { ...coco((id) => ({ image_id: id, track_id: 1 })), images: Array.from({ length: many }, (_, id) => ({ id, file_name: `f${id}.png`, width, height })) },
-    'of which the last is wrong': coco((id) => ({ track_id: 1, segmentation: id === many - 1 ? [[0, 0]] : annotation.segmentation })),
+    'of which the last is wrong': coco((id) => ({ track_id: 1, segmentation: id === many - 1 ? [[0, 0, 1]] : annotation.segmentation })),
   };
   for (const [name, document] of cases(Object.entries(LONG_FILES).slice(0, 4), Object.entries(LONG_FILES).slice(4))) {
     test(name, () => outcome(JSON.stringify(document), name));

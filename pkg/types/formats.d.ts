@@ -402,6 +402,8 @@ export interface Annotations {
   format: AnnotationFormat;
   /** By the names of their files, without folder and extension. */
   frames: Map<string, AnnotatedFrame>;
+  /** Of all frames, pixels. */
+  size: { width: number; height: number };
   /** Names of the objects, or of their classes, where there are some. */
   names: Record<number, string>;
   /** Objects of which a frame has a box and no mask: prompts for `segmentClip`, [first column, first row, width, height]. */
@@ -411,18 +413,30 @@ export interface Annotations {
 }
 
 export interface AnnotationNote {
-  /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `mask-smoothed`, `shapes-left-out`,
+  /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `numbers-changed`, `shapes-left-out`, `file-left-out`,
    * `boxes-taken`. */
   code: string;
   /** A sentence that names the file. */
   message: string;
 }
 
+export interface AnnotationOptions {
+  /** The names of a clip's frames in their order, without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … */
+  frames?: readonly string[];
+  /** The size of its frames, for YOLO without the images. */
+  size?: { width: number; height: number };
+  /**
+   * What levels mean that look smoothed, or compressed with loss, in PNG masks: each is an object of its own (`'exact'`), or those from a level on,
+   * of the brightest channel, are one object. Without it such a mask is an error.
+   */
+  levels?: 'exact' | number;
+  /** The number of the first frame in MOTS as text, where no line has a frame 0. Default: 1. */
+  firstFrame?: 0 | 1;
+}
+
 /**
  * Reads masks from files of annotation tools, in the formats that the encoders write: corrections for `segmentClip`. The format is
- * recognised by the content; pictures beside other annotations are ignored. `frames` are the names of a clip's frames in their order,
- * without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … `size` is that of its frames, for YOLO without
- * the images. Throws `invalid-input`, `unreadable-image` or
+ * recognised by the content; pictures beside other annotations are ignored. Throws `invalid-input`, `unreadable-image` or
  * `frame-size-mismatch` with the name of the file.
  */
-export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[]; size?: { width: number; height: number } }): Annotations;
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: AnnotationOptions): Annotations;

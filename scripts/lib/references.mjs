@@ -8,7 +8,7 @@ import { inProject, root } from './project.mjs';
 import { must } from './run.mjs';
 
 /** The hand-written types, one file per entry of the package. */
-const ENTRIES = ['index', 'slim', 'codecs', 'formats', 'element-class', 'element'].map((name) => `pkg/types/${name}.d.ts`);
+const ENTRIES = ['index', 'slim', 'codecs', 'colours', 'formats', 'element-class', 'element'].map((name) => `pkg/types/${name}.d.ts`);
 
 export async function referenceOfPackage(folder) {
   await prepareNpmPackages(HOSTS);

@@ -77,18 +77,20 @@ function points(values: Values, files: string[]) {
 }
 
 function convert(values: Values, files: string[], given: readonly string[]) {
-  const { to, out, clip, grouped, background, image, video, force } = values;
+  const { to, out, clip, grouped, background, image, video, force, levels: said, 'first-frame': first } = values;
   const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
   if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
   const back = to.split(',').includes(BACK);
   for (const option of given) {
-    if (back ? ['to', 'clip', 'out', 'force'].includes(option) : option !== 'clip') continue;
-    throw usage(back ? `'--to ${BACK}' has no option '--${option}'` : `'--clip' needs '--to ${BACK}'`);
+    const isOfBack = ['clip', 'levels', 'first-frame'].includes(option);
+    if (back ? isOfBack || ['to', 'out', 'force', 'quiet'].includes(option) : !isOfBack) continue;
+    throw usage(back ? `'--to ${BACK}' has no option '--${option}'` : `'--${option}' needs '--to ${BACK}'`);
   }
   if (back) {
     if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
-    return { name: BACK, source: folder, out, clip, force } as const;
+    const firstFrame = first === undefined ? undefined : choice('first-frame', first, '0', '1');
+    return { name: BACK, source: folder, out, clip, force, levels: levels(said), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
   }
   const { shapes, 'frame-rate': rate } = values;
   const settings = {
@@ -113,7 +115,8 @@ function clip(values: Values, files: string[]) {
   };
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
   const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
-  return { name: 'clip' as const, frames: files, list, masks, corrections, ...shared, options, overlay, allowDamaged, out, force };
+  if (values.levels !== undefined && masks === undefined && corrections === undefined) throw usage("'--levels' needs '--masks' or '--corrections'");
+  return { name: 'clip' as const, frames: files, list, masks, corrections, levels: levels(values.levels), ...shared, options, overlay, allowDamaged, out, force };
 }
 
 function pair(values: Values, files: string[]) {
@@ -213,6 +216,12 @@ function shown(text: string | undefined): Shown[] {
     const sentence = `option '--show': nothing is known as '${name}'${question(meant(name, SHOWN)) ?? `; known are ${SHOWN.join(', ')}`}`;
     throw new VeroneseError('invalid-option', sentence);
   });
+}
+
+function levels(text: string | undefined): 'exact' | number | undefined {
+  if (text === undefined || text === 'exact') return text;
+  if (/^\d{1,5}$/.test(text) && Number(text) >= 1 && Number(text) <= 65_535) return Number(text);
+  throw invalid('levels', "'exact' or a level from 1 to 65535", text);
 }
 
 function maxSize(text: string | undefined): number | undefined {

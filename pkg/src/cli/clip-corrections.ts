@@ -6,13 +6,16 @@ import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
 import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
-import { isListOf, isObject, unknownOf } from '../common/checks.js';
+import { isListOf, isNumber, isObject, isWhole, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
+import { scaledLabels, scaledSize } from '../common/scaling.js';
+import type { ClipCommand } from './arguments.js';
 import type { ClipFrames } from './clip-frames.js';
+import { UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { encodeColourPng } from '../entries/codecs.js';
 import { readAnnotations } from '../formats/reading/annotations.js';
-import { isPng } from '../formats/reading/frame.js';
+import { isPng, type Levels } from '../formats/reading/frame.js';
 import { readInput, sha256 } from './files.js';
 import { decoded } from './pair.js';
 
@@ -35,6 +38,11 @@ interface Images {
   images: LabelImage[];
   paths: string[];
   notes: AnnotationNote[];
+  /** What is in the folder, and what of it may be meant and is not read. */
+  names: string[];
+  left: string[];
+  /** What is read. */
+  expected: string;
 }
 
 interface LabelImage {
@@ -66,16 +74,21 @@ export interface Corrections {
   notes: AnnotationNote[];
 }
 
-/** Undefined without annotations. Throws an error that names the file. */
-export async function readCorrections(folders: { [folder in 'masks' | 'corrections']: string | undefined }, frames: ClipFrames): Promise<Corrections | undefined> {
-  const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames, givenMasks);
-  const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames, paintedLabels);
+/** Undefined where no folder is given. Throws an error that names the file, or the folder of which nothing is read. */
+export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corrections' | 'levels' | 'maxSize'>, frames: ClipFrames): Promise<Corrections | undefined> {
+  const { levels, maxSize } = command;
+  const read = async (folder: string | undefined, reader: (folder: string, names: string[], levels: Levels | undefined) => Promise<Images>) =>
+    folder === undefined ? undefined : readFolder(folder, frames, maxSize, await reader(folder, namesIn(folder).sort(), levels));
+  const masks = await read(command.masks, givenMasks);
+  const corrections = await read(command.corrections, paintedLabels);
   const both = [masks, corrections].filter((folder) => folder !== undefined);
   if (both.length === 0) return undefined;
   const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
   const spread = <T extends { frame: number }>(said: T[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
   const prompts = both.flatMap((folder) => folder.prompts);
+  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ said }) => said), ...prompts].some((each) => each.frame === frame));
+  if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', of which nothing is said`);
   const edits = {
     merge: all(({ merge }) => merge),
     delete: all((edits) => edits.delete),
@@ -93,57 +106,66 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
     edits,
     paths: both.flatMap(({ paths }) => paths),
     hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
-    notes: masks?.notes ?? [],
+    notes: both.flatMap(({ notes }) => notes),
   };
 }
 
-/** Undefined without annotations. */
-async function readFolder(folder: string, frames: ClipFrames, read: (folder: string, names: string[]) => Promise<Images>): Promise<Folder | undefined> {
-  const names = namesIn(folder).sort();
-  const found = await read(folder, names);
+async function readFolder(folder: string, frames: ClipFrames, maxSize: number | undefined, found: Images): Promise<Folder> {
   const said: ClipCorrection[] = [];
-  for (const { path, stem, labels, width, height } of found.images) {
+  for (const { path, stem, ...image } of found.images) {
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
     if (said.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
     const size = frames.size ?? (await frames.read(0));
+    const { labels, width, height } = scaledLabels(image, maxSize);
     if (width !== size.width || height !== size.height) {
-      throw new VeroneseError('frame-size-mismatch', `'${path}' has ${width}×${height} pixels, the frames have ${size.width}×${size.height}`);
+      throw new VeroneseError('frame-size-mismatch', `'${path}' has ${image.width}×${image.height} pixels, the frames have ${size.width}×${size.height}`);
     }
     said.push({ frame, labels });
   }
   said.sort((one, other) => one.frame - other.frame);
   const none: Edits = { edits: {}, prompts: [], accepted: undefined, propagate: new Map() };
-  const told = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : none;
+  const hasEdits = found.names.includes(EDITS);
+  const told = hasEdits ? await readEdits(join(folder, EDITS), frames, maxSize) : none;
   const { edits, prompts, accepted, propagate } = told;
-  if (said.length === 0 && Object.keys(edits).length + prompts.length + propagate.size === 0 && accepted === undefined) return undefined;
+  const lists = [said, prompts, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
+  if (lists.every((list) => list.length === 0)) {
+    const [left] = found.left;
+    const remedy = left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
+    const which = left !== undefined ? `'${left}' is not read: ${remedy}` : hasEdits ? `'${EDITS}' says nothing` : 'there is no file of these';
+    throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
+  }
+  const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
   const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
   const content = [hashes, edits, ...propagate, prompts, accepted];
-  const paths = [...new Set([...names.map((name) => join(folder, name)), ...found.paths])];
-  return { ...found, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
+  const paths = [...new Set([...found.names.map((name) => join(folder, name)), ...found.paths])];
+  return { ...found, notes, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
 }
 
 /** Label images as the program writes them, painted over: 255 says nothing. */
-async function paintedLabels(folder: string, names: string[]): Promise<Images> {
+async function paintedLabels(folder: string, names: string[], levels: Levels | undefined): Promise<Images> {
   const images: LabelImage[] = [];
-  for (const name of names.filter((name) => isImage(name) && extname(name).toLowerCase() === '.png')) {
+  const isRead = (name: string) => isImage(name) && extname(name).toLowerCase() === '.png';
+  for (const name of names.filter(isRead)) {
     const path = join(folder, name);
-    images.push({ path, stem: stemOf(name), ...(await readLabels(path, { foreign: true })) });
+    images.push({ path, stem: stemOf(name), ...(await readLabels(path, { foreign: true, levels })) });
   }
-  return { images, paths: [], notes: [] };
+  return { images, paths: [], notes: [], names, left: names.filter((name) => !isRead(name) && isMeant(folder, name)), expected: 'labels are NAME.png' };
 }
 
 /** Masks as people have them, in the folder or in one for each object. */
-async function givenMasks(folder: string, names: string[]): Promise<Images> {
-  const objects = names.filter((name) => /^\d+$/.test(name) && statSync(join(folder, name)).isDirectory());
-  const inside = [...names, ...objects.flatMap((name) => namesIn(join(folder, name)).sort().map((file) => join(name, file)))];
+async function givenMasks(folder: string, names: string[], levels: Levels | undefined): Promise<Images> {
+  const objects = names.filter((name) => /^\d+$/.test(name) && isFolder(join(folder, name)));
+  const inside = [...names.filter((name) => !objects.includes(name)), ...objects.flatMap((name) => namesIn(join(folder, name)).sort().map((file) => join(name, file)))];
   const paths = inside.filter(isImage).map((name) => join(folder, name));
-  if (paths.length === 0) return { images: [], paths, notes: [] };
+  const left = inside.filter((name) => !isImage(name) && isMeant(folder, name));
+  const about = { paths, names, left, expected: 'masks are NAME.png, or 3/NAME.png of object 3' };
+  if (paths.length === 0) return { ...about, images: [], notes: [] };
   const files = await Promise.all(paths.map(async (path) => ({ name: path.replaceAll('\\', '/'), bytes: await pngOf(path) })));
-  const { frames, notes } = readAnnotations(files);
+  const { frames, notes } = readAnnotations(files, levels === undefined ? {} : { levels });
   const pathOf = (stem: string) => paths.find((path) => stemOf(basename(path)) === stem) as string;
   const images = [...frames].map(([stem, frame]) => ({ path: pathOf(stem), stem, labels: frame.read(), width: frame.width, height: frame.height }));
-  return { images, paths, notes };
+  return { ...about, images, notes };
 }
 
 /** A mask as PNG; of the other formats its pixels. */
@@ -152,6 +174,16 @@ async function pngOf(path: string): Promise<Uint8Array> {
   if (isPng(bytes)) return bytes;
   const { width, height, data } = await decoded({ name: path, bytes });
   return encodeColourPng(width, height, data);
+}
+
+function isFolder(path: string): boolean {
+  return statSync(path, { throwIfNoEntry: false })?.isDirectory() === true;
+}
+
+/** Whether something in a folder that is not read may be meant to be: a picture, an annotation, or a folder of them. */
+function isMeant(folder: string, name: string): boolean {
+  if (basename(name).startsWith('.') || name === EDITS) return false;
+  return isFolder(join(folder, name)) || isImage(name) || UNREAD_IMAGE.test(name) || /\.(json|xml|zip|npy|npz|mat)$/i.test(name);
 }
 
 function isImage(name: string): boolean {
@@ -174,25 +206,26 @@ function namesIn(folder: string): string[] {
 }
 
 /** Frames are called by their names. */
-async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
+async function readEdits(path: string, frames: ClipFrames, maxSize: number | undefined): Promise<Edits> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'accepted', 'propagate']);
-  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], accepted, ...edits } = content as Record<string, unknown>;
+  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'accepted', 'propagate', 'size']);
+  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
   if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
+  const scale = own === undefined ? 1 : await scaleOf(own, frames, maxSize, wrong);
   // One after another: the first keeps its pixels.
   const prompts: FullPrompt[] = [];
   const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
-    const pointed = promptOf(entry, bad);
+    const pointed = promptOf(scaledPrompt(entry, scale), bad);
     if (!isWithin(pointed, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
     const before = prompts.find(({ frame, object }) => frame === pointed.frame && object === pointed.object);
     if (before) throw bad(`has a ${before.box ? 'box' : 'click'} already`);
-    const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = entry;
+    const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = scaledPrompt(entry, scale);
     prompts.push({ ...rest, object, clicks } as FullPrompt);
   };
   if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
@@ -222,4 +255,30 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     return [frame, way];
   });
   return { edits, prompts, accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+}
+
+/** By how much what is said in pixels of a size is scaled down, as the frames are. */
+async function scaleOf(own: unknown, frames: ClipFrames, maxSize: number | undefined, wrong: (reason: string) => VeroneseError): Promise<number> {
+  const isSide = (side: unknown): side is number => isWhole(side, 1, Number.MAX_SAFE_INTEGER);
+  if (!isListOf(own, isSide) || own.length !== 2) throw wrong("'size' must be a width and a height");
+  const [width, height] = own as [number, number];
+  const size = frames.size ?? (await frames.read(0));
+  const scaled = scaledSize({ width, height }, maxSize);
+  if (scaled.width === size.width && scaled.height === size.height) return scaled.width / width;
+  throw new VeroneseError('frame-size-mismatch', wrong(`it is about frames of ${width}×${height} pixels, these have ${size.width}×${size.height}`).message);
+}
+
+function scaledPrompt(entry: Record<string, unknown>, scale: number): Record<string, unknown> {
+  if (scale === 1) return entry;
+  const { box, click, clicks } = entry;
+  const number = (value: unknown) => (isNumber(value) ? value : NaN);
+  const point = (at: unknown) => (Array.isArray(at) ? at.map((value, k) => (k < 2 ? Math.floor(scale * number(value)) : value)) : at);
+  const [x = 0, y = 0, width = 0, height = 0] = Array.isArray(box) ? box.map((value) => scale * number(value)) : [];
+  const [left, top] = [Math.floor(x), Math.floor(y)];
+  return {
+    ...entry,
+    ...(box !== undefined && { box: [left, top, Math.ceil(x + width) - left, Math.ceil(y + height) - top] }),
+    ...(click !== undefined && { click: point(click) }),
+    ...(clicks !== undefined && { clicks: Array.isArray(clicks) ? clicks.map(point) : clicks }),
+  };
 }

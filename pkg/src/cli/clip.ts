@@ -2,7 +2,6 @@
 
 import { join } from 'node:path';
 import type { Clip, ClipChange, ClipFrame, ClipProgress, Note, Segmenter as SegmenterType } from '../../types/index.js';
-import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
 import { UNLABELLED } from '../common/checks.js';
 import { davisPalette } from '../common/palette.js';
@@ -18,6 +17,7 @@ import { ClipStore, type Record } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
+import { overlay } from './overlay.js';
 import { jsonLine } from './pair.js';
 import { checkFilms, Showing } from './showing.js';
 import { note, print, ProgressBar, warn } from './terminal.js';

@@ -48,6 +48,12 @@ export const OPTIONS = {
       'what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said), and DIR/edits.json: ' +
       '{"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}, "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"',
   },
+  levels: {
+    type: 'string',
+    value: 'exact|1..65535',
+    text: 'what levels of masks are that look smoothed, or compressed with loss: exact, each is an object; or a level, from which on they are the object (default: an error)',
+  },
+  'first-frame': { type: 'string', value: '0|1', text: `with ${BACK}: the number of the first frame in MOTS as text (default: 0 where a line has it, else 1)` },
   grouped: { type: 'boolean', default: false, text: 'groups instead of motions in labels.png and mask-K.png; one rigid background is one group' },
   subject: { type: 'boolean', default: false, text: 'only the main subject is an object, as for a cut-out: the one thing that the pictures are about' },
   'mark-unknown': { type: 'boolean', default: false, text: 'use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous' },
@@ -143,7 +149,7 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'subject', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
+    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'levels', 'subject', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',
@@ -162,7 +168,7 @@ export const COMMANDS = {
     usage: ['DIR --to FORMATS [options]', `SOURCE --to ${BACK} --out DIR [--clip DIR] [--force]`],
     about: 'convert results for annotation tools, and annotations back',
     more: `DIR is a folder of pair, batch or clip. SOURCE is a file, an archive or a folder of annotations: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, PNG masks; of them come NAME.png for each annotated frame, and edits.json, for --corrections of clip.`,
-    options: ['to', 'out', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'force'],
+    options: ['to', 'out', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'levels', 'first-frame', 'force'],
     texts: { out: 'output folder (default: the input folder)', grouped: 'of pair and batch: groups instead of motions' },
     examples: [
       ['A clip for COCO tools and as DAVIS masks', 'veronese convert masks --to coco,davis'],

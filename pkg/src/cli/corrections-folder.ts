@@ -15,22 +15,22 @@ import type { Output } from './output.js';
 import { note } from './terminal.js';
 
 /** Of files in a folder those that can be annotations, or name their classes. */
-const POSSIBLE = /\.(json|xml|png|jpe?g|txt|ya?ml|zip)$/i;
+const POSSIBLE = /\.(json|xml|png|jpe?g|txt|ya?ml|names|labels|zip)$/i;
 /** Of a JPEG the size alone is wanted, which is near its beginning, bytes. */
 const HEAD = 2 ** 18;
 
 /** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
-export async function convertBack({ source, clip }: CorrectionsCommand, output: Output, io: Io): Promise<string> {
+export async function convertBack({ source, clip, levels, firstFrame }: CorrectionsCommand, output: Output, io: Io): Promise<string> {
   await output.check([EDITS]);
   const known = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
   for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path, /\.jpe?g$/i.test(path) ? HEAD : undefined) });
-  const { format, frames: annotated, names, boxes, notes } = readAnnotations(files, known);
+  const { format, frames: annotated, names, boxes, size, notes } = readAnnotations(files, { ...known, ...(levels !== undefined && { levels }), ...(firstFrame !== undefined && { firstFrame }) });
   for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {
       for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
-      await write(EDITS, `${JSON.stringify({ names, ...(boxes.length > 0 && { prompts: boxes }) })}\n`);
+      await write(EDITS, `${JSON.stringify({ names, ...(boxes.length > 0 && { prompts: boxes, size: [size.width, size.height] }) })}\n`);
     },
     (path) => /^[^/]+\.png$/.test(path),
   );

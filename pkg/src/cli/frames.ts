@@ -10,6 +10,8 @@ import { notFound } from './files.js';
 import { isFileName } from './sequence.js';
 
 const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
+/** Pictures that are not read. */
+export const UNREAD_IMAGE = /\.(tiff?|avif|jp2|j2k|jxl|heic|heif|gif|exr|dng)$/i;
 const MAGIC = /[*?[\]]/;
 /** Folders below each other that `**` follows. */
 const DEPTH = 32;
@@ -53,6 +55,10 @@ function framesOf(name: string): string[] {
   const kind = kindOf(name);
   if (kind === 'folder') {
     const frames = entries(name).filter((entry) => IMAGE.test(entry) && !entry.startsWith('.'));
+    const unread = entries(name).find((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.'));
+    if (frames.length === 0 && unread !== undefined) {
+      throw new VeroneseError('unreadable-image', `no image in the folder '${name}' is read, such as '${unread}': frames are PNG, JPEG, WebP, BMP or PNM`);
+    }
     if (frames.length === 0) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
     return frames.sort(byNumbers).map((entry) => join(name, entry));
   }

@@ -3,13 +3,15 @@
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { readInput } from './files.js';
 import { decodeIndices } from '../formats/indexed-png.js';
+import type { Levels } from '../formats/reading/frame.js';
+import { crispLevels } from '../formats/reading/smoothed.js';
 
 /** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */
-export async function readLabels(path: string, options?: { foreign: boolean }): Promise<{ labels: Uint8Array; width: number; height: number }> {
+export async function readLabels(path: string, options?: { foreign: boolean; levels: Levels | undefined }): Promise<{ labels: Uint8Array; width: number; height: number }> {
   const bytes = await readInput(path);
   try {
-    const { indices, ...size } = decodeIndices(bytes, options);
-    return { labels: indices, ...size };
+    const { indices, isGrey, ...size } = decodeIndices(bytes, options);
+    return { labels: isGrey ? crispLevels(indices, size, options?.levels) : indices, ...size };
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);
     throw new VeroneseError(code, `'${path}' ${message}`);

@@ -2,12 +2,13 @@
 
 import type { Picture } from '../../types/codecs.js';
 import type { Note, Segmentation } from '../../types/index.js';
-import { groupLabels, maskOf, overlay } from '../calls/labels.js';
+import { groupLabels, maskOf } from '../calls/labels.js';
 import { LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
 import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng, isTooLarge } from '../entries/codecs.js';
 import type { OutputFile } from './files.js';
+import { overlay } from './overlay.js';
 
 export interface PairSettings {
   options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; subject: boolean; confidence: boolean };

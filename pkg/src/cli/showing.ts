@@ -4,11 +4,11 @@ import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { join } from 'node:path';
 import type { ClipFrame, Pixels } from '../../types/index.js';
-import { overlay } from '../calls/labels.js';
 import { isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaled } from '../common/scaling.js';
 import { encodeColourPng } from '../entries/codecs.js';
+import { overlay } from './overlay.js';
 
 /** For help and completion; N is the number of an object. */
 export const SHOWN = ['overlay.mp4', 'overlay.webm', 'overlay.gif', 'beside.mp4', 'beside.webm', 'beside.gif', 'sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'];

@@ -41,6 +41,11 @@ export interface VideoInfo {
   light?: string;
   /** Width to height of a pixel, where it is no square. */
   aspect?: string;
+  /** Whether frames are of two moments each, line by line. */
+  isInterlaced?: boolean;
+  /** Width and height of the first frame, and of the first one with others, which is scaled to them. */
+  size?: string;
+  change?: { index: number; size: string };
 }
 
 /** Codes of brightness that go beyond that of a usual screen, as ffmpeg calls them. */
@@ -61,17 +66,26 @@ export function timesOf({ times, frameRate }: VideoInfo, count: number, every: n
 }
 
 /** What is assumed of the video. */
-export function notesOnVideo(file: string, { light, aspect }: VideoInfo): Note[] {
+export function notesOnVideo(file: string, { light, aspect, isInterlaced, size, change }: VideoInfo): Note[] {
   const notes: Note[] = [];
   if (light) notes.push({ code: 'video-hdr', message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping` });
   if (aspect) notes.push({ code: 'video-aspect', message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file` });
+  if (isInterlaced) {
+    const remedy = `what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away`;
+    notes.push({ code: 'video-interlaced', message: `'${file}' is interlaced, its frames are of two moments each: ${remedy}` });
+  }
+  if (change) notes.push({ code: 'video-size', message: `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}` });
   return notes;
 }
 
 /** Takes down what a line of ffmpeg says of the video. */
-function note(about: VideoInfo, line: string): void {
-  const [, time] = /\bn: *\d+ pts: *\S+ pts_time: *(\S+)/.exec(line) ?? [];
-  if (time !== undefined) about.times.push(Number(time));
+export function hear(about: VideoInfo, line: string): void {
+  const [, time, size, fields] = /\bn: *\d+ pts: *\S+ pts_time: *(\S+)(?:.*?\bs:(\d+x\d+) i:(\w))?/.exec(line) ?? [];
+  if (time !== undefined) {
+    const index = about.times.push(Number(time)) - 1;
+    if (fields === 'T' || fields === 'B') about.isInterlaced = true;
+    if (size !== undefined && size !== (about.size ??= size)) about.change ??= { index, size };
+  }
   // The first is that of the file; what is written has another.
   if (about.frameRate !== undefined || !/Stream #0:\d+.*: Video:/.test(line)) return;
   const rate = Number(/([\d.]+)(k?) fps\b/.exec(line)?.[1]);
@@ -105,7 +119,7 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
   createInterface(ffmpeg.stderr).on('line', (line) => {
     const [, problem] = /\[(?:panic|fatal|error)\] (.*)$/.exec(line) ?? [];
     if (problem !== undefined) said = `${said}${problem}\n`.slice(-KEPT);
-    else if (about) note(about, line);
+    else if (about) hear(about, line);
   });
   const ended = new Promise<string | undefined>((resolve) => {
     ffmpeg.once('error', (error) => resolve(error.message));

@@ -2,8 +2,12 @@
 
 import { VeroneseError } from './errors.js';
 
-/** Longest side of a frame or a label image, pixels: what the core segments. */
+/** Longest side of a frame, pixels: what the core segments. */
 export const LONGEST_SIDE = 4096;
+
+/** Longest side, and most pixels, of a label image: it may be of a frame that is scaled down. */
+export const LONGEST_LABEL_SIDE = 16_384;
+export const MOST_LABELS = 2 ** 27;
 
 /** Slowest and fastest rate of a clip's frames, per second. */
 export const FRAME_RATES = { least: 1e-6, most: 1e6 } as const;

@@ -38,3 +38,15 @@ export function scaledSize({ width, height }: Pick<Pixels, 'width' | 'height'>, 
   const factor = Math.min(1, longest / Math.max(width, height));
   return { width: Math.max(1, Math.round(factor * width)), height: Math.max(1, Math.round(factor * height)) };
 }
+
+/** Labels scaled as frames are: each pixel has the label in its middle. */
+export function scaledLabels(image: { labels: Uint8Array; width: number; height: number }, longest: number | undefined): { labels: Uint8Array; width: number; height: number } {
+  const { labels, width: w, height: h } = image;
+  const { width, height } = scaledSize(image, longest);
+  if (width === w && height === h) return image;
+  const from = (at: number, side: number, of: number) => Math.floor(((at + 0.5) * of) / side);
+  const columns = Array.from({ length: width }, (_, x) => from(x, width, w));
+  const scaled = new Uint8Array(width * height);
+  for (let y = 0, at = 0; y < height; y++) for (const column of columns) scaled[at++] = labels[from(y, height, h) * w + column] as number;
+  return { labels: scaled, width, height };
+}

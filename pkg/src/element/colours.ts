@@ -1,14 +1,13 @@
-// The colour of each mask.
+// The colour of each mask; each can be replaced in CSS.
 
-/** After Okabe and Ito, told apart by people with any common kind of colour blindness; each can be replaced in CSS. */
-const COLOURS = ['transparent', '#f0a000', '#56b4e9', '#d66eaf', '#00a878', '#f0e442', '#d55400', '#0068be', '#ececec', '#805228'];
+import { objectColour } from '../entries/colours.js';
 
 /** The colour of each label as one RGBA word: `--veronese-colour-K`, else that of the palette. A canvas knows every CSS colour. */
 export function coloursOf(element: Element): Uint32Array {
   const style = getComputedStyle(element);
   const context = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
   return Uint32Array.from({ length: 255 }, (_, label) => {
-    const own = COLOURS[label < COLOURS.length ? label : 1 + ((label - 1) % (COLOURS.length - 1))] ?? '';
+    const own = label === 0 ? 'transparent' : `rgb(${objectColour(label).join(' ')})`;
     const given = style.getPropertyValue(`--veronese-colour-${label}`).trim();
     return context === null ? 0 : wordOf(context, given === '' ? own : given);
   });

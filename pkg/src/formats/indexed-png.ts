@@ -2,7 +2,7 @@
 // host: Node and browsers have different calls for it, and those of browsers are asynchronous.
 
 import { Unzlib } from 'fflate';
-import { LONGEST_SIDE } from '../common/checks.js';
+import { LONGEST_LABEL_SIDE, MOST_LABELS } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
@@ -21,6 +21,8 @@ interface Size {
 
 export interface Indices extends Size {
   indices: Uint8Array;
+  /** Whether these are grey levels, and not indices of a palette. */
+  isGrey: boolean;
 }
 
 /**
@@ -36,7 +38,7 @@ export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indic
     throw new VeroneseError('invalid-input', `has no labels: it is not ${kind}`);
   }
   const rows = rowsOf(png);
-  return { indices: depth === 8 ? rows : unpacked(rows, depth, width, height), width, height };
+  return { indices: depth === 8 ? rows : unpacked(rows, depth, width, height), isGrey: type === GREY, width, height };
 }
 
 /** The size, and whether the samples are grey levels of 16 bits. Throws as {@link decodeIndices} does. */
@@ -137,7 +139,7 @@ function opened(file: Uint8Array): Png {
   if (header?.length !== 13) throw unreadable('has no header');
   const view = viewOf(header);
   const [width, height] = [view.getUint32(0), view.getUint32(4)];
-  if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_SIDE) throw unreadable(`has ${width} × ${height} pixels`);
+  if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_LABEL_SIDE || width * height > MOST_LABELS) throw unreadable(`has ${width} × ${height} pixels`);
   const isPlain = header.subarray(10).every((value) => value === 0);
   return { width, height, depth: view.getUint8(8), type: view.getUint8(9), isPlain, data, ...colours };
 }

@@ -5,6 +5,7 @@ import { veroneseError } from '../../common/errors.js';
 import { davisPalette } from '../../common/palette.js';
 import type { decodeIndices as Decode } from '../../formats/indexed-png.js';
 import { decompressed } from '../../formats/reading/coco-rle.js';
+import { checkCrisp, crispLevels } from '../../formats/reading/smoothed.js';
 import { isObjectNumber, RANGE } from './edits.js';
 import { bytesOf, checkedList, type LabelledFrame, type Wrong } from './annotations.js';
 
@@ -25,8 +26,8 @@ export async function checkedMasks(masks: unknown, length: number): Promise<Labe
 function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): Omit<LabelledFrame, 'frame'> {
   const bytes = bytesOf(png, 'png', wrong);
   try {
-    const { indices, width } = decodeIndices(bytes, { foreign: true });
-    return { labels: indices, width };
+    const { indices, isGrey, width, height } = decodeIndices(bytes, { foreign: true });
+    return { labels: isGrey ? crispLevels(indices, { width, height }, undefined) : indices, width };
   } catch (thrown) {
     throw wrong(`has a png that ${veroneseError(thrown).message}`);
   }
@@ -44,12 +45,21 @@ function labelsOfImage(data: unknown, width: unknown, height: unknown, wrong: Wr
   const isGrey = colours.every((colour) => colour === -1 || colour === greys[colour & 255]);
   // Of colours that the palette has twice the lower index counts.
   const palette = isGrey ? greys : davisPalette().map(numberOf);
+  if (isGrey) crisp(() => checkCrisp(colours.map((colour) => Math.max(0, colour) & 255), { width, height }, { channels: 1, ground: 0, white: UNLABELLED }), wrong);
   const labels = new Map(palette.map((colour, index) => [colour, index] as const).reverse()).set(-1, UNLABELLED);
   return Uint8Array.from(colours, (colour, p) => {
     const label = labels.get(colour);
     if (label !== undefined) return label;
     throw wrong(`has a pixel of a colour that is neither grey nor of the DAVIS palette, at ${p % width}, ${Math.floor(p / width)}`);
   });
+}
+
+function crisp(check: () => void, wrong: Wrong): void {
+  try {
+    check();
+  } catch (thrown) {
+    throw wrong(veroneseError(thrown).message);
+  }
 }
 
 function numberOf([r, g, b]: readonly [number, number, number]): number {

@@ -1,7 +1,7 @@
 // Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
 
 import { unzipSync } from 'fflate';
-import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, Annotations } from '../../../types/formats.js';
+import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations } from '../../../types/formats.js';
 import {
   checkedBytes,
   entriesOf,
@@ -9,6 +9,7 @@ import {
   invalidOption,
   isListOf,
   isObject,
+  isWhole,
   keyOf,
   reading,
   UNLABELLED,
@@ -19,12 +20,12 @@ import { decodeVeronese } from '../veronese-json.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { checkSize, type Context, isObjectNumber, isPng, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
+import { checkSize, type Context, isObjectNumber, type Known, isPng, known, type Levels, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
 import { readDatumaro } from './datumaro.js';
 import { readLabelMe } from './labelme.js';
 import { readLabelStudio } from './label-studio.js';
 import { readMasks } from './masks.js';
-import { areMots, isMots, readMots, readMotsPng } from './mots.js';
+import { IGNORED, isMots, numbersOfMots, readMots, readMotsPng } from './mots.js';
 import { sizeOfPicture } from './pictures.js';
 import { readSupervisely } from './supervisely.js';
 import { isYolo, namesInYaml, readYolo } from './yolo.js';
@@ -33,6 +34,8 @@ import { isYolo, namesInYaml, readYolo } from './yolo.js';
 const LARGEST = 2 ** 30;
 /** Byte order mark and white space, which may stand before text. */
 const BEFORE = [0xef, 0xbb, 0xbf, 0x20, 0x09, 0x0a, 0x0d];
+/** Lists of the names of YOLO's classes: of Ultralytics, of Darknet and CVAT (obj.names), of Roboflow (_darknet.labels) and of labelImg. */
+const NAMES = /\.(ya?ml|names|labels)$|(^|\/)(names|(predefined_)?classes)\.txt$/i;
 /** The class of what is no object. */
 const BACKGROUND = 'background';
 
@@ -42,7 +45,7 @@ interface Recognised {
   read: (context: Context) => ReadFrame[];
 }
 
-export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[]; size?: Size }): Annotations {
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: AnnotationOptions): Annotations {
   const { clip, sources } = reading(() => ({ clip: clipOf(options), sources: [...files].map(checkedSource) }));
   const all = sources.flatMap((source) => (isArchive(source.bytes) ? naming(source.name, () => unpacked(source)) : [source]));
   // Images beside a document are the frames that it is about.
@@ -57,24 +60,35 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: { fra
   }
   const left = new LeftOut();
   const context = contextOf(all, clip, left);
-  const frames = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) => naming(source.name, () => read(context)));
-  const notes = left.notes();
-  if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
-  const found = numbered(frames);
-  const count = found.boxes.length;
-  if (count > 0) notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${count})` });
+  const read = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) => naming(source.name, () => read(context)));
+  const found = numbered(read);
+  const notes = [...left.notes(), ...unknownIn(all, documents), ...found.notes];
+  const { frames, boxes } = found;
+  if (frames.size + boxes.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
+  if (boxes.length > 0) notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${boxes.length})` });
   return { format: first.format, ...found, notes };
+}
+
+/** Documents beside others that are in no format that is read. */
+function unknownIn(all: readonly Source[], documents: readonly Recognised[]): AnnotationNote[] {
+  const isKnown = (source: Source) => documents.some((document) => document.source === source);
+  const others = all.filter((source) => /\.(json|xml)$/i.test(source.name) && !isKnown(source));
+  return others.map(({ name }) => ({ code: 'file-left-out', message: nothingIn([{ name }]) }));
 }
 
 /** Annotations that are pictures themselves. */
 function ofPictures(all: readonly Source[], clip: Clip): Annotations {
   const pictures = all.filter(({ bytes }) => isPng(bytes));
-  if (areMots(pictures)) {
+  const numbers = numbersOfMots(pictures);
+  if (numbers) {
     const context = contextOf(all, clip, new LeftOut());
-    return { format: 'mots-png', ...numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context)))), notes: [] };
+    const found = numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context))));
+    const message = `'${pictures[0]?.name}': pictures with levels from 1000 on are MOTS, in which ${IGNORED} says nothing`;
+    return { format: 'mots-png', ...found, notes: [...(numbers.has(IGNORED) ? [{ code: 'mots-ignored', message }] : []), ...found.notes] };
   }
-  const { frames, notes } = readMasks(pictures);
-  return { format: 'png', ...numbered(frames), notes };
+  const { frames, notes } = readMasks(pictures, clip.levels);
+  const found = numbered(frames);
+  return { format: 'png', ...found, notes: [...notes, ...unknownIn(all, []), ...found.notes] };
 }
 
 /** Texts of YOLO that say that there is nothing: those without a line, beside others. */
@@ -89,18 +103,22 @@ interface Size {
   height: number;
 }
 
-/** What is known of the clip. */
+/** What is known of the clip, and said of the files. */
 interface Clip {
   names: readonly string[] | undefined;
   size: Size | undefined;
+  levels: Levels | undefined;
+  firstFrame: 0 | 1 | undefined;
 }
 
 function clipOf(options: unknown): Clip {
-  const { frames, size } = entriesOf(options, ['frames', 'size']);
+  const { frames, size, levels, firstFrame } = entriesOf(options, ['frames', 'size', 'levels', 'firstFrame']);
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (frames !== undefined && !isListOf(frames, isName)) throw invalidOption('frames', 'a list of names', frames);
   if (size !== undefined && !isObject(size)) throw invalidOption('size', 'a width and a height', size);
-  return { names: frames, size: size && checkSize(size['width'], size['height'], 'the frames') };
+  if (levels !== undefined && levels !== 'exact' && !isWhole(levels, 1, 65_535)) throw invalidOption('levels', "'exact' or a level from 1 to 65535", levels);
+  if (firstFrame !== undefined && firstFrame !== 0 && firstFrame !== 1) throw invalidOption('firstFrame', '0 or 1', firstFrame);
+  return { names: frames, size: size && checkSize(size['width'], size['height'], 'the frames'), levels, firstFrame };
 }
 
 function folderOf(name: string): string {
@@ -129,10 +147,10 @@ class LeftOut {
   }
 }
 
-function contextOf(all: readonly Source[], { names, size }: Clip, left: LeftOut): Context {
-  const lists = all.filter(({ name }) => /\.ya?ml$|(^|\/)(names|classes)\.txt$/i.test(name)).map(({ name, bytes }) => ({
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, left: LeftOut): Context {
+  const lists = all.filter(({ name }) => NAMES.test(name)).map(({ name, bytes }) => ({
     folder: folderOf(name),
-    names: naming(name, () => (name.endsWith('.txt') ? textOf(bytes).trim().split(/\s*\n/) : namesInYaml(textOf(bytes)))),
+    names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
   }));
   // The nearest one in a folder around the file.
   lists.sort((a, b) => b.folder.length - a.folder.length);
@@ -160,6 +178,7 @@ function contextOf(all: readonly Source[], { names, size }: Clip, left: LeftOut)
       return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
     },
     leaveOut: left.add,
+    firstFrame,
   };
 }
 
@@ -209,7 +228,7 @@ function parsed(text: string): unknown {
   }
 }
 
-function nothingIn(files: readonly Source[]): string {
+function nothingIn(files: readonly Pick<Source, 'name'>[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
   return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, YOLO, PNG masks, veronese`;
 }
@@ -221,15 +240,13 @@ function readVeronese(document: Record<string, unknown>, file: string): ReadFram
   return { name: stemOf(image), file, width, height, objects, draw: ({ labels }) => labels.set(decodeVeronese(document).labels) };
 }
 
-/** Objects keep the numbers that they have in the file, where that is possible; the others get those that are free, in their order. */
-function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'names' | 'boxes'> {
-  const objects = new Map<string, { number?: number; name?: string }>();
-  for (const { objects: some } of read) {
-    for (const { key, number, name } of some) {
-      const { number: before = number, name: called = name } = objects.get(key) ?? {};
-      objects.set(key, { ...(before !== undefined && { number: before }), ...(called !== undefined && { name: called }) });
-    }
-  }
+/**
+ * Objects keep the numbers that they have in the file, where that is possible; the others get those that are free, in their order. What they are
+ * called by in the file is their name, if they have no other one.
+ */
+function numbered(read: readonly ReadFrame[]): Omit<Annotations, 'format'> {
+  const objects = new Map<string, Known & { file: string }>();
+  for (const { file, objects: some } of read) for (const object of some) objects.set(object.key, { file, ...object, ...objects.get(object.key) });
   const labels = new Map<string, number>();
   const taken = new Set<number>();
   const give = (key: string, label: number) => void (labels.set(key, label), taken.add(label));
@@ -238,33 +255,40 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
     else if (number !== undefined && !taken.has(number)) give(key, number);
   }
   let free = 1;
-  for (const key of objects.keys()) {
+  const changed: (Known & { file: string; label: number })[] = [];
+  for (const [key, object] of objects) {
     if (labels.has(key)) continue;
     while (taken.has(free)) free++;
     if (free >= UNLABELLED) throw wrong(read[0]?.file ?? '', `has more than ${UNLABELLED - 1} objects`);
     give(key, free);
+    if (object.original !== undefined) changed.push({ ...object, label: free });
   }
   const names: Record<number, string> = {};
   for (const [key, label] of labels) {
-    const name = objects.get(key)?.name;
-    if (label !== 0 && name) names[label] = name;
+    const { name, original = label } = objects.get(key) as Known;
+    const called = name ?? (original === label ? undefined : String(original));
+    if (label !== 0 && called) names[label] = called;
   }
+  const [one] = changed;
+  const all = changed.map(({ original, label }) => `${original} is ${label}`).join(', ');
+  const message = `'${one?.file}': objects have other numbers here, each its own from 1 to ${UNLABELLED - 1}: ${all}`;
+  const notes: AnnotationNote[] = one ? [{ code: 'numbers-changed', message }] : [];
   const frames = new Map<string, AnnotatedFrame>();
   const files = new Map<string, string>();
   const boxes: Annotations['boxes'] = [];
-  for (const { name, file, width, height, draw, objects: own, boxes: some = [] } of read) {
+  const { width: w = 0, height: h = 0 } = read[0] ?? {};
+  const size = { width: w, height: h };
+  for (const { name, file, width, height, draw, boxes: some = [], isOpen } of read) {
     const before = files.get(keyOf(name));
     if (before === file) throw wrong(file, `has two frames called '${name}'`);
     if (before !== undefined) throw wrong(file, `and '${before}' are both of the frame '${name}'`);
     files.set(keyOf(name), file);
-    const [one = { width, height }] = frames.values();
-    if (one.width !== width || one.height !== height) {
-      const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${one.width}×${one.height}`;
+    if (size.width !== width || size.height !== height) {
+      const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${size.width}×${size.height}`;
       throw new VeroneseError('frame-size-mismatch', sentence);
     }
     for (const { key, box } of some) if (labels.get(key)) boxes.push({ frame: name, object: labels.get(key) as number, box });
-    // Nobody has drawn masks in a frame of boxes alone.
-    if (some.length > 0 && some.length === new Set(own.map(({ key }) => key)).size) continue;
+    if (isOpen) continue;
     frames.set(name, {
       width,
       height,
@@ -276,7 +300,7 @@ function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'nam
         }),
     });
   }
-  return { frames, names, boxes };
+  return { frames, size, names, boxes, notes };
 }
 
 function isArchive(bytes: Uint8Array): boolean {
@@ -287,7 +311,7 @@ function isArchive(bytes: Uint8Array): boolean {
 function unpacked({ name: archive, bytes }: Source): Source[] {
   let size = 0;
   const filter = ({ name, originalSize }: { name: string; originalSize: number }) => {
-    if (!/\.(json|xml|png|jpe?g|txt|ya?ml)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
+    if (!/\.(json|xml|png|jpe?g|txt|ya?ml|names|labels)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
     size += originalSize;
     if (size > LARGEST) throw invalidInput('the archive is too large');
     return true;

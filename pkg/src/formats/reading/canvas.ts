@@ -44,6 +44,23 @@ export class Canvas {
     }
   }
 
+  /** The pixels whose centres are in an ellipse, turned by an angle in degrees about its middle. */
+  ellipse([x, y, across, down]: readonly [number, number, number, number], label: number, angle = 0): void {
+    if (![x, y, angle].every(isCoordinate) || ![across, down].every((radius) => isCoordinate(radius) && radius >= 0)) {
+      throw invalidInput(`an ellipse must have a middle and radii, numbers up to ${FARTHEST}`);
+    }
+    const [cosine, sine] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
+    const reach = Math.max(across, down);
+    const [left, right] = [Math.max(0, Math.floor(x - reach)), Math.min(this.width, Math.ceil(x + reach))];
+    for (let row = Math.max(0, Math.floor(y - reach)); row < Math.min(this.height, Math.ceil(y + reach)); row++) {
+      this.#spend(Math.max(0, right - left));
+      for (let column = left; column < right; column++) {
+        const [u, v] = [column + 0.5 - x, row + 0.5 - y];
+        if (((u * cosine + v * sine) / across) ** 2 + ((v * cosine - u * sine) / down) ** 2 <= 1) this.labels[row * this.width + column] = label;
+      }
+    }
+  }
+
   /** Runs column by column over the whole frame, alternating 0s and 1s. */
   columns(counts: readonly unknown[], label: number): void {
     this.#runs(counts, this.labels.length, (at, end) => {

@@ -6,14 +6,18 @@ import { decompressed } from './coco-rle.js';
 import {
   checkSize,
   type Context,
+  type Drawing,
   frameOfShapes,
-  isObjectNumber,
+  type Known,
   known,
+  type LeftOut,
   listOf,
   placed,
+  polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
+  shapeOf,
   stemOf,
   Unnumbered,
   within,
@@ -36,9 +40,8 @@ export function readCoco(document: Json, file: string, context: Context): ReadFr
     if (!found) throw invalidInput(`${which} is of the image ${quoted(annotation['image_id'])}, and there is none`);
     const track = (isObject(attributes) ? attributes['track_id'] : undefined) ?? annotation['track_id'];
     const name = categories.get(annotation['category_id']);
-    const key = isId(track) ? `track ${track}` : found.unnumbered.keyOf(name);
-    if (!isMask(segmentation) && !isBox(bbox)) context.leaveOut(file, 'annotations without a mask');
-    else found.shapes.push(placed(`image ${quoted(found.image['file_name'])}, ${which}`, () => shapeOf(key, track, name, segmentation, bbox)));
+    const objectOf = once(() => known(isId(track) ? `track ${track}` : found.unnumbered.keyOf(name), track, name));
+    found.shapes.push(...shapesOf(`image ${quoted(found.image['file_name'])}, ${which}`, objectOf, segmentation, bbox));
   }
   return [...images.values()].flatMap(({ image, shapes }) => {
     if (shapes.length === 0) return [];
@@ -73,7 +76,7 @@ export function readYouTubeVis(document: Json, file: string, context: Context): 
       if (segmentation === null || segmentation === undefined) continue;
       const shapes = video.shapes.get(index) ?? [];
       video.shapes.set(index, shapes);
-      shapes.push(placed(`frame ${quoted(video.names[index])}, annotation ${quoted(id)}`, () => shapeOf(key, id, name, segmentation)));
+      shapes.push(...shapesOf(`frame ${quoted(video.names[index])}, annotation ${quoted(id)}`, () => known(key, id, name), segmentation));
     }
   }
   return [...videos.values()].flatMap(({ size, names, shapes }) =>
@@ -94,30 +97,36 @@ export function isId(id: unknown): id is number | string {
   return typeof id === 'number' || typeof id === 'string';
 }
 
+/** What a function gives the first time, each time. */
+function once<T>(make: () => T): () => T {
+  let made: { value: T } | undefined;
+  return () => (made ??= { value: make() }).value;
+}
+
 function idOf({ id }: Json, what: string): number | string {
   if (isId(id)) return id;
   throw invalidInput(`${what} must have an id`);
-}
-
-/** Other programs write an empty list, or nothing, where there is a box alone. */
-function isMask(segmentation: unknown): boolean {
-  return isObject(segmentation) || (Array.isArray(segmentation) && segmentation.length > 0);
 }
 
 function isBox(bbox: unknown): bbox is number[] {
   return Array.isArray(bbox) && bbox.length === 4;
 }
 
-function shapeOf(key: string, number: unknown, name: string | undefined, segmentation: unknown, bbox?: unknown): Shape {
-  const shape = known(key, isObjectNumber(number) ? number : undefined, name);
-  if (!isMask(segmentation) && isBox(bbox)) return { ...shape, box: bbox.map(Number) };
-  if (Array.isArray(segmentation) && segmentation.length > 0) {
-    // Some programs leave out the list around the only polygon.
-    const rings: unknown[] = segmentation.length >= 6 && segmentation.every(isNumber) ? [segmentation] : segmentation;
-    return { ...shape, draw: (canvas, label) => rings.forEach((ring) => canvas.polygon(Array.isArray(ring) ? ring : [], label)) };
-  }
-  if (!isObject(segmentation)) throw invalidInput('an annotation has no mask: its segmentation must be polygons or run lengths');
-  return { ...shape, draw: (canvas, label) => columnsOf(canvas, segmentation, label) };
+/** The parts of an annotation. */
+function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, bbox?: unknown): Shape[] {
+  const shape = (drawing: () => Drawing | LeftOut): Shape => placed(place, () => shapeOf(drawing(), objectOf));
+  if (isObject(segmentation)) return [shape(() => ({ draw: (canvas, label) => columnsOf(canvas, segmentation, label) }))];
+  // Some programs leave out the list around the only polygon, others write an empty one where there is a box alone.
+  const rings: unknown[] = !Array.isArray(segmentation) || segmentation.length === 0 ? [] : segmentation.every(isNumber) ? [segmentation] : segmentation;
+  const parts = rings.map((ring) =>
+    shape(() => {
+      if (Array.isArray(ring)) return polygonOf(ring);
+      throw invalidInput('an annotation has no mask: its segmentation must be polygons or run lengths');
+    }),
+  );
+  if (parts.some((part) => 'draw' in part)) return parts;
+  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0))) return [...parts, shape(() => ({ box: bbox.map(Number) }))];
+  return parts.length > 0 ? parts : [{ leftOut: 'annotations without a mask' }];
 }
 
 /** Run lengths with their size. */

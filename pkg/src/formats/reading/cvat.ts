@@ -2,29 +2,28 @@
 
 import { parseXml, XmlElement } from '@rgrove/parse-xml';
 import { invalidInput } from '../../common/checks.js';
-import type { Canvas } from './canvas.js';
 import {
   checkBox,
   checkSize,
   type Context,
+  type Drawing,
   frameOfShapes,
-  isObjectNumber,
+  type Known,
   known,
+  type LeftOut,
   placed,
+  polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
+  shapeOf,
   stemOf,
   Unnumbered,
   within,
 } from './frame.js';
 
-type Drawing = { draw: (canvas: Canvas, label: number) => void } | { box: number[] };
-
 /** Elements without pixels. */
 const REMARKS = ['attribute', 'tag'];
-/** Elements with an inside; a box says where an object is. */
-const READ = ['polygon', 'mask', 'box'];
 
 /** Images, and frames of a video, without shapes are left out: files also list those at which nobody has looked. */
 export function readCvat(text: string, file: string, context: Context): ReadFrame[] {
@@ -55,17 +54,16 @@ type Layered = Shape & { z: number };
 
 function framesOf(image: XmlElement, file: string, context: Context): ReadFrame[] {
   const unnumbered = new Unnumbered();
-  const identityOf = ({ attributes }: XmlElement, track: string | undefined): [key: string, id?: string] => {
-    const { label, group_id: group = '0' } = attributes;
-    if (track !== undefined) return [`track ${track}`, track];
-    return group === '0' ? [unnumbered.keyOf(label)] : [`group ${group} ${label}`, group];
+  const objectOf = (element: XmlElement): Known => {
+    const { label, group_id: group = '0' } = element.attributes;
+    const track = childrenOf(element, 'attribute').find(({ attributes }) => attributes['name'] === 'track_id')?.text;
+    if (track !== undefined) return known(`track ${track}`, numberOr(track), label);
+    return group === '0' ? known(unnumbered.keyOf(label), undefined, label) : known(`group ${group} ${label}`, numberOr(group), label);
   };
   const { name, width, height } = image.attributes;
   const shapes = childrenOf(image).flatMap((element, at): Layered[] => {
-    if (!isRead(element, file, context)) return [];
-    const track = childrenOf(element, 'attribute').find(({ attributes }) => attributes['name'] === 'track_id');
-    const place = `image ${quoted(name)}, shape ${at + 1}`;
-    return [shapeOf(place, element, element.attributes['label'], ...identityOf(element, track?.text))];
+    if (REMARKS.includes(element.name)) return [];
+    return [layered(`image ${quoted(name)}, shape ${at + 1}`, element, () => objectOf(element))];
   });
   if (shapes.length === 0) return [];
   return [within(`image ${quoted(name)}`, () => frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes, context))];
@@ -79,12 +77,12 @@ function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, 
   for (const track of tracks) {
     const { id, label } = track.attributes;
     for (const element of childrenOf(track)) {
-      if (element.attributes['outside'] === '1' || !isRead(element, file, context)) continue;
+      if (element.attributes['outside'] === '1' || REMARKS.includes(element.name)) continue;
       const index = number(element.attributes['frame']);
       if (!Number.isInteger(index) || index < 0) throw invalidInput(`track ${quoted(id)}: the frame of a shape must be a whole number from 0`);
       const shapes = frames.get(index) ?? [];
       frames.set(index, shapes);
-      shapes.push(shapeOf(`track ${quoted(id)}, frame ${index}`, element, label, `track ${id}`, id));
+      shapes.push(layered(`track ${quoted(id)}, frame ${index}`, element, () => known(`track ${id}`, numberOr(id), label)));
     }
   }
   return [...frames].sort(([a], [b]) => a - b).map(([index, shapes]) => frameOf({ name: context.nameOf(index), file, ...size }, shapes, context));
@@ -99,23 +97,19 @@ function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly La
   return frameOfShapes(frame, [...shapes].sort((a, b) => a.z - b.z), context);
 }
 
-/** Whether a shape is read; another is counted. */
-function isRead({ name }: XmlElement, file: string, { leaveOut }: Context): boolean {
-  if (READ.includes(name)) return true;
-  if (!REMARKS.includes(name)) leaveOut(file, `<${name}> elements`);
-  return false;
+function layered(place: string, element: XmlElement, objectOf: () => Known): Layered {
+  return { ...placed(place, () => shapeOf(drawing(element), objectOf)), z: number(element.attributes['z_order']) || 0 };
 }
 
-function shapeOf(place: string, element: XmlElement, name: string | undefined, key: string, id?: string): Layered {
-  const given = number(id);
-  const object = known(key, isObjectNumber(given) ? given : undefined, name);
-  return { ...placed(place, () => ({ ...object, ...drawing(element) })), z: number(element.attributes['z_order']) || 0 };
-}
-
-function drawing({ name, attributes }: XmlElement): Drawing {
-  const { points = '', rle = '', left, top, width, height } = attributes;
-  if (name === 'polygon') return { draw: (canvas, label) => canvas.polygon(points.split(/[,;]/).map(number), label) };
+function drawing({ name, attributes }: XmlElement): Drawing | LeftOut {
+  const { points = '', rle = '', left, top, width, height, rotation } = attributes;
+  if (name === 'polygon') return polygonOf(points.trim() === '' ? [] : points.split(/[,;]/).map(number));
   if (name === 'box') return { box: boxOf(attributes) };
+  if (name === 'ellipse') {
+    const [x, y, across, down] = ['cx', 'cy', 'rx', 'ry'].map((part) => number(attributes[part])) as [number, number, number, number];
+    return { draw: (canvas, label) => canvas.ellipse([x, y, across, down], label, number(rotation) || 0) };
+  }
+  if (name !== 'mask') return { leftOut: `<${name}> elements` };
   return {
     draw: (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox([left, top, width, height].map(number), canvas), label),
   };
@@ -129,6 +123,11 @@ function boxOf(attributes: XmlElement['attributes']): number[] {
   const [width, height] = [right - left, bottom - top];
   const [across, down] = angle === 0 ? [width, height] : [width * cosine + height * sine, width * sine + height * cosine];
   return [(left + right - across) / 2, (top + bottom - down) / 2, across, down];
+}
+
+/** The number that a text is, or the text. */
+function numberOr(text: string | undefined): number | string | undefined {
+  return Number.isNaN(number(text)) ? text : number(text);
 }
 
 /** Not a number where there is none; `Number` takes empty text for 0. */

@@ -1,13 +1,28 @@
 // Datumaro's own JSON: items with masks, polygons and boxes. A track or a group is an object, in all items.
 
 import { invalidInput, isListOf, isNumber, isObject, isWhole } from '../../common/checks.js';
-import type { Canvas } from './canvas.js';
 import { columnsOf, isId } from './coco.js';
-import { checkSize, type Context, frameOfShapes, isObjectNumber, known, listOf, placed, quoted, type ReadFrame, type Shape, stemOf, Unnumbered, within } from './frame.js';
+import {
+  checkSize,
+  type Context,
+  type Drawing,
+  frameOfShapes,
+  known,
+  type LeftOut,
+  listOf,
+  placed,
+  polygonOf,
+  quoted,
+  type ReadFrame,
+  type Shape,
+  shapeOf,
+  stemOf,
+  Unnumbered,
+  within,
+} from './frame.js';
 
 type Json = Record<string, unknown>;
 
-const READ: unknown[] = ['mask', 'polygon', 'bbox'];
 /** Annotations of a whole image. */
 const REMARKS: unknown[] = ['label', 'caption'];
 
@@ -21,16 +36,13 @@ function frameOf({ id, annotations, image, media = image }: Json, names: readonl
   const unnumbered = new Unnumbered();
   const shapes = listOf(annotations ?? [], 'annotations').flatMap((annotation, at): (Shape & { z: number })[] => {
     const { type, group, attributes, label_id: label, z_order: z } = annotation;
-    if (!READ.includes(type)) {
-      if (!REMARKS.includes(type)) context.leaveOut(file, `annotations of type ${quoted(type)}`);
-      return [];
-    }
+    if (REMARKS.includes(type)) return [];
     const name = names[Number(label)];
     const called = typeof name === 'string' ? name : undefined;
     const track = isObject(attributes) ? attributes['track_id'] : undefined;
     const number = track ?? (isWhole(group, 1, Number.MAX_SAFE_INTEGER) ? group : undefined);
-    const key = isId(number) ? `${track === undefined ? 'group' : 'track'} ${number}` : unnumbered.keyOf(called);
-    const shape = placed(`annotation ${quoted(annotation['id'] ?? at)}`, () => ({ ...known(key, isObjectNumber(number) ? number : undefined, called), ...drawing(annotation) }));
+    const keyOf = () => (isId(number) ? `${track === undefined ? 'group' : 'track'} ${number}` : unnumbered.keyOf(called));
+    const shape = placed(`annotation ${quoted(annotation['id'] ?? at)}`, () => shapeOf(drawing(annotation), () => known(keyOf(), number, called)));
     return [{ ...shape, z: Number(z) || 0 }];
   });
   if (shapes.length === 0) return [];
@@ -39,12 +51,17 @@ function frameOf({ id, annotations, image, media = image }: Json, names: readonl
   return [frameOfShapes({ name: stemOf(path), file, ...checkSize(width, height, 'the image') }, shapes.sort((a, b) => a.z - b.z), context)];
 }
 
-function drawing({ type, rle, points, bbox }: Json): { draw: (canvas: Canvas, label: number) => void } | { box: number[] } {
+function drawing({ type, rle, points, bbox }: Json): Drawing | LeftOut {
   if (type === 'mask') {
     if (!isObject(rle)) throw invalidInput('a mask must have run lengths');
     return { draw: (canvas, label) => columnsOf(canvas, rle, label) };
   }
-  if (type === 'polygon') return { draw: (canvas, label) => canvas.polygon(Array.isArray(points) ? points : [], label) };
+  if (type === 'polygon') return polygonOf(Array.isArray(points) ? points : []);
+  if (type === 'ellipse' && isListOf(points, isNumber) && points.length === 4) {
+    const [left, top, right, bottom] = points as [number, number, number, number];
+    return { draw: (canvas, label) => canvas.ellipse([(left + right) / 2, (top + bottom) / 2, (right - left) / 2, (bottom - top) / 2], label) };
+  }
+  if (type !== 'bbox') return { leftOut: `annotations of type ${quoted(type)}` };
   if (!isListOf(bbox, isNumber) || bbox.length !== 4) throw invalidInput('a box must have four numbers');
   return { box: bbox };
 }

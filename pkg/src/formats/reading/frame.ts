@@ -1,6 +1,6 @@
 // The result of the readers of all formats: frames, each with what draws its labels, and the objects that they know.
 
-import { invalidInput, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
+import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../names.js';
 import type { Canvas } from './canvas.js';
@@ -8,8 +8,10 @@ import type { Canvas } from './canvas.js';
 /** Objects with the same key are one, in all frames. */
 export interface Known {
   key: string;
-  /** The number that it has in the file, if any. */
+  /** The number that it should have, if any. */
   number?: number;
+  /** What it is called by in the file. */
+  original?: number | string;
   name?: string;
 }
 
@@ -24,13 +26,27 @@ export interface ReadFrame {
   draw: (canvas: Canvas, labelOf: (key: string) => number) => void;
   /** Of objects that have a box and no mask here: where they are. */
   boxes?: { key: string; box: PixelBox }[];
+  /** Whether shapes are there, and none of them is a mask: nobody has drawn what is ground. */
+  isOpen?: boolean;
 }
 
 /** First column, first row, width and height. */
 export type PixelBox = [left: number, top: number, width: number, height: number];
 
-/** One shape, and the object that it is of: it says which pixels that has, or just the box that holds them. */
-export type Shape = Known & ({ draw: (canvas: Canvas, label: number) => void } | { box: readonly number[] });
+/** Which pixels an object has, or just the box that holds them. */
+export type Drawing = { draw: (canvas: Canvas, label: number) => void } | { box: readonly number[] };
+
+/** A shape that is not read: what it is, in the plural, and the box around all that it marks, where that is known. */
+export interface LeftOut {
+  leftOut: string;
+  place?: readonly number[];
+}
+
+/** One shape, and the object that it is of. */
+export type Shape = (Known & Drawing) | LeftOut;
+
+/** The place of what marks nothing. */
+const NOWHERE = [0, 0, 0, 0];
 
 /** A file, or what is in an archive. */
 export interface Source {
@@ -38,10 +54,15 @@ export interface Source {
   bytes: Uint8Array;
 }
 
+/** What levels between others mean in masks: each is an object of its own, or those from a level on are one object. */
+export type Levels = 'exact' | number;
+
 /** Information that a reader may need beside the file. */
 export interface Context {
   /** The name of the frame of this index, where the format only counts frames. */
   nameOf: (index: number) => string;
+  /** The number of the first frame, where the format may count from 0 or from 1. */
+  firstFrame: 0 | 1 | undefined;
   /** The lines of the file `labels.txt` in the same folder: the names of classes by number, from 1. */
   classesOf: (source: Source) => string[];
   /** The names of YOLO's classes, by number, that hold for a file. */
@@ -52,25 +73,39 @@ export interface Context {
   leaveOut: (file: string, kind: string) => void;
 }
 
-/** A frame of shapes, drawn one after another. Inside a box nothing is known of the ground. */
+/**
+ * A frame of shapes, drawn one after another. Inside a box nothing is known of the ground, nor where a shape was not read: in the whole frame,
+ * if that has no place.
+ */
 export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes'>, shapes: readonly Shape[], { leaveOut }: Context): ReadFrame {
   const masks = shapes.filter((shape) => 'draw' in shape);
   const seen = new Set(masks.map(({ key }) => key));
+  const whole: PixelBox = [0, 0, frame.width, frame.height];
   const boxes: { key: string; box: PixelBox }[] = [];
+  let open: PixelBox[] = [];
   for (const shape of shapes) {
     if ('draw' in shape) continue;
-    const box = withinFrame(shape.box, frame);
-    if (!box) leaveOut(frame.file, 'boxes outside the frame');
+    const place = 'leftOut' in shape ? (shape.place ?? whole) : shape.box;
+    const box = withinFrame(place, frame);
+    if (box) open.push(box);
+    if ('leftOut' in shape) {
+      leaveOut(frame.file, shape.leftOut);
+      continue;
+    }
+    if (!box) leaveOut(frame.file, 'boxes without a pixel of the frame');
     else if (seen.has(shape.key)) leaveOut(frame.file, 'boxes of objects that have a mask or another box');
     else boxes.push({ key: shape.key, box });
     seen.add(shape.key);
   }
+  if (open.some(([, , width, height]) => width === frame.width && height === frame.height)) open = [whole];
   const draw = (canvas: Canvas, labelOf: (key: string) => number) => {
     for (const shape of masks) shape.draw(canvas, labelOf(shape.key));
-    for (const { box } of boxes) canvas.open(box);
+    for (const box of open) canvas.open(box);
   };
-  const objects = shapes.filter(({ key }) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key));
-  return { ...frame, objects: objects.map(({ key, number, name }) => known(key, number, name)), draw, ...(boxes.length > 0 && { boxes }) };
+  const isOpen = masks.length === 0 && (open.length > 0 || shapes.some((shape) => 'leftOut' in shape));
+  const isSeen = ({ key }: Known) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key);
+  const objects = shapes.flatMap((shape) => ('leftOut' in shape || !isSeen(shape) ? [] : [known(shape.key, shape.number, shape.name, shape.original)]));
+  return { ...frame, objects, draw, ...(boxes.length > 0 && { boxes }), ...(isOpen && { isOpen }) };
 }
 
 /** The pixels of a box that are in the frame. */
@@ -80,6 +115,25 @@ function withinFrame(box: readonly number[], { width, height }: { width: number;
   const [left, top] = [Math.max(0, Math.floor(x)), Math.max(0, Math.floor(y))];
   const [right, bottom] = [Math.min(width, Math.ceil(x + w)), Math.min(height, Math.ceil(y + h))];
   return right > left && bottom > top ? [left, top, right - left, bottom - top] : undefined;
+}
+
+/** The box around points, each x and y. */
+export function boxAround(points: readonly (readonly unknown[])[]): [number, number, number, number] {
+  const [x, y] = [0, 1].map((axis) => points.map((point) => Number(point[axis]))) as [number[], number[]];
+  const [left, top] = [Math.min(...x), Math.min(...y)];
+  return [left, top, Math.max(...x) - left, Math.max(...y) - top];
+}
+
+/** A polygon, x and y of one vertex after another. One of fewer than three vertices, as a click makes it, is left out. */
+export function polygonOf(ring: readonly unknown[]): Drawing | LeftOut {
+  if (ring.length > 4 || ring.length % 2 === 1) return { draw: (canvas, label) => canvas.polygon(ring, label) };
+  const [x, y, width, height] = boxAround([ring.slice(0, 2), ring.slice(-2)]);
+  return { leftOut: 'polygons of fewer than three vertices', place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)] };
+}
+
+/** The shape of a drawing; what is left out is of no object. */
+export function shapeOf(drawing: Drawing | LeftOut, object: () => Known): Shape {
+  return 'leftOut' in drawing ? drawing : { ...object(), ...drawing };
 }
 
 /** Reads a part of a file: its errors say which. */
@@ -104,8 +158,10 @@ export function quoted(value: unknown): string {
   return JSON.stringify(value)?.slice(0, 60) ?? 'nothing';
 }
 
-export function known(key: string, number: number | undefined, name: string | undefined): Known {
-  return { key, ...(number !== undefined && { number }), ...(name !== undefined && { name }) };
+/** An object that has the number in the file, or another name for it; what is neither a number nor text is none. */
+export function known(key: string, number: unknown, name: string | undefined, original: unknown = number): Known {
+  const isCalled = typeof original === 'string' || Number.isFinite(original);
+  return { key, ...(isObjectNumber(number) && { number }), ...(isCalled && { original: original as number | string }), ...(name !== undefined && { name }) };
 }
 
 /** Keys of objects without a number: the second car of one frame is the second car of another one. Made anew for each frame. */
@@ -162,8 +218,8 @@ export function stemOf(image: unknown): string {
 }
 
 export function checkSize(width: unknown, height: unknown, whose: string): { width: number; height: number } {
-  if (isWhole(width, 1, LONGEST_SIDE) && isWhole(height, 1, LONGEST_SIDE)) return { width, height };
-  throw invalidInput(`the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_SIDE}`);
+  if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS) return { width, height };
+  throw invalidInput(`the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_LABEL_SIDE}, of ${MOST_LABELS} pixels at most`);
 }
 
 /** A box inside the frame. */

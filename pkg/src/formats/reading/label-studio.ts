@@ -2,13 +2,28 @@
 // numbers. Images that were uploaded are called by a hash and their name.
 
 import { invalidInput, isArrayOf, isListOf, isNumber, isObject, isWhole } from '../../common/checks.js';
-import type { Canvas } from './canvas.js';
-import { checkSize, type Context, frameOfShapes, listOf, placed, quoted, type ReadFrame, type Shape, stemOf, Unnumbered, within } from './frame.js';
+import {
+  boxAround,
+  checkSize,
+  type Context,
+  type Drawing,
+  frameOfShapes,
+  known,
+  type LeftOut,
+  listOf,
+  placed,
+  polygonOf,
+  quoted,
+  type ReadFrame,
+  type Shape,
+  shapeOf,
+  stemOf,
+  Unnumbered,
+  within,
+} from './frame.js';
 
 type Json = Record<string, unknown>;
 
-/** Kinds of results with an inside, and where their labels are. */
-const READ = ['brushlabels', 'polygonlabels', 'rectanglelabels'];
 /** Results about other results. */
 const REMARKS = ['choices', 'textarea', 'rating', 'relation', 'taxonomy', 'number'];
 const CHANNELS = 4;
@@ -25,16 +40,14 @@ function frameOf(task: Json, image: string, file: string, context: Context): Rea
   let size: { width: number; height: number } | undefined;
   const shapes = resultsOf(task).flatMap((result): Shape[] => {
     const { id, type, value, original_width: width, original_height: height } = result;
-    if (typeof type !== 'string' || !READ.includes(type) || !isObject(value)) {
-      if (!REMARKS.includes(String(type))) context.leaveOut(file, `results of type ${quoted(type)}`);
-      return [];
-    }
+    if (REMARKS.includes(String(type))) return [];
+    if (typeof type !== 'string' || !isObject(value)) return [{ leftOut: `results of type ${quoted(type)}` }];
     const place = `result ${quoted(id)}`;
     const own = within(place, () => checkSize(width, height, 'the image'));
     size ??= own;
     if (own.width !== size.width || own.height !== size.height) throw invalidInput(`${place}: the image has had another size`);
     const [name] = isListOf(value[type], (entry): entry is string => typeof entry === 'string') ? value[type] : [];
-    return [placed(place, () => ({ key: unnumbered.keyOf(name), ...(name !== undefined && { name }), ...drawing(type, value, own) }))];
+    return [placed(place, () => shapeOf(drawing(type, value, own), () => known(unnumbered.keyOf(name), undefined, name)))];
   });
   return size ? [frameOfShapes({ name: stemOf(image), file, ...size }, shapes, context)] : [];
 }
@@ -62,7 +75,7 @@ function decoded(text: string): string {
   }
 }
 
-function drawing(type: string, value: Json, { width, height }: { width: number; height: number }): { draw: (canvas: Canvas, label: number) => void } | { box: number[] } {
+function drawing(type: string, value: Json, { width, height }: { width: number; height: number }): Drawing | LeftOut {
   if (type === 'brushlabels') {
     const { rle } = value;
     const bytes = isArrayOf(rle, 'Uint8Array') ? rle : isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255)) ? Uint8Array.from(rle) : undefined;
@@ -73,10 +86,18 @@ function drawing(type: string, value: Json, { width, height }: { width: number; 
     const { points } = value;
     const isPoint = (point: unknown): point is number[] => isListOf(point, isNumber) && point.length === 2;
     if (!isListOf(points, isPoint)) throw invalidInput('the points of a polygon must each be x and y');
-    return { draw: (canvas, label) => canvas.polygon(points.flatMap(([x, y]) => [((x as number) * width) / 100, ((y as number) * height) / 100]), label) };
+    return polygonOf(points.flatMap(([x, y]) => [((x as number) * width) / 100, ((y as number) * height) / 100]));
   }
-  const [x, y, across, down] = ['x', 'y', 'width', 'height'].map((side, at) => (Number(value[side]) * (at % 2 === 0 ? width : height)) / 100);
-  return { box: [x, y, across, down] as number[] };
+  const [x, y, across, down] = ['x', 'y', ...(type === 'ellipselabels' ? ['radiusX', 'radiusY'] : ['width', 'height'])].map(
+    (side, at) => (Number(value[side]) * (at % 2 === 0 ? width : height)) / 100,
+  ) as [number, number, number, number];
+  const angle = Number(value['rotation']) || 0;
+  if (type === 'ellipselabels') return { draw: (canvas, label) => canvas.ellipse([x, y, across, down], label, angle) };
+  if (type !== 'rectanglelabels') return { leftOut: `results of type ${quoted(type)}` };
+  const [cosine, sine] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
+  // It is turned about its first corner.
+  const corners = [[0, 0], [across, 0], [across, down], [0, down]] as const;
+  return { box: angle === 0 ? [x, y, across, down] : boxAround(corners.map(([u, v]) => [x + u * cosine - v * sine, y + u * sine + v * cosine])) };
 }
 
 /** The pixels that are not transparent, from runs of RGBA bytes as @thi.ng/rle-pack packs them. Throws `invalid-input`. */

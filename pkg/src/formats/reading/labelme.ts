@@ -5,53 +5,52 @@ import { fromBase64 } from '../base64.js';
 import { decodeIndices } from '../indexed-png.js';
 import type { Canvas } from './canvas.js';
 import {
+  boxAround,
   checkBox,
   checkSize,
   type Context,
   decoding,
+  type Drawing,
   frameOfShapes,
-  isObjectNumber,
   known,
+  type LeftOut,
   listOf,
   placed,
+  polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
+  shapeOf,
   stemOf,
   Unnumbered,
 } from './frame.js';
 
 type Json = Record<string, unknown>;
 
-/** Shapes with an inside; a rectangle says where an object is. */
-const READ: unknown[] = ['polygon', 'mask', 'rectangle'];
-
 export function readLabelMe({ imagePath, imageWidth, imageHeight, shapes }: Json, file: string, context: Context): ReadFrame {
   const size = checkSize(imageWidth, imageHeight, 'the image');
   const unnumbered = new Unnumbered();
-  const all = listOf(shapes, 'shapes').flatMap((shape, at): Shape[] => {
-    const { label: name, group_id: group, shape_type: type = 'polygon' } = shape;
+  const all = listOf(shapes, 'shapes').map((shape, at): Shape => {
+    const { label: name, group_id: group } = shape;
     const place = `shape ${at + 1}, ${quoted(name)}`;
     if (typeof name !== 'string') throw invalidInput(`${place}: the label of a shape must be text`);
-    if (!READ.includes(type)) {
-      context.leaveOut(file, `shapes of type ${quoted(type)}`);
-      return [];
-    }
-    const key = isWhole(group, 0, Number.MAX_SAFE_INTEGER) ? `group ${group} ${name}` : unnumbered.keyOf(name);
-    return [placed(place, () => ({ ...known(key, isObjectNumber(group) ? group : undefined, name), ...drawing(shape) }))];
+    const keyOf = () => (isWhole(group, 0, Number.MAX_SAFE_INTEGER) ? `group ${group} ${name}` : unnumbered.keyOf(name));
+    return placed(place, () => shapeOf(drawing(shape), () => known(keyOf(), group, name)));
   });
   return frameOfShapes({ name: stemOf(imagePath), file, ...size }, all, context);
 }
 
-type Drawing = { draw: (canvas: Canvas, label: number) => void } | { box: number[] };
-
-function drawing({ shape_type: type = 'polygon', points, mask }: Json): Drawing {
+function drawing({ shape_type: type = 'polygon', points, mask }: Json): Drawing | LeftOut {
+  if (typeof type !== 'string' || !['polygon', 'mask', 'rectangle', 'rotation', 'circle'].includes(type)) return { leftOut: `shapes of type ${quoted(type)}` };
   const isPoint = (point: unknown): point is unknown[] => Array.isArray(point) && point.length === 2;
   if (!Array.isArray(points) || !points.every(isPoint)) throw invalidInput('the points of a shape must each be x and y');
-  if (type === 'polygon') return { draw: (canvas, label) => canvas.polygon(points.flat(), label) };
-  if (type === 'rectangle') {
-    const [left = NaN, top = NaN, right = NaN, bottom = NaN] = points.flat().map(Number);
-    return { box: [Math.min(left, right), Math.min(top, bottom), Math.abs(right - left), Math.abs(bottom - top)] };
+  if (type === 'polygon') return polygonOf(points.flat());
+  // Two corners; all four, upright or turned, of other programs.
+  if (['rectangle', 'rotation'].includes(type)) return { box: boxAround(points.length === 1 ? [] : points) };
+  if (type === 'circle') {
+    const [x, y, right, bottom] = points.flat().map(Number) as [number, number, number, number];
+    const radius = Math.hypot(right - x, bottom - y);
+    return { draw: (canvas, label) => canvas.ellipse([x, y, radius, radius], label) };
   }
   const isMask = type === 'mask' && points.length === 2;
   if (isMask && typeof mask === 'string') return { draw: (canvas, label) => stamp(canvas, points.flat(), mask, label) };

@@ -1,78 +1,74 @@
 // Masks in PNG files, as people have them: numbers of objects as indices or grey levels, white on black, one colour for each object, what is
-// not transparent, edges smoothed or not, a folder for each object. What a file is taken for is said in a note.
+// not transparent, a folder for each object. What a file is taken for is said in a note; where edges are smoothed, people have to say it.
 
 import type { AnnotationNote } from '../../../types/formats.js';
-import { invalidInput, isWhole, UNLABELLED } from '../../common/checks.js';
+import { invalidInput, UNLABELLED } from '../../common/checks.js';
 import { davisPalette } from '../../common/palette.js';
 import { decodeSamples, type Samples } from '../indexed-png.js';
-import { edgesOf } from './edges.js';
-import { decoding, isObjectNumber, type Known, known, naming, type ReadFrame, type Source, stemOf } from './frame.js';
+import { decoding, isObjectNumber, type Known, known, type Levels, naming, type ReadFrame, type Source, stemOf } from './frame.js';
+import { checkCrisp } from './smoothed.js';
 
 const [BLACK, WHITE] = [0, 0xffffff];
-/** From this alpha on a pixel is not transparent. */
-const OPAQUE = 128;
-/** What has more colours is no mask but a picture. */
-const MOST_COLOURS = 4096;
+/** The folder of the background beside those of objects, as `convert --to masks` writes it. */
+const GROUND = '0';
 /** With more colours what is not transparent is a thing cut out of a picture. */
 const OF_A_PICTURE = 64;
-/** A mask with so many levels is soft or was compressed with loss: those nearest to black and white are meant to be black and white. */
-const SOFT = { levels: 16, ends: 12 };
-/** Share of the pixels at edges that lie between their sides where edges are smoothed. */
-const SMOOTH = 0.9;
-/** Small objects have ground around them: where as many of the pixels at edges touch other values, these are no numbers of objects. */
-const CROWDED = 0.5;
-/** As many values that have no side may be numbers of objects by accident only. */
-const TOO_MANY = 9;
-/** Smoothing gives at least as many values between, unless one of the sides is white. */
-const FEW = 3;
 
 /** What each pixel has: the number of an object, a level, or a colour of 24 bits. */
 interface Values {
-  kind: 'numbers' | 'levels' | 'colours';
+  isColour: boolean;
   values: Int32Array;
   width: number;
   height: number;
-  counts: Map<number, number>;
-  /** Of a picture with alpha: what is not transparent is the object. */
-  isCutOut?: boolean;
+  /** The levels, or else the colours, that a person sees. */
+  seen: () => { levels: Int32Array } | { colours: Int32Array };
+  /** Whether these may be smoothed. */
+  isPlain: boolean;
+  /** The level that says nothing beside others: the largest one. */
+  white: number;
+  note?: AnnotationNote;
 }
 
-/** What a file is taken for: the meaning of each value, and whether edges are smoothed. */
+/** What a file is taken for: the meaning of each value. */
 interface Reading {
   meaning: Map<number, Known | typeof UNLABELLED | 0>;
-  smooth: boolean;
   note?: AnnotationNote | undefined;
-  /** Indices 0 and 255 alone: what 255 is depends on the other files. */
+  /** 0 and the largest level alone: what that is depends on the other files. */
   isOpen?: boolean;
 }
 
 /** Frames of masks, and what was assumed of the files. */
-export function readMasks(sources: readonly Source[]): { frames: ReadFrame[]; notes: AnnotationNote[] } {
-  const folders = sources.map(({ name }) => objectOfFolder(name));
-  const files = sources.map((source) => {
-    const { width, height, ...values } = naming(source.name, () => valuesOf(source));
-    return { source, width, height, ...naming(source.name, () => readingOf({ width, height, ...values })) };
-  });
-  const perObject = folders.every((folder) => folder !== undefined) && files.every(({ meaning }) => meaning.size <= 2 && meaning.get(0) === 0);
-  if (perObject) return { frames: united(files.map((file, k) => ({ ...file, number: folders[k] as number }))), notes: [] };
+export function readMasks(sources: readonly Source[], said: Levels | undefined): { frames: ReadFrame[]; notes: AnnotationNote[] } {
+  const files = sources.map((source) => naming(source.name, (): MaskFile => {
+    const { width, height, ...values } = valuesOf(source, said);
+    return { source, said, width, height, ...readingOf({ width, height, ...values }, said) };
+  }));
+  const folders = sources.map(({ name }) => /(?:^|\/)(\d+)\/[^/]+$/.exec(name)?.[1]);
+  const isOne = ({ meaning }: MaskFile) => [...meaning.keys()].filter((value) => value !== 0).length <= 1;
+  if (files.every(isOne) && folders.every((folder) => folder !== undefined)) {
+    const ground = sources[folders.indexOf(GROUND)];
+    const message = `'${ground?.name}': folder ${GROUND} is the background; that of an object is called 00 or 000`;
+    return { frames: united(files, folders), notes: ground ? [{ code: 'mask-background', message }] : [] };
+  }
   const numbers = files.some(({ isOpen, meaning }) => !isOpen && [...meaning.values()].some((one) => typeof one === 'object'));
-  const closed = files.map((file) => (file.isOpen && numbers ? { ...file, meaning: file.meaning.set(255, UNLABELLED), note: undefined } : file));
+  const closed = files.map((file) => (file.isOpen && numbers ? closedOf(file) : file));
   return { frames: closed.map(frameOf), notes: notesOf(closed) };
-}
-
-/** The number of an object whose masks have a folder of their own: `masks/3/00012.png`. */
-function objectOfFolder(name: string): number | undefined {
-  const [, number] = /(?:^|\/)(0|[1-9]\d{0,2})\/[^/]+$/.exec(name) ?? [];
-  return number !== undefined && isWhole(Number(number), 0, UNLABELLED - 1) ? Number(number) : undefined;
 }
 
 interface MaskFile extends Reading {
   source: Source;
+  said: Levels | undefined;
   width: number;
   height: number;
 }
 
-function frameOf({ source, width, height, meaning, smooth }: MaskFile): ReadFrame {
+function closedOf(file: MaskFile): MaskFile {
+  const [white] = [...file.meaning.keys()].filter((value) => value !== 0) as [number];
+  const note = { code: 'mask-white', message: `${white} says nothing: there are numbers of objects in other files` };
+  return { ...file, meaning: new Map<number, typeof UNLABELLED | 0>([[0, 0], [white, UNLABELLED]]), note };
+}
+
+function frameOf({ source, said, width, height, meaning }: MaskFile): ReadFrame {
   const objects = [...meaning.values()].filter((one): one is Known => typeof one === 'object');
   return {
     name: stemOf(source.name),
@@ -82,25 +78,23 @@ function frameOf({ source, width, height, meaning, smooth }: MaskFile): ReadFram
     objects,
     draw: ({ labels }, labelOf) => {
       const numbers = new Map([...meaning].map(([value, one]) => [value, typeof one === 'object' ? labelOf(one.key) : one]));
-      const { values } = clamped(valuesOf(source));
-      const all = smooth ? edgesOf(values, width, height, BLACK).resolved() : values;
+      const { values } = valuesOf(source, said);
       let [value, number] = [NaN, 0];
       for (let at = 0; at < labels.length; at++) {
         // Most pixels have the value of the one before.
-        if (all[at] !== value) [value, number] = [all[at] as number, numbers.get(all[at] as number) as number];
+        if (values[at] !== value) [value, number] = [values[at] as number, numbers.get(values[at] as number) as number];
         labels[at] = number;
       }
     },
   };
 }
 
-/** One frame of the files of all its objects. */
-function united(files: readonly (MaskFile & { number: number })[]): ReadFrame[] {
+/** One frame of the files of all its objects, each in the folder called by its number; 0, without more zeros, is the background. */
+function united(files: readonly MaskFile[], folders: readonly (string | undefined)[]): ReadFrame[] {
   const frames = new Map<string, ReadFrame[]>();
-  for (const { number, ...file } of files) {
-    const object = number === 0 ? 0 : known(`number ${number}`, number, undefined);
-    const meaning = new Map([...file.meaning].map(([value, one]) => [value, one === 0 ? one : object]));
-    const frame = frameOf({ ...file, meaning });
+  for (const [k, file] of files.entries()) {
+    const object = folders[k] === GROUND ? 0 : known(`number ${Number(folders[k])}`, Number(folders[k]), undefined);
+    const frame = frameOf({ ...file, meaning: new Map([...file.meaning.keys()].map((value) => [value, value === 0 ? 0 : object])) });
     frames.set(frame.name, [...(frames.get(frame.name) ?? []), frame]);
   }
   return [...frames.values()].map((parts) => {
@@ -136,134 +130,84 @@ function notesOf(files: readonly MaskFile[]): AnnotationNote[] {
   });
 }
 
-function valuesOf({ bytes }: Source): Values {
+function valuesOf({ bytes }: Source, said: Levels | undefined): Values {
   const png = decoding('it', () => decodeSamples(bytes));
-  const { width, height, channels, depth, samples, palette } = png;
-  const size = { width, height };
-  if (palette) return indexed(png, palette);
-  const level = depth === 16 && channels > 1 ? 257 : 1;
-  const sample = (at: number) => Math.round((samples[at] as number) / level);
-  const opacity = channels % 2 === 0 ? Uint8Array.from({ length: width * height }, (_, p) => Number(sample(channels * p + channels - 1) >= OPAQUE)) : undefined;
-  const isGrey = channels < 3;
-  const colours = channels === 1 ? new Int32Array(samples) : new Int32Array(width * height);
-  for (let p = 0, at = 0; channels > 1 && p < colours.length; p++, at += channels) {
-    colours[p] = isGrey ? sample(at) : (sample(at) << 16) | (sample(at + 1) << 8) | sample(at + 2);
-  }
-  if (opacity?.includes(0) && opacity.includes(1)) return transparent(colours, opacity, size, isGrey);
-  if (isGrey) return { kind: 'levels', values: colours, ...size, counts: counted(colours) };
-  const counts = counted(colours);
-  const levels = [...counts.keys()].every((colour) => colour === (colour & 255) * 0x010101);
-  if (!levels) return { kind: 'colours', values: colours, ...size, counts };
-  const values = colours.map((colour) => colour & 255);
-  return { kind: 'levels', values, ...size, counts: counted(values) };
+  const found = png.palette ? indexed(png, png.palette) : direct(png);
+  if (typeof said !== 'number') return found;
+  const seen = found.seen();
+  const brightest = (colour: number) => Math.max(colour >> 16, (colour >> 8) & 255, colour & 255);
+  const levels = 'levels' in seen ? seen.levels : seen.colours.map(brightest);
+  return { ...found, isColour: false, white: UNLABELLED, values: levels.map((level) => (level >= said ? UNLABELLED : 0)) };
 }
 
 /** Transparent pixels are background; without any colours of its own, what is not transparent is one object. */
-function transparent(colours: Int32Array, opacity: Uint8Array, size: { width: number; height: number }, isGrey: boolean): Values {
-  const opaque = counted(colours.filter((_, p) => opacity[p]));
-  if (opaque.size === 1 || opaque.size > OF_A_PICTURE) {
-    const values = Int32Array.from(opacity, (is) => is * 255);
-    return { kind: 'levels', values, ...size, counts: counted(values), isCutOut: true };
+function direct({ width, height, channels, depth, samples }: Samples): Values {
+  const colours = new Int32Array(width * height);
+  const byte = (at: number) => Math.round((255 * (samples[at] as number)) / (2 ** depth - 1));
+  let isGrey = true;
+  for (let at = 0; channels > 2 && isGrey && at < samples.length; at += channels) isGrey = samples[at] === samples[at + 1] && samples[at] === samples[at + 2];
+  for (let p = 0, at = 0; p < colours.length; p++, at += channels) {
+    colours[p] = isGrey ? (samples[at] as number) : (byte(at) << 16) | (byte(at + 1) << 8) | byte(at + 2);
   }
-  const values = colours.map((colour, p) => (opacity[p] ? colour : BLACK));
-  return { kind: isGrey ? 'levels' : 'colours', values, ...size, counts: counted(values) };
+  const plain = { isColour: !isGrey, white: isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE, isPlain: true, width, height };
+  const all = { ...plain, values: colours, seen: () => (isGrey ? { levels: colours } : { colours }) };
+  if (channels % 2 === 1) return all;
+  const alpha = Int32Array.from(colours, (_, p) => byte(channels * (p + 1) - 1));
+  const opaque = valuesIn(colours.filter((_, p) => alpha[p] !== 0));
+  if (!alpha.includes(0) || opaque.size === 0) return all;
+  if (opaque.size > 1 && opaque.size <= OF_A_PICTURE) {
+    const values = colours.map((colour, p) => (alpha[p] === 0 ? BLACK : colour));
+    return { ...plain, values, seen: () => (isGrey ? { levels: values } : { colours: values }) };
+  }
+  const note = { code: 'mask-alpha', message: 'what is not transparent is the object' };
+  return { ...plain, isColour: false, white: UNLABELLED, values: alpha.map((level) => (level > 0 ? UNLABELLED : 0)), seen: () => ({ levels: alpha }), note };
 }
 
-/** Indices are numbers of objects, 0 the background, unless black has another index, or the picture has shades of grey. */
+/** Indices are numbers of objects, 0 the background, unless black has another index. */
 function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array): Values {
-  const size = { width, height };
   const indices = new Int32Array(samples);
-  const counts = counted(indices);
-  const colourOf = (index: number) => [0, 1, 2].reduce((colour, channel) => (colour << 8) | (palette[3 * index + channel] ?? 0), 0);
-  const used = [...counts.keys()].filter((index) => alpha?.[index] !== 0);
   const isClear = (index: number) => alpha?.[index] === 0;
-  const blacks = used.filter((index) => colourOf(index) === BLACK);
-  const moved = isClear(0) ? false : colourOf(0) !== BLACK && counts.has(0) && (blacks.length > 0 || used.length < counts.size);
-  const shades = used.length > FEW && used.every((index) => colourOf(index) === (colourOf(index) & 255) * 0x010101) && used.some((index) => colourOf(index) === WHITE);
-  if (!moved && !shades && used.length === counts.size) return { kind: 'numbers', values: indices, ...size, counts };
-  if (!moved && !shades) {
-    const values = indices.map((index) => (isClear(index) ? 0 : index));
-    return { kind: 'numbers', values, ...size, counts: counted(values) };
+  const colours = Int32Array.from({ length: 256 }, (_, index) => {
+    const [red = 0, green = 0, blue = 0] = isClear(index) ? [] : palette.subarray(3 * index);
+    return (red << 16) | (green << 8) | blue;
+  });
+  const used = [...valuesIn(indices)];
+  const seen = () => ({ colours: indices.map((index) => colours[index] as number) });
+  const isMoved = used.includes(0) && !isClear(0) && colours[0] !== BLACK && used.some((index) => colours[index] === BLACK);
+  if (isMoved) return { isColour: true, values: seen().colours, seen, isPlain: true, white: WHITE, width, height };
+  const isGrey = used.every((index) => colours[index] === ((colours[index] as number) & 255) * 0x010101);
+  const values = alpha?.includes(0) ? indices.map((index) => (isClear(index) ? 0 : index)) : indices;
+  const levels = () => ({ levels: indices.map((index) => (colours[index] as number) & 255) });
+  return { isColour: false, values, seen: isGrey ? levels : seen, isPlain: isGrey, white: UNLABELLED, width, height };
+}
+
+function readingOf({ isColour, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
+  const all = [...valuesIn(values)];
+  const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
+  const objects = all.filter((value) => value !== ground);
+  if (isPlain && said === undefined) {
+    const looks = seen();
+    const [pixels, channels] = 'levels' in looks ? [looks.levels, 1 as const] : [looks.colours, 3 as const];
+    decoding('it', () => checkCrisp(pixels, { width, height }, { channels, ground, white }));
   }
-  const values = indices.map((index) => (isClear(index) ? BLACK : shades ? colourOf(index) & 255 : colourOf(index)));
-  return { kind: shades ? 'levels' : 'colours', values, ...size, counts: counted(values) };
-}
-
-function counted(values: Int32Array): Map<number, number> {
-  const counts = new Map<number, number>();
-  for (let at = 0; at < values.length; ) {
-    const value = values[at] as number;
-    const from = at;
-    while (at < values.length && values[at] === value) at++;
-    counts.set(value, (counts.get(value) ?? 0) + at - from);
+  if (isColour && !all.includes(ground)) throw invalidInput('it has neither black nor white, one of which is the background of colours');
+  if (objects.length >= UNLABELLED + Number(objects.includes(white))) throw invalidInput(`it has more than ${UNLABELLED - 1} objects`);
+  if (isColour) return colours(objects, ground);
+  const [object] = objects;
+  if (objects.length === 1 && object === white && (all.includes(0) || typeof said === 'number')) {
+    const taken = { code: 'mask-white', message: `${white} is the object, number 1, and 0 the background` };
+    const meaning = new Map<number, Known | 0>([[0, 0], [white, known('number 1', 1, undefined)]]);
+    return { meaning, ...(said === undefined && { note: note ?? taken, isOpen: note === undefined }) };
   }
-  return counts;
+  const meaningOf = (value: number) => (value === 0 ? 0 : value === white ? UNLABELLED : known(`number ${value}`, value, undefined));
+  return { meaning: new Map(all.map((value) => [value, meaningOf(value)])) };
 }
 
-/** Levels that are nearly black or white are, in a mask that is soft or was compressed with loss. */
-function clamped(found: Values): Values {
-  const { kind, counts, values } = found;
-  const levels = [...counts.keys()];
-  const isNear = (value: number) => value > 0 && value <= SOFT.ends;
-  const soft = kind === 'levels' && counts.size >= SOFT.levels && levels.some(isNear) && levels.some((level) => isNear(255 - level));
-  if (!soft) return found;
-  const clear = values.map((level) => (isNear(level) ? 0 : isNear(255 - level) ? 255 : level));
-  return { ...found, values: clear, counts: counted(clear) };
-}
-
-function readingOf(found: Values): Reading {
-  const { kind, values, width, height, counts, isCutOut } = clamped(found);
-  const all = [...counts.keys()];
-  if (kind === 'numbers') return numbers(all);
-  const ground = kind === 'levels' || counts.has(BLACK) ? BLACK : WHITE;
-  if (kind === 'colours' && (counts.size > MOST_COLOURS || (counts.size > UNLABELLED && !counts.has(ground)))) throw unclear(`${counts.size} colours`);
-  if (kind === 'colours' && !counts.has(ground)) throw unclear('neither black nor white, one of which is the background');
-  const others = all.filter((value) => value !== ground);
-  if (others.length < 2) {
-    const cut: AnnotationNote = { code: 'mask-alpha', message: 'what is not transparent is the object' };
-    const reading = kind === 'levels' ? levels(all) : colours(others, ground);
-    return isCutOut ? { ...reading, note: cut } : reading;
-  }
-  const { sides, undecided, between, crowded, resolved } = edgesOf(values, width, height, ground);
-  const loose = others.filter((value) => !sides.has(value));
-  const isSmooth = undecided.length > 0 && between >= SMOOTH && (kind === 'colours' || loose.length >= FEW || (loose.length > 0 && sides.has(255)));
-  if (!isSmooth && loose.length >= TOO_MANY && crowded >= CROWDED) {
-    throw unclear(`${others.length} ${kind}, ${loose.length} of them of a few pixels at edges`);
-  }
-  const rest = isSmooth ? [...counted(resolved()).keys()] : all;
-  if (rest.length > UNLABELLED) throw unclear(`${others.length} ${kind}`);
-  const reading = kind === 'levels' ? levels(rest) : colours(rest.filter((value) => value !== ground), ground);
-  if (!isSmooth) return reading;
-  const what = `its edges are smoothed: ${loose.length} ${kind} between belong to the nearer side`;
-  return { ...reading, smooth: true, note: { code: 'mask-smoothed', message: [what, reading.note?.message].filter(Boolean).join('; ') } };
-}
-
-function unclear(what: string): Error {
-  return invalidInput(`it has ${what}, so nobody knows which pixels are of which object: save it without smoothing, with one number or colour for each object on black`);
-}
-
-function numbers(all: readonly number[]): Reading {
-  const isOpen = all.length === 2 && all.includes(0) && all.includes(UNLABELLED);
-  return isOpen ? { ...levels(all), isOpen } : literal(all);
-}
-
-/** White alone is an object; beside others it says nothing. What is no number of an object gets a free one. */
-function levels(all: readonly number[]): Reading {
-  const [object, ...more] = all.filter((value) => value !== 0);
-  if (object === undefined || more.length > 0 || object < UNLABELLED || !all.includes(0)) return literal(all);
-  return {
-    meaning: new Map<number, Known | 0>([[0, 0], [object, known('number 1', 1, undefined)]]),
-    smooth: false,
-    note: { code: 'mask-white', message: `${object} is the object, number 1, and 0 the background` },
-  };
-}
-
-function literal(all: readonly number[]): Reading {
-  const meaningOf = (value: number) => {
-    if (value === 0 || value === UNLABELLED) return value;
-    return known(`number ${value}`, isObjectNumber(value) ? value : undefined, undefined);
-  };
-  return { meaning: new Map(all.map((value) => [value, meaningOf(value)])), smooth: false };
+/** Most pixels have the value of the one before. */
+function valuesIn(values: Int32Array): Set<number> {
+  const seen = new Set<number>();
+  for (let at = 0; at < values.length; at++) if (values[at] !== values[at - 1]) seen.add(values[at] as number);
+  return seen;
 }
 
 /** Colours of the DAVIS palette have its numbers if all are of it. */
@@ -274,9 +218,9 @@ function colours(all: readonly number[], background: number): Reading {
   const meaning = new Map<number, Known | 0>([[background, 0]]);
   for (const [k, colour] of all.entries()) {
     const name = colour.toString(16).padStart(6, '0');
-    meaning.set(colour, areIndices ? known(`number ${indices[k]}`, indices[k], undefined) : known(`colour ${name}`, undefined, undefined));
+    meaning.set(colour, areIndices ? known(`number ${indices[k]}`, indices[k], undefined) : known(`colour ${name}`, undefined, `#${name}`));
   }
   const ground = background === BLACK ? 'black' : 'white';
   const which = all.length === 1 ? 'the other colour is the object' : `each of ${all.length} colours is an object`;
-  return { meaning, smooth: false, note: { code: 'mask-colours', message: `${ground} is the background, ${which}` } };
+  return { meaning, note: { code: 'mask-colours', message: `${ground} is the background, ${which}` } };
 }

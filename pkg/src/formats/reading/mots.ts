@@ -1,14 +1,14 @@
-// MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; instance 0 is a region to ignore.
+// MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; 10000 is a region to ignore.
 
-import { invalidInput, isWhole, UNLABELLED } from '../../common/checks.js';
+import { invalidInput, UNLABELLED } from '../../common/checks.js';
 import { decodeDeep, headOf } from '../indexed-png.js';
+import type { Canvas } from './canvas.js';
 import { decompressed } from './coco-rle.js';
 import {
   checkSize,
   type Context,
   decoding,
   frameOfShapes,
-  isObjectNumber,
   type Known,
   known,
   naming,
@@ -17,9 +17,11 @@ import {
   type Shape,
   type Source,
   stemOf,
+  within,
 } from './frame.js';
 
 const CLASS = 1000;
+export const IGNORED = 10_000;
 const WHITE = 65_535;
 const LINE = /^(\d+) (\d+) (\d+) (\d+) (\d+) (\S+)$/;
 
@@ -28,37 +30,41 @@ export function isMots(text: string): boolean {
   return LINE.test(/^.*/.exec(text)?.[0].trimEnd() ?? '');
 }
 
-/** Whether pictures are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
-export function areMots(pictures: readonly Source[]): boolean {
-  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return false;
+/** The numbers in pictures that are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
+export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefined {
+  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return undefined;
   const seen = new Set<number>();
   for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodeDeep(bytes))).levels) seen.add(level);
   seen.delete(0);
   const [first] = seen;
-  // White on black is no number.
-  return first !== undefined && !(seen.size === 1 && first === WHITE) && [...seen].every((level) => level >= CLASS);
+  // White on black is no number, and what is ignored alone an object.
+  const isMask = first === undefined || (seen.size === 1 && [WHITE, IGNORED].includes(first));
+  return !isMask && [...seen].every((level) => level >= CLASS) ? seen : undefined;
 }
 
 /** Frames without objects are left out: they may not have been annotated. */
 export function readMots(source: Source, text: string, context: Context): ReadFrame[] {
-  const { nameOf, classesOf } = context;
+  const { nameOf, classesOf, firstFrame = 1 } = context;
   const names = classesOf(source);
-  const frames = new Map<number, { width: number; height: number; shapes: Shape[] }>();
+  const frames = new Map<number, { width: number; height: number; shapes: Shape[]; ignored: ((canvas: Canvas) => void)[] }>();
   for (const [k, line] of text.split('\n').entries()) {
     if (line.trim() === '') continue;
     const [, frame, id, , height, width, runs] = LINE.exec(line.trimEnd()) ?? [];
     if (runs === undefined) throw invalidInput(`line ${k + 1} is not "frame id class height width run-lengths"`);
     const size = checkSize(Number(width), Number(height), `line ${k + 1}`);
-    if (!isWhole(Number(frame), 1, Number.MAX_SAFE_INTEGER)) throw invalidInput(`line ${k + 1}: frames count from 1`);
-    const entry = frames.get(Number(frame)) ?? { ...size, shapes: [] };
+    const entry = frames.get(Number(frame)) ?? { ...size, shapes: [], ignored: [] };
     frames.set(Number(frame), entry);
     if (entry.width !== size.width || entry.height !== size.height) throw invalidInput(`line ${k + 1}: the frame has had another size`);
-    const labelOf = (label: number) => (isIgnored(Number(id)) ? UNLABELLED : label);
-    entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw: (canvas, label) => canvas.columns(decompressed(runs), labelOf(label)) })));
+    const draw = (canvas: Canvas, label: number) => canvas.columns(decompressed(runs), label);
+    if (Number(id) === IGNORED) entry.ignored.push((canvas) => within(`line ${k + 1}`, () => draw(canvas, UNLABELLED)));
+    else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
   }
-  return [...frames]
-    .sort(([a], [b]) => a - b)
-    .map(([frame, { shapes, ...size }]) => frameOfShapes({ name: nameOf(frame - 1), file: source.name, ...size }, shapes, context));
+  const first = frames.has(0) ? 0 : firstFrame;
+  return [...frames].sort(([a], [b]) => a - b).map(([frame, { shapes, ignored, ...size }]) => {
+    const read = frameOfShapes({ name: nameOf(frame - first), file: source.name, ...size }, shapes, context);
+    const draw: ReadFrame['draw'] = (canvas, labelOf) => (read.draw(canvas, labelOf), ignored.forEach((region) => region(canvas)));
+    return { ...read, draw };
+  });
 }
 
 export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
@@ -73,18 +79,14 @@ export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
     file: source.name,
     width,
     height,
-    objects: values.filter((value) => !isIgnored(value)).map((value) => objectOf(value, names)),
+    objects: values.filter((value) => value !== IGNORED).map((value) => objectOf(value, names)),
     draw: ({ labels }, labelOf) => {
       const numbers = new Uint8Array(2 ** 16);
-      for (const value of values) numbers[value] = isIgnored(value) ? UNLABELLED : labelOf(keyOf(value));
+      for (const value of values) numbers[value] = value === IGNORED ? UNLABELLED : labelOf(keyOf(value));
       const { levels } = decodeDeep(source.bytes);
       for (let at = 0; at < levels.length; at++) labels[at] = numbers[levels[at] as number] as number;
     },
   };
-}
-
-function isIgnored(id: number): boolean {
-  return id % CLASS === 0;
 }
 
 function keyOf(id: number): string {
@@ -92,6 +94,5 @@ function keyOf(id: number): string {
 }
 
 function objectOf(id: number, names: readonly string[]): Known {
-  const instance = id % CLASS;
-  return known(keyOf(id), isObjectNumber(instance) ? instance : undefined, names[Math.floor(id / CLASS) - 1]);
+  return known(keyOf(id), id % CLASS, names[Math.floor(id / CLASS) - 1], id);
 }

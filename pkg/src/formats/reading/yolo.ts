@@ -2,8 +2,7 @@
 // text without lines says that there is nothing.
 
 import { invalidInput } from '../../common/checks.js';
-import type { Canvas } from './canvas.js';
-import { type Context, frameOfShapes, known, placed, type ReadFrame, type Shape, type Source, stemOf, Unnumbered } from './frame.js';
+import { type Context, type Drawing, frameOfShapes, known, placed, type ReadFrame, type Shape, type Source, stemOf, Unnumbered } from './frame.js';
 
 /** How far outside a share may be: outlines are rounded, and moved. */
 const SLACK = 0.01;
@@ -34,7 +33,7 @@ export function readYolo({ name: file }: Source, text: string, context: Context)
   return frameOfShapes({ name, file, width, height }, shapes, context);
 }
 
-function drawing(places: readonly number[]): { draw: (canvas: Canvas, label: number) => void } | { box: number[] } {
+function drawing(places: readonly number[]): Drawing {
   if (places.length > 4) return { draw: (canvas, label) => canvas.polygon(places, label) };
   const [x, y, width, height] = places as [number, number, number, number];
   return { box: [x - width / 2, y - height / 2, width, height] };
