@@ -1,32 +1,15 @@
 //! A person's annotations of a clip, and the masks as they are before these have been carried to the other frames.
 
 import type { ClipOptions, ClipPropagation } from 'veronese';
-import { type Runs, over, packed, unpacked } from '../correction/runs.js';
+import { over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
 import { type Annotation, isPrompt, withAnnotation } from './annotation.js';
-import type { Notes, Version } from './tracked.js';
+import type { Correction, Version } from './tracked.js';
 
 /** Where an annotation of a frame spreads; or that it is drawn exactly, and changes no other pixel. */
 export type Spread = ClipPropagation | 'exact';
-
-/** An annotation: of objects in frames, of whole objects, pixels drawn exactly, or notes, which change no masks. */
-export type Correction = (Annotated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
-
-export interface Annotated {
-  readonly annotations: readonly Annotation[];
-}
-
-/** Labels drawn exactly in frames, by index. */
-export interface Drawn {
-  readonly drawn: ReadonlyMap<number, Runs>;
-}
-
-/** Notes in the place of those before: they change no masks. */
-export interface Noted {
-  readonly notes: Partial<Notes>;
-}
 
 /** The labels that change at once where an object is painted in a frame: the number of an object, 0, or 255 where nothing changes. */
 export function seenOf(version: Version, frame: number, object: number, labels: Uint8Array): Uint8Array {

@@ -1,11 +1,10 @@
 //! The objects of a whole clip: how far their segmentation is, the masks of each frame, and a person's annotations.
 
-import type { ClipFrame, ClipProgress, Note } from 'veronese';
+import type { ClipFrame, ClipOptions, ClipProgress, Note } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
 import type { Annotation } from './annotation.js';
-import type { Correction } from './correction.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -81,6 +80,23 @@ export interface Version {
   readonly largest: number;
   /** Of an earlier version: what was said of it and carried together, without the last; undoing that one carries these. */
   readonly together?: readonly Correction[] | undefined;
+}
+
+/** An annotation: of objects in frames, of whole objects, pixels drawn exactly, or notes, which change no masks. */
+export type Correction = (Annotated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
+
+export interface Annotated {
+  readonly annotations: readonly Annotation[];
+}
+
+/** Labels drawn exactly in frames, by index. */
+export interface Drawn {
+  readonly drawn: ReadonlyMap<number, Runs>;
+}
+
+/** Notes in the place of those before: they change no masks. */
+export interface Noted {
+  readonly notes: Partial<Notes>;
 }
 
 /** What was said and has not been carried through the clip as a whole, in its order, and the masks before it. */

@@ -3,11 +3,11 @@
 
 import { strings } from '../../common/strings.js';
 import { packed } from '../../correction/runs.js';
-import { type Correction, type Drawn, type Noted, withCorrection } from '../../state/correction.js';
+import { withCorrection } from '../../state/correction.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { isPrompt, reaches } from '../../state/annotation.js';
-import { type ClipRun, type Notes, type TrackedFrame, type Version, acceptedIn, unchanged, versionOf } from '../../state/tracked.js';
+import { type ClipRun, type Correction, type Drawn, type Noted, type Notes, type TrackedFrame, type Version, acceptedIn, unchanged, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import type { Change, ClipRuns } from './runs.js';
 import type { Spans } from './spans.js';
