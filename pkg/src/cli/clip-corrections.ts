@@ -4,30 +4,37 @@ import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
-import { editsOf } from '../calls/clip/edits.js';
+import { editsOf, isObjectNumber, RANGE } from '../calls/clip/edits.js';
 import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
-import { isListOf, isObject, unknownOf } from '../common/checks.js';
+import { isListOf, isObject, UNLABELLED, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { encodeColourPng } from '../entries/codecs.js';
 import { readAnnotations } from '../formats/reading/annotations.js';
+import { Canvas } from '../formats/reading/canvas.js';
 import { isPng } from '../formats/reading/frame.js';
 import { readInput, sha256 } from './files.js';
 import { decoded } from './pair.js';
 
 export const EDITS = 'edits.json';
 
+/** A vertex of a polygon is not meant to be farther away than this, pixels. */
+const FARTHEST = 1e5;
+
 /** The content of edits.json. */
 interface Edits {
   edits: ClipEdits;
   prompts: FullPrompt[];
+  /** Of polygons: where an object is in a frame, and 0 where it is not. */
+  outlines: Outline[];
   /** Frames, where there is a list of them. */
   accepted: number[] | undefined;
   /** By frame. */
   propagate: Map<number, ClipPropagation>;
 }
 
+type Outline = Required<Pick<ClipCorrection, 'frame' | 'object' | 'labels'>>;
 type FullPrompt = Extract<ClipPrompt, { object: number }>;
 
 /** The label images of a folder, by the names of their frames. */
@@ -85,9 +92,15 @@ export async function readCorrections(folders: { [folder in 'masks' | 'correctio
   };
   const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
   checkUnlocked(locked, numbers);
+  const outlines = both.flatMap((folder) => folder.outlines);
+  // What is merged into an object is not outside its outline either.
+  const merged = outlines.flatMap(({ frame, object: into, labels }) => {
+    const others = [...numbers.keys()].filter((object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object));
+    return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
+  });
   return {
     masks: spread(masks?.said),
-    corrections: spread(corrections?.said),
+    corrections: spread([...(corrections?.said ?? []), ...merged, ...outlines]),
     prompts: spread(prompts),
     accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
     edits,
@@ -113,11 +126,11 @@ async function readFolder(folder: string, frames: ClipFrames, read: (folder: str
     said.push({ frame, labels });
   }
   said.sort((one, other) => one.frame - other.frame);
-  const none: Edits = { edits: {}, prompts: [], accepted: undefined, propagate: new Map() };
+  const none: Edits = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
   const told = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : none;
-  const { edits, prompts, accepted, propagate } = told;
-  if (said.length === 0 && Object.keys(edits).length + prompts.length + propagate.size === 0 && accepted === undefined) return undefined;
-  const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
+  const { edits, prompts, outlines, accepted, propagate } = told;
+  if (said.length === 0 && Object.keys(edits).length + prompts.length + outlines.length + propagate.size === 0 && accepted === undefined) return undefined;
+  const hashes = [...said, ...outlines].map(({ frame, object, labels }: ClipCorrection) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
   const content = [hashes, edits, ...propagate, prompts, accepted];
   const paths = [...new Set([...names.map((name) => join(folder, name)), ...found.paths])];
   return { ...found, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
@@ -177,32 +190,52 @@ function namesIn(folder: string): string[] {
 async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'accepted', 'propagate']);
-  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], accepted, ...edits } = content as Record<string, unknown>;
+  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'polygons', 'accepted', 'propagate']);
+  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], polygons = [], accepted, ...edits } = content as Record<string, unknown>;
   if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
+  const sizeOf = async () => frames.size ?? (await frames.read(0));
+  /** The entries of a list, each about an object in a frame. */
+  const entriesOf = (list: string, value: unknown, parts: readonly string[]) => {
+    if (!isListOf(value, isObject)) throw wrong(`'${list}' must be a list of { frame, object, ${parts.join(', ')} }`);
+    return value.map((entry, at) => {
+      const bad = (reason: string) => wrong(`'${list}', number ${at}: ${reason}`);
+      const unknown = unknownOf(entry, ['frame', 'object', ...parts]);
+      if (unknown !== undefined) throw bad(`there is no ${unknown}`);
+      if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+      return { entry: { ...entry, frame: frameOf(list, entry['frame']) } as Record<string, unknown> & { frame: number }, bad };
+    });
+  };
   // One after another: the first keeps its pixels.
   const prompts: FullPrompt[] = [];
   const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
     const pointed = promptOf(entry, bad);
-    if (!isWithin(pointed, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
+    if (!isWithin(pointed, await sizeOf())) throw bad('is not within the frame');
     const before = prompts.find(({ frame, object }) => frame === pointed.frame && object === pointed.object);
     if (before) throw bad(`has a ${before.box ? 'box' : 'click'} already`);
     const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = entry;
     prompts.push({ ...rest, object, clicks } as FullPrompt);
   };
-  if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
-  for (const [at, entry] of listed.entries()) {
-    const bad = (reason: string) => wrong(`'prompts', number ${at}: ${reason}`);
-    const unknown = unknownOf(entry, ['frame', 'object', 'clicks', 'box']);
-    if (unknown !== undefined) throw bad(`there is no ${unknown}`);
-    if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+  for (const { entry, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
-    await add({ ...entry, frame: frameOf('prompts', entry['frame']) }, bad);
+    await add(entry, bad);
+  }
+  const outlines = new Map<string, Outline>();
+  for (const { entry: { frame, object, points }, bad } of entriesOf('polygons', polygons, ['points'])) {
+    if (!isObjectNumber(object)) throw bad(`must have an object, ${RANGE}`);
+    if (!isListOf(points, isPoint) || points.length < 3) throw bad('must have points, three or more [x, y]');
+    const { width, height } = await sizeOf();
+    const canvas = new Canvas(width, height);
+    // Whole numbers are centres of pixels here, corners there.
+    canvas.polygon(points.flat().map((value) => value + 0.5), object);
+    if (!canvas.labels.includes(object)) throw bad('has no pixel of the frame');
+    // Several are parts of one.
+    const before = outlines.get(`${frame} ${object}`)?.labels;
+    outlines.set(`${frame} ${object}`, { frame, object, labels: canvas.labels.map((label, p) => label || (before?.[p] ?? 0)) });
   }
   for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
     if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
@@ -221,5 +254,9 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];
   });
-  return { edits, prompts, accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+  return { edits, prompts, outlines: [...outlines.values()], accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+}
+
+function isPoint(value: unknown): value is [x: number, y: number] {
+  return isListOf(value, (side): side is number => typeof side === 'number' && Math.abs(side) <= FARTHEST) && value.length === 2;
 }
