@@ -155,7 +155,7 @@ impl Composition<'_> {
             }
             if let Some(base) = rules.annotation.base(object) {
                 // Who paints over an object as a whole means what is painted and no more.
-                if strokes::repaint(&base, self.found, seeds) {
+                if strokes::repaint(&base, seeds) {
                     let open = mask.iter_mut().zip(&base).zip(seeds).filter(|(_, seed)| **seed == Seed::Nothing);
                     open.for_each(|((inside, base), _)| *inside = *base);
                 } else {

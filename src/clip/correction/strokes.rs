@@ -28,16 +28,15 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     smooth(mask, before, seeds, width);
 }
 
-/// Whether strokes paint over an object as a whole: they are mostly in it, and have most of it. It is the painted one as it was `before`, with
-/// the one that was found there.
-pub(super) fn repaint(before: &[u8], found: &[u8], seeds: &[Seed]) -> bool {
-    let mut counts = [0usize; 256];
-    let painted = |p: &usize| seeds[*p] == Seed::Object;
-    (0..seeds.len()).filter(painted).for_each(|p| counts[usize::from(found[p])] += 1);
-    let most = (1..counts.len()).max_by_key(|&label| counts[label]).unwrap_or_default();
-    let under = |p: &usize| before[*p] > 0 || usize::from(found[*p]) == most;
-    let count = |is: &dyn Fn(&usize) -> bool| (0..seeds.len()).filter(is).count();
-    2 * count(&|p| under(p) && painted(p)) > count(&under).max(count(&painted))
+/// Whether strokes paint over an object as a whole: they are mostly in it as it was `before`, and have most of it.
+pub(super) fn repaint(before: &[u8], seeds: &[Seed]) -> bool {
+    let mut counts = [0usize; 4];
+    before
+        .iter()
+        .zip(seeds)
+        .for_each(|(is_in, seed)| counts[usize::from(2 * is_in + u8::from(*seed == Seed::Object))] += 1);
+    let [_, beside, left, both] = counts;
+    both > left.max(beside)
 }
 
 /// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that direction: `looks` are the odds
