@@ -80,7 +80,7 @@ impl FrameAnnotation {
             *self = FrameAnnotation::default();
             return;
         }
-        self.unpaint(object);
+        self.take_back_painted(object);
         if !is_nothing {
             self.painted.push(strokes);
         }
@@ -89,7 +89,7 @@ impl FrameAnnotation {
     /// Puts a prompt with its outline in the place of that of the same object.
     #[inline(never)]
     pub(super) fn point(&mut self, prompt: Prompt, labels: &[u8]) {
-        self.unpoint(prompt.object);
+        self.take_back_prompt(prompt.object);
         if prompt.points() {
             let at = self.prompts.partition_point(|of| of.prompt.object < prompt.object);
             self.prompts.insert(at, Outlined { prompt, labels: Runs::of(labels) });
@@ -100,18 +100,18 @@ impl FrameAnnotation {
     #[inline(never)]
     pub(super) fn forget(&mut self, numbers: &[u8]) {
         for object in (1..UNANNOTATED).filter(|&object| numbers[usize::from(object)] == 0) {
-            self.unpaint(object);
-            self.unpoint(object);
+            self.take_back_painted(object);
+            self.take_back_prompt(object);
         }
     }
 
     #[inline(never)]
-    fn unpaint(&mut self, object: u8) {
+    fn take_back_painted(&mut self, object: u8) {
         self.painted.retain(|strokes| strokes.object != object);
     }
 
     #[inline(never)]
-    fn unpoint(&mut self, object: u8) {
+    fn take_back_prompt(&mut self, object: u8) {
         self.prompts.retain(|of| of.prompt.object != object);
     }
 

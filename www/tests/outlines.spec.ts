@@ -29,16 +29,16 @@ test('a polygon is its object, to the pixel; what was deleted and is outlined an
   await goTo(page, 1);
   const found = await labelsOnCanvas(page);
   // The disc is around (24, 26): the polygon cuts it, and has ground beside it.
-  const [cut, around]: readonly Sides[] = [[20, 18, 50, 30], [14, 15, 60, 37]] as const;
+  const [cut, around]: readonly [Sides, Sides] = [[20, 18, 50, 30], [14, 15, 60, 37]];
   const exactly = (id: number, sides: Sides) => (labels: Uint8Array): Uint8Array => labels.map((label, p) => (isIn(p, sides) ? id : label === id ? 0 : label));
 
   await test.step('of an object that was found', async () => {
     await page.keyboard.press('1');
-    await outline(page, around!);
-    expect(differences(await labelsOnCanvas(page), exactly(1, around!)(found))).toBe(0);
+    await outline(page, around);
+    expect(differences(await labelsOnCanvas(page), exactly(1, around)(found))).toBe(0);
     // Another one takes its place.
-    await outline(page, cut!);
-    const outlined = exactly(1, cut!)(found);
+    await outline(page, cut);
+    const outlined = exactly(1, cut)(found);
     expect(differences(await labelsOnCanvas(page), outlined)).toBe(0);
     // A stroke lies over it, and changes nothing around.
     await page.keyboard.press('e');
@@ -61,9 +61,9 @@ test('a polygon is its object, to the pixel; what was deleted and is outlined an
   await test.step('of a new one, and again after it was deleted', async () => {
     const add = page.getByRole('button', { name: 'New object' });
     await add.click();
-    await outline(page, around!);
+    await outline(page, around);
     const id = Math.max(...(await labelsOnCanvas(page)));
-    expect(differences(await labelsOnCanvas(page), exactly(id, around!)(found))).toBe(0);
+    expect(differences(await labelsOnCanvas(page), exactly(id, around)(found))).toBe(0);
     const once = await masksOf(page, [2, 0, 1]);
     await page.keyboard.press('Control+z');
     await said(page, /^Undone/);
@@ -74,7 +74,7 @@ test('a polygon is its object, to the pixel; what was deleted and is outlined an
     await said(page, /^Corrected/);
     expect(await labelsOnCanvas(page)).not.toContain(id);
     await add.click();
-    await outline(page, around!);
+    await outline(page, around);
     const again = await masksOf(page, [2, 0, 1]);
     expect(again[2]).toContain(id + 1);
     for (const [k, labels] of again.entries()) expect(differences(of(labels, id + 1), of(once[k]!, id)), `frame ${k}`).toBe(0);

@@ -207,7 +207,7 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
       const unknown = unknownOf(entry, ['frame', 'object', ...parts]);
       if (unknown !== undefined) throw bad(`there is no ${unknown}`);
       if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
-      return { entry: { ...entry, frame: frameOf(list, entry['frame']) } as Record<string, unknown> & { frame: number }, bad };
+      return { entry, frame: frameOf(list, entry['frame']), bad };
     });
   };
   // One after another: the first keeps its pixels.
@@ -220,12 +220,12 @@ async function readEdits(path: string, frames: ClipFrames): Promise<Edits> {
     const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = entry;
     prompts.push({ ...rest, object, clicks } as FullPrompt);
   };
-  for (const { entry, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
+  for (const { entry, frame, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
-    await add(entry, bad);
+    await add({ ...entry, frame }, bad);
   }
   const outlines = new Map<string, Outline>();
-  for (const { entry: { frame, object, points }, bad } of entriesOf('polygons', polygons, ['points'])) {
+  for (const { entry: { object, points }, frame, bad } of entriesOf('polygons', polygons, ['points'])) {
     if (!isObjectNumber(object)) throw bad(`must have an object, ${RANGE}`);
     if (!isListOf(points, isPoint) || points.length < 3) throw bad('must have points, three or more [x, y]');
     const { width, height } = await sizeOf();
