@@ -12,6 +12,7 @@ mod expectations;
 #[cfg(feature = "codecs")]
 mod golden;
 mod literal;
+mod outlines;
 mod paper;
 mod pipeline;
 mod promises;

@@ -86,6 +86,33 @@ describe('veronese clip --corrections', () => {
     assert.notEqual(tracksOf(out).settings.corrections, before);
   });
 
+  test('polygons of edits.json are the masks of their objects in their frames, to the pixel', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    const inside = (p, [left, top, right, bottom]) => p % SIZE.width >= left && p % SIZE.width < right && p >= top * SIZE.width && p < bottom * SIZE.width;
+    const rectangle = ([left, top, right, bottom]) => [[left, top], [right, top], [right, bottom], [left, bottom]];
+    const [one, other] = [[20, 10, 40, 30], [50, 20, 70, 60]];
+    // In two parts; a slanted side passes through no centre. Vertices may lie outside of the picture.
+    const triangle = [[-4, 50], [19.5, 50], [-4, 80]];
+    said('f1.png', await mask(LABELS.map((_, p) => (p < 200 ? 4 : 255))));
+    const polygons = [{ frame: 'f3', object: 1, points: rectangle(one) }, { frame: 'f3', object: 1, points: rectangle(other) }, { frame: 'f1', object: 12, points: triangle }];
+    said('edits.json', JSON.stringify({ polygons, propagate: { f1: 'none' } }));
+    await run([frames, '--corrections', corrections, '--out', out]);
+    const is = (object, labels) => labels.map((label) => Number(label === object));
+    const outlines = [[3, 1, (p) => inside(p, one) || inside(p, other)], [1, 12, (p) => p % SIZE.width <= 19 && Math.floor(p / SIZE.width) >= 50 && (p % SIZE.width + 4) / 23.5 + (Math.floor(p / SIZE.width) - 50) / 30 < 1]];
+    for (const [frame, object, isIn] of outlines) assert.deepEqual(is(object, labelsOf(out, frame)), LABELS.map((_, p) => Number(isIn(p))));
+    const whole = outlines.map(([frame, object, isIn]) => ({ frame, object, labels: LABELS.map((_, p) => (isIn(p) ? object : 0)), propagate: frame === 1 ? 'none' : undefined }));
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 1, labels: LABELS.map((_, p) => (p < 200 ? 4 : 255)), propagate: 'none' }, ...whole] });
+    for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
+
+    // What was merged into the object is part of it, and is not outside the outline either.
+    rmSync(join(corrections, 'f1.png'));
+    const before = tracksOf(out).settings.corrections;
+    said('edits.json', JSON.stringify({ polygons: polygons.slice(0, 2).map((polygon) => ({ ...polygon, object: 9 })), boxes: { f3: { 1: [23, 16, 44, 44] } }, merge: [[9, 1]] }));
+    await run([frames, '--corrections', corrections, '--out', out]);
+    assert.deepEqual(is(9, labelsOf(out, 3)), LABELS.map((_, p) => Number(outlines[0][2](p))));
+    assert.notEqual(tracksOf(out).settings.corrections, before);
+  });
+
   test('solves no pair again, whatever is said later, and gives the files of a straight run', async (t) => {
     const { frames, corrections, said, out, path } = clip(t);
     await run([frames, '--out', out]);
@@ -217,6 +244,13 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "label": 3, "box": [1, 2, 3, 4]}]}', 'invalid-input', /'prompts', number 0: there is no 'label'; there are frame, object, clicks, box/],
       ['edits.json', '{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', 'invalid-input', /'prompts', number 0: is not within the frame/],
       ['edits.json', '{"boxes": {"f1": {"3": [9, 3, 9, 9]}}, "prompts": [{"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', 'invalid-input', /'boxes' of 'f1', object 3: has a click already/],
+      ['edits.json', '{"polygons": {"f1": 1}}', 'invalid-input', /edits\.json': 'polygons' must be a list of \{ frame, object, points \}/],
+      ['edits.json', '{"polygons": [{"frame": "g1", "object": 3, "points": [[1, 2], [9, 2], [9, 8]]}]}', 'invalid-input', /'polygons' has 'g1', the name of no frame/],
+      ['edits.json', '{"polygons": [{"frame": "f1", "object": 0, "points": [[1, 2], [9, 2], [9, 8]]}]}', 'invalid-input', /'polygons', number 0: must have an object, numbers from 1 to 254/],
+      ['edits.json', '{"polygons": [{"frame": "f1", "object": 3, "points": [[1, 2], [9, 2]]}]}', 'invalid-input', /'polygons', number 0: must have points, three or more \[x, y\]/],
+      ['edits.json', '{"polygons": [{"frame": "f1", "object": 3, "points": [[1, 2], [9, 2], [9]]}]}', 'invalid-input', /'polygons', number 0: must have points/],
+      ['edits.json', '{"polygons": [{"frame": "f1", "object": 3, "points": [[200, 2], [209, 2], [209, 8]]}]}', 'invalid-input', /'polygons', number 0: has no pixel of the frame/],
+      ['edits.json', '{"polygons": [{"frame": "f1", "object": 3, "point": []}]}', 'invalid-input', /'polygons', number 0: there is no 'point'; there are frame, object, points/],
       ['edits.json', '{"locked": [3], "delete": [3]}', 'object-locked', /object 3 is locked/],
       ['edits.json', '{"propagate": {"f1": "none"}, "accepted": ["f2"]}', 'invalid-input', /'propagate' has 'f1', of which nothing is said/],
       ['f1.png', soft, 'invalid-input', /f1\.png'(: it)? has \d+ levels only between others, .* --levels 128/],

@@ -258,8 +258,9 @@ export interface ClipCorrection {
   propagate?: ClipPropagation | undefined;
   /**
    * One label per pixel, row by row: the number of an object, a number that no object has for a new object, 0 where none of the objects is
-   * that it is about, or 255 where nothing is certain. With `object` there are the labels 0, 255 and its number. It replaces what was painted in
-   * the frame of the same object, or as a map; one that is 255 everywhere takes it back.
+   * that it is about, or 255 where nothing is certain. With `object` there are the labels 0, 255 and its number; without 255, as of an
+   * outline, they are its mask, to the pixel. It replaces what was painted in the frame of the same object, or as a map; one that is 255
+   * everywhere takes it back.
    */
   labels: Uint8Array;
 }
@@ -340,7 +341,7 @@ export type ClipMask = {
 export interface ClipEdits {
   /** Lists of objects that are one; the first number is kept. */
   merge?: readonly (readonly number[])[] | undefined;
-  /** Objects that are none: they become background. */
+  /** Objects that are none: they become background, and take no pixel of others. */
   delete?: readonly number[] | undefined;
   /** The same as `delete`. */
   background?: readonly number[] | undefined;

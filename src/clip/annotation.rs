@@ -53,7 +53,7 @@ pub struct Painted {
     /// where they are not.
     pub object: Option<u8>,
     /// One label per pixel of the frame, row by row: the number of an object, a new number for a new one, 0 where none of these objects
-    /// is, 255 where nothing is said.
+    /// is, 255 where nothing is said. Without 255, as of an outline, they are the mask of an object, to the pixel.
     pub labels: Vec<u8>,
     /// Where it spreads.
     pub spread: Spread,
@@ -111,8 +111,8 @@ pub struct Annotations {
     pub named: Option<Vec<u8>>,
     /// Frames in which only what is painted there changes labels; none: as before.
     pub accepted: Option<Vec<Accepted>>,
-    /// Objects and the numbers that they get for the whole clip: that of another object to merge them, 0 to make them background. Numbers
-    /// that no object has change nothing.
+    /// Objects and the numbers that they get for the whole clip: that of another object to merge them, 0 to make them background: such
+    /// an object claims nothing any more. Numbers that no object has change nothing.
     pub numbers: Vec<[u8; 2]>,
 }
 

@@ -127,6 +127,7 @@ impl FrameCorrection {
                 now.point(prompt, &labels);
             }
         }
+        now.forget(&clip.numbers);
         now.drop_pieces(&before, &shown, clip.size()[0]);
         now.keep_bases(&shown);
         let mut changing: ObjectSet = std::array::from_fn(|k| k > 0 && !now.agrees(&before, k as u8));
@@ -142,7 +143,8 @@ impl FrameCorrection {
         clip.update_anchors(self.scene);
         let anchors = clip.anchors(self.scene);
         for (object, changes) in changing.iter_mut().enumerate().take(anchors.len()) {
-            *changes = (*changes || anchors[object] != anchors_before[object]) && !clip.locked[object];
+            *changes |= anchors[object] != anchors_before[object];
+            *changes &= !clip.locked[object] && clip.numbers[object] > 0;
         }
         let members = groups(&changing, &anchors);
         let [first, last] = self.scene;

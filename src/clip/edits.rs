@@ -68,7 +68,8 @@ impl SegmentedClip {
         }
     }
 
-    /// Gives every pixel of an object another number for the whole clip. Returns the indices of the frames that change.
+    /// Gives every pixel of an object another number for the whole clip. One that becomes background claims nothing from then on, and what was
+    /// said of it is forgotten. Returns the indices of the frames that change.
     pub(super) fn renumber(&mut self, [object, number]: [u8; 2]) -> Vec<usize> {
         let number = self.numbers[usize::from(number)];
         if number != 0 && self.frames_with(number).is_empty() {
@@ -76,6 +77,9 @@ impl SegmentedClip {
         }
         let changed = self.frames_with(object);
         self.numbers.iter_mut().filter(|given| **given == object).for_each(|given| *given = number);
+        for annotation in self.frames.iter_mut().filter_map(|frame| frame.annotation.as_mut()) {
+            annotation.forget(&self.numbers);
+        }
         changed
     }
 }

@@ -80,7 +80,7 @@ impl FrameAnnotation {
             *self = FrameAnnotation::default();
             return;
         }
-        self.painted.retain(|strokes| strokes.object != object);
+        self.take_back_painted(object);
         if !is_nothing {
             self.painted.push(strokes);
         }
@@ -89,11 +89,30 @@ impl FrameAnnotation {
     /// Puts a prompt with its outline in the place of that of the same object.
     #[inline(never)]
     pub(super) fn point(&mut self, prompt: Prompt, labels: &[u8]) {
-        self.prompts.retain(|of| of.prompt.object != prompt.object);
+        self.take_back_prompt(prompt.object);
         if prompt.points() {
             let at = self.prompts.partition_point(|of| of.prompt.object < prompt.object);
             self.prompts.insert(at, Outlined { prompt, labels: Runs::of(labels) });
         }
+    }
+
+    /// Forgets what is about deleted objects alone, by the numbers that objects are given. A label map also says where others are not.
+    #[inline(never)]
+    pub(super) fn forget(&mut self, numbers: &[u8]) {
+        for object in (1..UNANNOTATED).filter(|&object| numbers[usize::from(object)] == 0) {
+            self.take_back_painted(object);
+            self.take_back_prompt(object);
+        }
+    }
+
+    #[inline(never)]
+    fn take_back_painted(&mut self, object: u8) {
+        self.painted.retain(|strokes| strokes.object != object);
+    }
+
+    #[inline(never)]
+    fn take_back_prompt(&mut self, object: u8) {
+        self.prompts.retain(|of| of.prompt.object != object);
     }
 
     /// The prompt of an object.
@@ -107,6 +126,11 @@ impl FrameAnnotation {
 
     fn strokes(&self, object: u8) -> Option<&Strokes> {
         self.painted.iter().find(|strokes| strokes.object == object)
+    }
+
+    /// The strokes of an object: its number, 0 where it is not, 255 for nothing.
+    pub(super) fn painted_of(&self, object: u8) -> Option<Vec<u8>> {
+        Some(self.strokes(object)?.labels.values())
     }
 
     /// The label map, if it is about an object: if it names it, or none.

@@ -1,5 +1,5 @@
-//! All annotations take effect in one order: numbers that are kept free, locks and names, accepted frames, label maps and strokes, prompts,
-//! and edits of whole objects.
+//! All annotations take effect in one order: numbers that are kept free, deletions, locks and names, accepted frames, label maps and
+//! strokes, prompts, and objects that are merged.
 
 use std::collections::VecDeque;
 
@@ -86,6 +86,8 @@ impl ClipJob {
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
         }
+        // What is deleted claims nothing from the first step on.
+        job.renumber(clip, true);
         for (set, now) in [(&mut clip.locked, locked), (&mut clip.named, named)] {
             if let Some(objects) = now {
                 // An object is locked or named with those that were merged into it.
@@ -160,9 +162,15 @@ impl ClipJob {
     fn conclude(&mut self, clip: &mut SegmentedClip) {
         if self.wanted().is_none() {
             std::mem::take(&mut self.locks).into_iter().for_each(|object| clip.locked[usize::from(object)] = true);
-            for numbers in std::mem::take(&mut self.numbers) {
-                clip.renumber(numbers).into_iter().for_each(|frame| self.changes.add(frame));
-            }
+            self.renumber(clip, false);
+        }
+    }
+
+    /// Deletes objects, or merges them.
+    #[inline(never)]
+    fn renumber(&mut self, clip: &mut SegmentedClip, deletes: bool) {
+        for &numbers in self.numbers.iter().filter(|[_, number]| (*number == 0) == deletes) {
+            clip.renumber(numbers).into_iter().for_each(|frame| self.changes.add(frame));
         }
     }
 }

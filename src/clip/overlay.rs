@@ -64,8 +64,8 @@ impl SegmentedClip {
         self.overlaid(index, &self.found_full(index, luminance), &self.user_objects_in(index))
     }
 
-    /// Full-size labels found automatically, with the layer of a frame over them. The found pixels of a user's object do not show, nor the
-    /// rest of an object most of which lies under one that was given as masks.
+    /// Full-size labels found automatically, with the layer of a frame over them. The found pixels of a user's object do not show, nor a
+    /// deleted one, nor the rest of an object most of which lies under one that was given as masks.
     pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
         let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNANNOTATED; found.len()]);
         let mut sizes = [[0usize; 2]; 256];
@@ -76,7 +76,7 @@ impl SegmentedClip {
         let protected = self.protected();
         let is_hidden = |label: u8| {
             let k = usize::from(label);
-            user_objects[k] || !protected[k] && 2 * sizes[k][1] > sizes[k][0]
+            user_objects[k] || self.numbers[k] == 0 || !protected[k] && 2 * sizes[k][1] > sizes[k][0]
         };
         let hidden: Vec<bool> = (0..=u8::MAX).map(is_hidden).collect();
         let label = |(&layer, &found): (&u8, &u8)| match layer {
@@ -88,7 +88,7 @@ impl SegmentedClip {
     }
 
     /// The labels of the layer of a frame, if it has one. Where a user's objects were deleted, the labels below show again.
-    fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
+    pub(super) fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
         let is_deleted = |label: u8| label > 0 && label != UNANNOTATED && self.numbers[usize::from(label)] == 0;
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
         labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNANNOTATED);

@@ -111,7 +111,8 @@ impl SegmentedClip {
         for (k, &number) in self.numbers.iter().enumerate().filter(is_merged) {
             (protected[k], protected[usize::from(number)]) = (true, true);
         }
-        protected[0] = false;
+        // The background is none, nor is what was deleted.
+        protected.iter_mut().zip(&self.numbers).for_each(|(of, number)| *of &= *number > 0);
         protected
     }
 

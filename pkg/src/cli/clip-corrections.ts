@@ -4,9 +4,9 @@ import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
-import { editsOf } from '../calls/clip/edits.js';
+import { editsOf, isObjectNumber, RANGE } from '../calls/clip/edits.js';
 import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
-import { isListOf, isNumber, isObject, isWhole, unknownOf } from '../common/checks.js';
+import { isListOf, isNumber, isObject, isWhole, UNLABELLED, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaledLabels, scaledSize } from '../common/scaling.js';
 import type { ClipCommand } from './arguments.js';
@@ -15,22 +15,29 @@ import { UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { encodeColourPng } from '../entries/codecs.js';
 import { readAnnotations } from '../formats/reading/annotations.js';
+import { Canvas } from '../formats/reading/canvas.js';
 import { isPng, type Levels } from '../formats/reading/frame.js';
 import { readInput, sha256 } from './files.js';
 import { decoded } from './pair.js';
 
 export const EDITS = 'edits.json';
 
+/** A vertex of a polygon is not meant to be farther away than this, pixels. */
+const FARTHEST = 1e5;
+
 /** The content of edits.json. */
 interface Edits {
   edits: ClipEdits;
   prompts: FullPrompt[];
+  /** Of polygons: where an object is in a frame, and 0 where it is not. */
+  outlines: Outline[];
   /** Frames, where there is a list of them. */
   accepted: number[] | undefined;
   /** By frame. */
   propagate: Map<number, ClipPropagation>;
 }
 
+type Outline = Required<Pick<ClipCorrection, 'frame' | 'object' | 'labels'>>;
 type FullPrompt = Extract<ClipPrompt, { object: number }>;
 
 /** The label images of a folder, by the names of their frames. */
@@ -87,7 +94,8 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
   const spread = <T extends { frame: number }>(said: T[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
   const prompts = both.flatMap((folder) => folder.prompts);
-  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ said }) => said), ...prompts].some((each) => each.frame === frame));
+  const outlines = both.flatMap((folder) => folder.outlines);
+  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ said }) => said), ...prompts, ...outlines].some((each) => each.frame === frame));
   if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', of which nothing is said`);
   const edits = {
     merge: all(({ merge }) => merge),
@@ -98,9 +106,14 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
   };
   const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
   checkUnlocked(locked, numbers);
+  // What is merged into an object is not outside its outline either.
+  const merged = outlines.flatMap(({ frame, object: into, labels }) => {
+    const others = [...numbers.keys()].filter((object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object));
+    return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
+  });
   return {
     masks: spread(masks?.said),
-    corrections: spread(corrections?.said),
+    corrections: spread([...(corrections?.said ?? []), ...merged, ...outlines]),
     prompts: spread(prompts),
     accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
     edits,
@@ -124,11 +137,11 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
     said.push({ frame, labels });
   }
   said.sort((one, other) => one.frame - other.frame);
-  const none: Edits = { edits: {}, prompts: [], accepted: undefined, propagate: new Map() };
+  const none: Edits = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
   const hasEdits = found.names.includes(EDITS);
   const told = hasEdits ? await readEdits(join(folder, EDITS), frames, maxSize) : none;
-  const { edits, prompts, accepted, propagate } = told;
-  const lists = [said, prompts, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
+  const { edits, prompts, outlines, accepted, propagate } = told;
+  const lists = [said, prompts, outlines, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
   if (lists.every((list) => list.length === 0)) {
     const [left] = found.left;
     const remedy = left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
@@ -136,7 +149,7 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
     throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
   }
   const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
-  const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
+  const hashes = [...said, ...outlines].map(({ frame, object, labels }: ClipCorrection) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
   const content = [hashes, edits, ...propagate, prompts, accepted];
   const paths = [...new Set([...found.names.map((name) => join(folder, name)), ...found.paths])];
   return { ...found, notes, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
@@ -209,33 +222,53 @@ function namesIn(folder: string): string[] {
 async function readEdits(path: string, frames: ClipFrames, maxSize: number | undefined): Promise<Edits> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'accepted', 'propagate', 'size']);
-  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
+  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'polygons', 'accepted', 'propagate', 'size']);
+  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], polygons = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
   if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
     return frame;
   };
+  const sizeOf = async () => frames.size ?? (await frames.read(0));
+  /** The entries of a list, each about an object in a frame. */
+  const entriesOf = (list: string, value: unknown, parts: readonly string[]) => {
+    if (!isListOf(value, isObject)) throw wrong(`'${list}' must be a list of { frame, object, ${parts.join(', ')} }`);
+    return value.map((entry, at) => {
+      const bad = (reason: string) => wrong(`'${list}', number ${at}: ${reason}`);
+      const unknown = unknownOf(entry, ['frame', 'object', ...parts]);
+      if (unknown !== undefined) throw bad(`there is no ${unknown}`);
+      if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+      return { entry, frame: frameOf(list, entry['frame']), bad };
+    });
+  };
   const scale = own === undefined ? 1 : await scaleOf(own, frames, maxSize, wrong);
   // One after another: the first keeps its pixels.
   const prompts: FullPrompt[] = [];
   const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
     const pointed = promptOf(scaledPrompt(entry, scale), bad);
-    if (!isWithin(pointed, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
+    if (!isWithin(pointed, await sizeOf())) throw bad('is not within the frame');
     const before = prompts.find(({ frame, object }) => frame === pointed.frame && object === pointed.object);
     if (before) throw bad(`has a ${before.box ? 'box' : 'click'} already`);
     const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = scaledPrompt(entry, scale);
     prompts.push({ ...rest, object, clicks } as FullPrompt);
   };
-  if (!isListOf(listed, isObject)) throw wrong("'prompts' must be a list of { frame, object, clicks, box }");
-  for (const [at, entry] of listed.entries()) {
-    const bad = (reason: string) => wrong(`'prompts', number ${at}: ${reason}`);
-    const unknown = unknownOf(entry, ['frame', 'object', 'clicks', 'box']);
-    if (unknown !== undefined) throw bad(`there is no ${unknown}`);
-    if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
+  for (const { entry, frame, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
-    await add({ ...entry, frame: frameOf('prompts', entry['frame']) }, bad);
+    await add({ ...entry, frame }, bad);
+  }
+  const outlines = new Map<string, Outline>();
+  for (const { entry: { object, points }, frame, bad } of entriesOf('polygons', polygons, ['points'])) {
+    if (!isObjectNumber(object)) throw bad(`must have an object, ${RANGE}`);
+    if (!isListOf(points, isPoint) || points.length < 3) throw bad('must have points, three or more [x, y]');
+    const { width, height } = await sizeOf();
+    const canvas = new Canvas(width, height);
+    // Whole numbers are centres of pixels here, corners there.
+    canvas.polygon(points.flat().map((value) => scale * (value + 0.5)), object);
+    if (!canvas.labels.includes(object)) throw bad('has no pixel of the frame');
+    // Several are parts of one.
+    const before = outlines.get(`${frame} ${object}`)?.labels;
+    outlines.set(`${frame} ${object}`, { frame, object, labels: canvas.labels.map((label, p) => label || (before?.[p] ?? 0)) });
   }
   for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
     if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
@@ -254,7 +287,11 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];
   });
-  return { edits, prompts, accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+  return { edits, prompts, outlines: [...outlines.values()], accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+}
+
+function isPoint(value: unknown): value is [x: number, y: number] {
+  return isListOf(value, (side): side is number => typeof side === 'number' && Math.abs(side) <= FARTHEST) && value.length === 2;
 }
 
 /** By how much what is said in pixels of a size is scaled down, as the frames are. */

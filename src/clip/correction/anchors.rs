@@ -66,7 +66,7 @@ impl SegmentedClip {
         for (erases, t) in erased.iter().zip(first..=last) {
             let is_anchor = |&object: &u8| {
                 let k = usize::from(object);
-                names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k])
+                self.numbers[k] > 0 && (names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k]))
             };
             let anchored = (1..UNANNOTATED).filter(is_anchor).collect();
             if let Some(annotation) = &mut self.frames[t].annotation {

@@ -63,7 +63,7 @@ impl Composition<'_> {
         let rules = Rules {
             painted: annotation.painted_labels().unwrap_or_default(),
             annotation,
-            layer: layer.map_or_else(|| vec![UNANNOTATED; self.found.len()], |layer| layer.labels.values()),
+            layer: clip.layer_labels(self.index).unwrap_or_else(|| vec![UNANNOTATED; self.found.len()]),
             users: clip.user_objects_in(self.index),
             protected: clip.protected(),
             is_accepted: state.accepted,
@@ -154,7 +154,13 @@ impl Composition<'_> {
                 *inside = u8::from(*seed == Seed::Object);
             }
             if let Some(base) = rules.annotation.base(object) {
-                strokes::keep(&mut mask, &base, seeds, width);
+                // Who paints over an object as a whole means what is painted and no more.
+                if strokes::repaint(&base, seeds) {
+                    let open = mask.iter_mut().zip(&base).zip(seeds).filter(|(_, seed)| **seed == Seed::Nothing);
+                    open.for_each(|((inside, base), _)| *inside = *base);
+                } else {
+                    strokes::keep(&mut mask, &base, seeds, width);
+                }
             }
         } else if self.extended[usize::from(object)] {
             let before: Vec<u8> = self.before.iter().map(|label| u8::from(*label == object)).collect();
@@ -164,7 +170,7 @@ impl Composition<'_> {
         mask
     }
 
-    /// Nothing is left around an object of another one whose place it takes.
+    /// Nothing is left around an object of another one whose place it takes, but where it is painted not to be.
     fn absorb_rims(&self, rules: &Rules, draft: &mut Draft) {
         let width = self.frame.width();
         let takes = |from: u8, other: u8| {
@@ -176,6 +182,14 @@ impl Composition<'_> {
             !is_painted && rules.annotation.is_within([p % width, p / width])
         };
         strokes::absorb_rims(&mut draft.labels, self.found, (&is_open, &takes), width, 2 * self.features.step);
+        for (object, _) in self.proposals {
+            let painted = rules.annotation.painted_of(*object).unwrap_or_default();
+            for (label, _) in
+                draft.labels.iter_mut().zip(painted).filter(|(label, said)| *said == 0 && **label == *object)
+            {
+                *label = UNANNOTATED;
+            }
+        }
     }
 
     /// A person's hand takes pixels of other annotated objects, but of protected ones only in an accepted frame, and of locked and named ones

@@ -28,6 +28,17 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     smooth(mask, before, seeds, width);
 }
 
+/// Whether strokes paint over an object as a whole: they are mostly in it as it was `before`, and have most of it.
+pub(super) fn repaint(before: &[u8], seeds: &[Seed]) -> bool {
+    let mut counts = [0usize; 4];
+    before
+        .iter()
+        .zip(seeds)
+        .for_each(|(is_in, seed)| counts[usize::from(2 * is_in + u8::from(*seed == Seed::Object))] += 1);
+    let [_, beside, left, both] = counts;
+    both > left.max(beside)
+}
+
 /// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that direction: `looks` are the odds
 /// of the object by its looks. They are weighed over each connected change.
 #[inline(never)]

@@ -106,7 +106,7 @@ export function withNotes(answer: string, notes: readonly Pick<Note, 'message'>[
 const TOOLS = {
   brush: 'Paint what belongs to the selected object.',
   eraser: 'Paint what does not belong to the selected object.',
-  polygon: 'Press corners around what belongs to the selected object, then the first again; with Shift it is removed.',
+  polygon: 'Press corners around the selected object, then the first again; with Shift what is inside is removed.',
   box: 'Drag a box around something, or press on it: it becomes a new object.',
 };
 

@@ -44,7 +44,7 @@ const GROUPS: readonly Group[] = [
       ['V', 'View: select masks, pan'],
       ['B', 'Brush: add to the selected mask'],
       ['E', 'Eraser: remove from the selected mask'],
-      ['W', 'Polygon: add its inside to the selected mask; Enter closes it, with Shift to remove, Backspace takes a corner back'],
+      ['W', 'Polygon: its inside is the selected object here, and if exact is added to it; Enter closes it, with Shift to remove, Backspace takes a corner back'],
       ['X', 'Box: make a new object of a clip; again, add to the selected one or remove from it, as a press with Shift or Alt does'],
       ['[', 'Smaller brush'],
       [']', 'Larger brush'],

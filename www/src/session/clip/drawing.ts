@@ -45,13 +45,16 @@ export class Drawing {
       if (!now || masks === undefined) return;
       const scale = masks.width / frame.width;
       const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
+      // A polygon is the object: around it there is none. What is drawn exactly changes nothing around it.
+      const isOutline = drawn.filled === true && tool === 'brush' && own !== 0 && this.#spread() !== 'exact';
       const [shown, labels] = [unpacked(masks), nothing(masks)];
+      if (isOutline) labels.fill(0);
       // An object with a name is changed by its own strokes alone.
       const stays = (id: number): boolean => now.locked.has(id) || (id !== own && keyOf('objects', id) in now.names);
       eachPixel(path, masks.width, masks.height, (p) => {
         if (!stays(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
       });
-      if (tool === 'brush' && labels.every((label) => label === UNLABELLED)) return void this.#objects.refuse(strings.notices.locked);
+      if (tool === 'brush' && !labels.includes(own)) return void this.#objects.refuse(strings.notices.locked);
       this.#paint(index, [[own, labels]]);
     };
   }
