@@ -8,7 +8,8 @@ export default defineConfig({
   testDir: 'tests',
   outputDir: 'test-results',
   fullyParallel: true,
-  workers: 2,
+  // One more than cores: each waits for its page at times.
+  workers: 3,
   // Only a failure takes so long: cargo may have most of the machine.
   timeout: stress === undefined ? 240_000 : 900_000,
   expect: { timeout: 60_000 },

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { MOTIONS_IN_SAMPLE, chooseMotions, done, expect, labelsOnCanvas, motionsChosen, open, pixelsOf, test } from './support.js';
+import { MOTIONS_IN_SAMPLE, chooseMotions, done, drag, expect, labelsOnCanvas, motionsChosen, open, pixelsOf, test } from './support.js';
 
 async function zoomShown(page: Page): Promise<number> {
   return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
@@ -126,12 +126,11 @@ test('masks are groups by default, and single motions on request, and can be cop
   await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
   await page.keyboard.press('g');
   await expect(rows).toHaveCount(new Set(groups).size);
-  const box = (await page.locator('.layers').boundingBox())!;
-  const [px, py] = [0.2, 0.4];
+
   // A click on the picture selects the mask there.
   await rows.first().locator('.motion-words').click();
   await expect(row).not.toHaveClass(/selected/);
-  await page.mouse.click(box.x + px * box.width, box.y + py * box.height);
+  await drag(page, [0.2, 0.4], [0.2, 0.4]);
   await expect(row).toHaveClass(/selected/);
 });
 

@@ -93,7 +93,7 @@ test('the objects of a clip keep number, name and colour in all frames, also whe
   const row = page.locator('#objects > li').nth(1);
   const check = row.locator('[data-action=doubtful]');
   await row.locator('.thumbnail').click();
-  const index = Number(/^Check # (\d)$/.exec((await check.textContent())!)![1]);
+  const index = Number(/^Check #(\d)$/.exec((await check.textContent())!)![1]);
   await check.click();
   await shows(page, index);
   await expect(row).toHaveClass(/selected/);

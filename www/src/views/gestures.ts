@@ -29,6 +29,8 @@ interface Press {
   x: number;
   y: number;
   readonly began: readonly [number, number];
+  /** When it began, milliseconds: events may be handled later. */
+  readonly since: number;
   /** Whether it ever moved further from there than {@link STILL}. */
   moved: boolean;
 }
@@ -54,7 +56,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     const points = store.get().tool.name === 'box';
     const removes = points && (event.button === 2 || event.altKey);
     if ((event.button !== 0 && !removes) || event.target instanceof HTMLInputElement || event.target instanceof HTMLButtonElement) return;
-    presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY], moved: false });
+    presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY], since: event.timeStamp, moved: false });
     layers.setPointerCapture(event.pointerId);
     clearTimeout(holding);
     if (presses.size > 1) {
@@ -111,7 +113,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
       const reach = event.pointerType === 'mouse' ? REACH.mouse : REACH.finger;
       return brush.do((brush) => (event.type === 'pointerup' ? brush.end(reach, event.shiftKey) : brush.interrupt(press.moved)));
     }
-    const tapped = !dragged && event.type === 'pointerup' && !peek.held;
+    const wasHeld = peek.held && event.timeStamp - press.since >= TAP;
+    const tapped = !dragged && event.type === 'pointerup' && !wasHeld;
     peek.release();
     if (!tapped) return;
     const at = pixelAt(store.get(), inView(event));
