@@ -47,8 +47,8 @@ function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: S
   const open = timeline?.clip === tracked.clip ? timeline : null;
   const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
-  // A complete clip can be corrected without its pairs.
   const { settled = tracked, corrections: pending } = tracked.pending ?? {};
+  // A complete clip can be corrected without its pairs.
   return { ...versionOf(settled), ...stepsOf(tracked), pending, range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
 }
 
