@@ -11,6 +11,8 @@ const RED = [0.52, 0.52] as const;
 const { count: COUNT, start: START } = SMALL_SAMPLE;
 /** A frame after that, without which the clip is not done. */
 const LATE = '10.webp';
+/** The frame without which no pair is solved, so that there is nothing to show. */
+const SECOND = '01.webp';
 
 /** Whether the browser has kept anything. */
 async function isAnythingKept(page: Page): Promise<boolean> {
@@ -86,7 +88,7 @@ test('whoever touches the page or opens something first is not shown the clip; n
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));
   await withSmallSampleClip(page);
-  const goOn = await held(page, LATE);
+  const goOn = await held(page, SECOND);
   const release = await held(page, 'slow.png');
   await page.goto('./');
   await page.locator('#clip-progress').waitFor();
