@@ -310,7 +310,7 @@ fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_al
     let mut shot = crossing();
     let found = shot.labels();
     let number = shot.found(3);
-    let objects: Vec<u8> = (1..255).filter(|&k| !shot.clip.frames_with(k).is_empty()).collect();
+    let objects = shot.clip.objects();
     // A corner of what was found, and something beside it.
     let said = |shot: &Shot| shot.stroke(200, [46, 24, 40, 14]);
     shot.correct(4, &said(&shot));

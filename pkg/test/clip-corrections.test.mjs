@@ -183,6 +183,20 @@ describe('veronese clip --corrections', () => {
     assert.deepEqual(tracksOf(out).notes.map((note) => note.code), ['file-left-out']);
   });
 
+  test('edits of objects that are not there are said, and those of objects that the same corrections make or delete are none', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    said('f3.png', await mask());
+    const edits = { merge: [[9, 40]], delete: [5, 20], background: [41], names: { 9: 'square', 42: 'car' }, locked: [43, 9], polygons: [{ frame: 'f2', object: 20, points: [[1, 1], [9, 1], [9, 9]] }] };
+    said('edits.json', JSON.stringify(edits));
+    const args = ['clip', '--quality', 'fast', frames, '--corrections', corrections, '--out', out];
+    const sentence = 'edits of objects that are not there change nothing: 5, 40, 41, 42, 43; the objects are 1, 9';
+    for (const again of [false, true]) {
+      const { stderr, code } = await veronese(args);
+      assert.deepEqual([code, stderr], [0, `veronese: note: ${sentence}\n`], `again: ${again}`);
+    }
+    assert.deepEqual(tracksOf(out).notes, [{ code: 'object-missing', message: sentence }]);
+  });
+
   test('masks, labels and prompts of the original size are scaled with the frames', async (t) => {
     const { frames, corrections, said, given, masks, out, path } = clip(t);
     const options = [frames, '--max-size', '48', '--out'];
@@ -322,12 +336,12 @@ describe('veronese clip --masks', () => {
     given('edits.json', '{"names": {"7": "square"}, "propagate": {"f1": "none"}}');
     const stroke = LABELS.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 20 : 255));
     said('f3.png', await mask(stroke));
-    said('edits.json', '{"locked": [3]}');
+    said('edits.json', '{"locked": [1]}');
     const { lines } = await run([frames, '--masks', masks, '--corrections', corrections, '--out', out]);
     const options = {
       masks: [{ frame: 1, labels: CORNER, propagate: 'none' }, { frame: 3, labels: LABELS.map((label) => label && 7) }],
       corrections: [{ frame: 3, labels: stroke }],
-      edits: { names: { 7: 'square' }, locked: [3] },
+      edits: { names: { 7: 'square' }, locked: [1] },
     };
     const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', ...options });
     for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);

@@ -91,6 +91,23 @@ describe('the call for clips gives the same notes', () => {
   });
 });
 
+test('edits and locks of objects that are not there are said, also of the frames that change alone, and again of a state', async () => {
+  const frames = { length: 5, read: (k) => frame(2 * k, SIZE) };
+  const edit = async (options) => {
+    const clip = segmentClip(frames, { quality: 'fast', ...options });
+    while (!(await clip.next()).done);
+    return [clip.tracks().notes?.map(({ code, message }) => [code, message.replace(/^.*: (?=.*;)/, '')]), await clip.state()];
+  };
+  const missing = (said) => [['object-missing', said]];
+  const [none, state] = await edit({ edits: { names: { 1: 'square' } }, prompts: [{ frame: 1, object: 9, clicks: [[90, 60, 1]] }], locked: [9] });
+  assert.equal(none, undefined);
+  assert.deepEqual((await edit({ state, locked: [1, 7], changesOnly: true }))[0], missing('7; the objects are 1, 9'));
+  const [gone, after] = await edit({ state, edits: { merge: [[1, 12], [30, 1]], names: { 8: 'a' } }, locked: [] });
+  assert.deepEqual(gone, missing('8, 12, 30; the objects are 1, 9'));
+  assert.equal((await edit({ state: after, edits: { merge: [[1, 9]], delete: [] } }))[0], undefined);
+  assert.equal((await edit({ state: after, edits: { delete: [1] } }))[0], undefined);
+});
+
 test('a pair with one motion says why, in a worker too; what was asked for says nothing', async () => {
   const pairs = {
     'no-motion': [picture(wave), picture(wave)],

@@ -133,7 +133,7 @@ export interface Junction {
 export interface Note {
   /**
    * In kebab-case; where no object or one motion was found `no-contrast`, `cut`, `no-motion`, `small-steps` or `one-motion`; `object-is-ground`
-   * of an object of a clip that is likely to be none.
+   * of an object of a clip that is likely to be none; `object-missing` where edits name numbers that no object has.
    */
   code: string;
   /** A sentence. */
@@ -337,7 +337,10 @@ export type ClipMask = {
     }
 );
 
-/** Changes of whole objects. Numbers that no object has change nothing; a list that begins with one merges nothing. */
+/**
+ * Changes of whole objects. Numbers that no object has change nothing, and are in a note (`object-missing`); a list that begins with one merges
+ * nothing.
+ */
 export interface ClipEdits {
   /** Lists of objects that are one; the first number is kept. */
   merge?: readonly (readonly number[])[] | undefined;
@@ -481,7 +484,7 @@ export interface ClipTracks {
   background: { frame: number; matrix: Matrix }[];
   /** Number of objects beyond 254, which count as background. Known when the clip is finished. */
   dropped: number;
-  /** Of a finished clip without annotations: why there are no objects, or which of them are likely to be none. */
+  /** Of a finished clip: which edits change nothing; without annotations also why there are no objects, or which of them are likely to be none. */
   notes?: Note[];
 }
 

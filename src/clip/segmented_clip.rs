@@ -1,6 +1,6 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use super::annotation::ObjectSet;
+use super::annotation::{ObjectSet, UNANNOTATED};
 use super::evidence::Flow;
 use super::frame_state::FrameState;
 use super::layer::Layer;
@@ -73,6 +73,14 @@ impl SegmentedClip {
             layers.into_iter().flatten().any(|layer| layer.labels.each().any(is_it))
         };
         (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
+    }
+
+    /// The objects that are in any frame, by their numbers before any edit.
+    pub fn objects(&self) -> Vec<u8> {
+        let mut is_there: ObjectSet = [false; 256];
+        let layers = self.frames.iter().flat_map(|frame| [Some(&frame.found), frame.layer.as_ref()]).flatten();
+        layers.flat_map(|layer| layer.labels.each()).for_each(|(label, _)| is_there[usize::from(label)] = true);
+        (1..UNANNOTATED).filter(|&object| is_there[usize::from(object)]).collect()
     }
 
     /// First and last frame of the scene of a frame.

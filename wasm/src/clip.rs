@@ -145,9 +145,9 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
     segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
 }
 
-/// Begins to apply all that a person says of a concluded clip, as `Annotations` of pkg/src/calls/messages.ts. Returns `{ wanted, changed, changes }`:
-/// the index of the frame to take next, `undefined` at the end, those of the frames that have changed, and at the end what objects have gained
-/// and lost.
+/// Begins to apply all that a person says of a concluded clip, as `Annotations` of pkg/src/calls/messages.ts. Returns
+/// `{ wanted, changed, changes, objects }`: the index of the frame to take next, `undefined` at the end, those of the frames that have changed, and
+/// at the end what objects have gained and lost, and the numbers of all objects before any edit.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
@@ -156,7 +156,7 @@ pub fn annotate_clip(clip: u32, annotations: &JsValue) -> Result<JsValue, JsValu
     let mut given = Some(annotations_of(annotations));
     segmented(clip, &mut |clip, job| {
         let begun = job.insert(clip.annotate(given.take().unwrap_or_default())?);
-        Ok(news(begun, 0))
+        Ok(news(clip, begun, 0))
     })
 }
 
@@ -172,7 +172,7 @@ pub fn take_annotations(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> 
         let Some(job) = job else { return Ok(JsValue::NULL) };
         let known = job.changed().len();
         job.take(clip, &frame)?;
-        Ok(news(job, known))
+        Ok(news(clip, job, known))
     })
 }
 
@@ -237,11 +237,14 @@ fn indices(indices: &[usize]) -> JsValue {
 }
 
 /// How far a job has come; `known` of its changed frames were told before.
-fn news(job: &ClipJob, known: usize) -> JsValue {
+fn news(clip: &SegmentedClip, job: &ClipJob, known: usize) -> JsValue {
     let told = Record::new().set("changed", &indices(&job.changed()[known..]));
     match job.wanted() {
         Some(index) => told.count("wanted", index),
-        None => told.list("changes", &job.changes(), changed),
+        None => {
+            let objects = clip.objects();
+            told.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
+        }
     }
     .into_value()
 }

@@ -45,8 +45,8 @@ async function* segmented(
       yield frame;
       place.pause?.(false);
     }
-    const { tracks } = results;
-    if (tracks.isEmpty || tracks.grounds().length > 0) tracks.notes = await (await import('./clip/notes.js')).notesOn(clip, taken, task, results);
+    const { tracks, missing } = results;
+    if (missing || tracks.isEmpty || tracks.grounds().length > 0) tracks.notes = await (await import('./clip/notes.js')).notesOn(clip, taken, task, results);
   } finally {
     delete results.clip;
     // Nobody waits for that.

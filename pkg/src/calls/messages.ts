@@ -97,6 +97,8 @@ export interface Annotating {
   wanted?: number;
   changed: number[];
   changes?: ClipChange[];
+  /** All objects, by their numbers before any edit. */
+  objects?: number[];
 }
 
 /** The result of a task; null if its clip no longer exists. */

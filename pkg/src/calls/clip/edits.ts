@@ -12,7 +12,7 @@ export interface Edits {
   locked: Uint8Array | undefined;
 }
 
-/** Checks edits; `wrong` makes the error. Numbers that no object has are no mistake: they change nothing. `more` may be there as well. */
+/** Checks edits; `wrong` makes the error. Which objects there are is known later. `more` may be there as well. */
 export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError, more: readonly string[] = []): Edits {
   if (!isObject(value)) throw wrong('must be an object');
   const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names', 'locked', ...more]);

@@ -20,8 +20,18 @@ interface SeenFrames {
   segment: (first: Pixels, second: Pixels) => Promise<Segmentation>;
 }
 
+/** Says which edits change nothing, and of the result what {@link ofResult} does. */
+export async function notesOn(clip: PlacedClip, taken: Frames, task: CheckedOptions, results: ClipResults): Promise<Note[]> {
+  return [...(results.missing ? [missingNote(results.missing)] : []), ...(await ofResult(clip, taken, task, results))];
+}
+
+function missingNote({ numbers, objects }: NonNullable<ClipResults['missing']>): Note {
+  const there = objects.length > 0 ? `the objects are ${objects.join(', ')}` : 'there is no object';
+  return { code: 'object-missing', message: `edits of objects that are not there change nothing: ${numbers.join(', ')}; ${there}` };
+}
+
 /** Says why nothing was found, or what is likely to be wrong; of annotated clips a person knows more. */
-export async function notesOn(clip: PlacedClip, taken: Frames, { source, settings, signal, ...task }: CheckedOptions, { tracks, changes = [], pair }: ClipResults): Promise<Note[]> {
+async function ofResult(clip: PlacedClip, taken: Frames, { source, settings, signal, ...task }: CheckedOptions, { tracks, changes = [], pair }: ClipResults): Promise<Note[]> {
   if (task.changesOnly || task.accepted || task.edits.numbers.size + changes.length > 0) return [];
   if (!tracks.isEmpty) return tracks.grounds().map(groundNote);
   if (settings['motions'] === 1) return [];

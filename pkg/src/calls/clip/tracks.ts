@@ -10,6 +10,8 @@ export interface ClipResults {
   state?: Uint8Array;
   /** The changes by annotations. */
   changes?: ClipChange[];
+  /** Where edits name objects that are not there: these, and those that are. */
+  missing?: { numbers: number[]; objects: number[] };
   /** Of a stream in which nothing was found so far: the latest pair whose first frame has 0 or a power of two as its index. */
   pair?: SeenPair;
   clip?: PlacedClip;

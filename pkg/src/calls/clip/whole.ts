@@ -1,6 +1,6 @@
 // A clip whose frames can be read again: once for their pairs, where corrections want them, and once for their labels.
 
-import type { ClipChange, ClipFrame } from '../../../types/index.js';
+import type { ClipFrame } from '../../../types/index.js';
 import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } from '../messages.js';
@@ -25,7 +25,10 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
   if (!task.state) checkCount(of);
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
-  const { changed, changes } = await annotated(clip, frames, task, length);
+  const unsaid = unsaidOf(task);
+  const { changed, changes, objects } = await annotated(clip, frames, task, length);
+  const numbers = unsaid.filter((number) => !objects.includes(number));
+  if (numbers.length > 0) results.missing = { numbers, objects };
   results.state = await clip.step<Uint8Array>({ call: 'saveClip' });
   results.changes = changes;
   results.tracks.dropped = dropped;
@@ -99,8 +102,15 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
   return summary;
 }
 
-/** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
-async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<{ changed: Set<number>; changes: ClipChange[] }> {
+/** The numbers in edits, but those that annotations of the same call are about: of what is deleted as well nothing is left. */
+function unsaidOf({ edits: { numbers, names }, locked, masks, corrections, prompts }: Task): number[] {
+  const isPainted = (number: number) => numbers.get(number) === 0 && [...masks, ...corrections].some(({ labels }) => labels.includes(number));
+  const isSaid = (number: number) => number === 0 || prompts.some(({ object }) => object === number) || isPainted(number);
+  return [...new Set([...[...numbers].flat(), ...names.keys(), ...(locked ?? [])])].filter((number) => !isSaid(number)).sort((one, other) => one - other);
+}
+
+/** Applies all annotations; returns the indices of the frames that change, what objects gain and lose, and their numbers before any edit. */
+async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Required<Omit<Annotating, 'wanted' | 'changed'>> & { changed: Set<number> }> {
   const { source, onProgress, onChange } = task;
   const { read } = source as Whole;
   const changed = new Set<number>();
@@ -118,8 +128,8 @@ async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: n
       await clip.wait(onChange(index, segmented));
       isCalled = false;
     }
-    const { wanted, changes = [] } = step;
-    if (wanted === undefined) return { changed, changes };
+    const { wanted, changes = [], objects = [] } = step;
+    if (wanted === undefined) return { changed, changes, objects };
     onProgress?.({ frame: wanted, of: source.length, stage: 'corrections' });
     step = await clip.step<Annotating>({ call: 'takeAnnotations', frame: await frames.one(read, wanted) });
   }
