@@ -226,7 +226,7 @@ describe('numbers', () => {
     assert.deepEqual([...frames.get('00001').read()], [0, 0, 0, 1]);
     // Nobody has said what the classes are called.
     assert.deepEqual(names, { 1: '1001', 2: '2001' });
-    assert.deepEqual(notes.map(({ message }) => message), ["'file-0': objects have other numbers here, each its own from 1 to 254: 2001 is 2"]);
+    assert.deepEqual(notes.slice(1).map(({ message }) => message), ["'file-0': objects have other numbers here, each its own from 1 to 254: 2001 is 2"]);
   });
 
   test('instances of MOTS from 0, as text and as pictures: 10000 alone is ignored', () => {
@@ -247,13 +247,19 @@ describe('numbers', () => {
     assert.deepEqual([alone.format, [...alone.frames.get('file-0').read()], alone.names], ['png', [0, 1, 1, 0], { 1: '10000' }]);
   });
 
-  test('frames of MOTS count from 0 where one is 0, or where that is said', () => {
-    const frames = (text, options) => [...readAnnotations([file('a.txt', text)], options).frames.keys()];
+  test('frames of MOTS count from 0 where one is 0, or where that is said; what nothing tells is said', () => {
+    const read = (text, options) => readAnnotations([file('a.txt', text)], options);
+    const frames = (text, options) => [...read(text, options).frames.keys()];
     const line = (frame) => `${frame} 1001 1 1 4 013\n`;
     assert.deepEqual(frames(line(1) + line(0)), ['00000', '00001']);
     assert.deepEqual(frames(line(1) + line(2)), ['00000', '00001']);
     assert.deepEqual(frames(line(1) + line(2), { firstFrame: 0 }), ['00001', '00002']);
     assert.throws(() => frames(line(1), { firstFrame: 2 }), { code: 'invalid-option' });
+    const message = "nothing in 'a.txt' tells whether its frames count from 0 or from 1: from 1, as MOTS has them, unless --first-frame 0 says otherwise";
+    const clip = ['a', 'b', 'c'];
+    const notes = (text, options) => read(text, options).notes;
+    for (const options of [{}, { frames: clip }]) assert.deepEqual(notes(line(1) + line(2), options), [{ code: 'first-frame-assumed', message }]);
+    for (const [text, options] of [[line(0) + line(2), { frames: clip }], [line(1) + line(3), { frames: clip }], [line(2), { firstFrame: 0 }], [line(2), { firstFrame: 1 }]]) assert.deepEqual(notes(text, options), []);
   });
 });
 

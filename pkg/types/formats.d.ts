@@ -414,7 +414,7 @@ export interface Annotations {
 
 export interface AnnotationNote {
   /** What it is about, in kebab-case: `mask-white`, `mask-colours`, `mask-alpha`, `numbers-changed`, `shapes-left-out`, `file-left-out`,
-   * `boxes-taken`. */
+   * `boxes-taken`, `first-frame-assumed`, `mask-background`, `mots-ignored`. */
   code: string;
   /** A sentence that names the file. */
   message: string;

@@ -58,11 +58,11 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: Annot
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
     throw invalidInput(sentence);
   }
-  const left = new LeftOut();
-  const context = contextOf(all, clip, left);
+  const remarks = new Remarks();
+  const context = contextOf(all, clip, remarks);
   const read = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) => naming(source.name, () => read(context)));
   const found = numbered(read);
-  const notes = [...left.notes(), ...unknownIn(all, documents), ...found.notes];
+  const notes = [...remarks.notes(), ...unknownIn(all, documents), ...found.notes];
   const { frames, boxes } = found;
   if (frames.size + boxes.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
   if (boxes.length > 0) notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${boxes.length})` });
@@ -81,7 +81,7 @@ function ofPictures(all: readonly Source[], clip: Clip): Annotations {
   const pictures = all.filter(({ bytes }) => isPng(bytes));
   const numbers = numbersOfMots(pictures);
   if (numbers) {
-    const context = contextOf(all, clip, new LeftOut());
+    const context = contextOf(all, clip, new Remarks());
     const found = numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context))));
     const message = `'${pictures[0]?.name}': pictures with levels from 1000 on are MOTS, in which ${IGNORED} says nothing`;
     return { format: 'mots-png', ...found, notes: [...(numbers.has(IGNORED) ? [{ code: 'mots-ignored', message }] : []), ...found.notes] };
@@ -130,24 +130,28 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-/** What files have and is not read, counted. */
-class LeftOut {
+/** What is to be said of files: what was assumed, and what they have and is not read, counted. */
+class Remarks {
+  readonly #notes: AnnotationNote[] = [];
   readonly #counts = new Map<string, Map<string, number>>();
 
-  readonly add = (file: string, kind: string): void => {
+  readonly say = (note: AnnotationNote): void => void this.#notes.push(note);
+
+  readonly leaveOut = (file: string, kind: string): void => {
     const kinds = this.#counts.get(file) ?? new Map<string, number>();
     this.#counts.set(file, kinds.set(kind, (kinds.get(kind) ?? 0) + 1));
   };
 
   notes(): AnnotationNote[] {
-    return [...this.#counts].map(([file, kinds]) => {
+    const left = [...this.#counts].map(([file, kinds]) => {
       const counts = [...kinds].map(([kind, count]) => `${kind} (${count})`).join(', ');
       return { code: 'shapes-left-out', message: `'${file}': left out ${counts}` };
     });
+    return [...this.#notes, ...left];
   }
 }
 
-function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, left: LeftOut): Context {
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, say }: Remarks): Context {
   const lists = all.filter(({ name }) => NAMES.test(name)).map(({ name, bytes }) => ({
     folder: folderOf(name),
     names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
@@ -177,7 +181,9 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, le
       const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);
       return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
     },
-    leaveOut: left.add,
+    leaveOut,
+    say,
+    count: names?.length,
     firstFrame,
   };
 }

@@ -1,5 +1,6 @@
 // The result of the readers of all formats: frames, each with what draws its labels, and the objects that they know.
 
+import type { AnnotationNote } from '../../../types/formats.js';
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../names.js';
@@ -69,8 +70,12 @@ export interface Context {
   namesOf: (file: string) => string[];
   /** The size of the frame that is called as the file, where the format does not say it. */
   sizeOf: (file: string) => { width: number; height: number };
+  /** The number of frames, where that is known. */
+  count: number | undefined;
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
   leaveOut: (file: string, kind: string) => void;
+  /** Says what was assumed of a file. */
+  say: (note: AnnotationNote) => void;
 }
 
 /**

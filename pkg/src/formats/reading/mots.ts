@@ -44,7 +44,7 @@ export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefi
 
 /** Frames without objects are left out: they may not have been annotated. */
 export function readMots(source: Source, text: string, context: Context): ReadFrame[] {
-  const { nameOf, classesOf, firstFrame = 1 } = context;
+  const { nameOf, classesOf, count, firstFrame } = context;
   const names = classesOf(source);
   const frames = new Map<number, { width: number; height: number; shapes: Shape[]; ignored: ((canvas: Canvas) => void)[] }>();
   for (const [k, line] of text.split('\n').entries()) {
@@ -59,7 +59,11 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
     if (Number(id) === IGNORED) entry.ignored.push((canvas) => within(`line ${k + 1}`, () => draw(canvas, UNLABELLED)));
     else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
   }
-  const first = frames.has(0) ? 0 : firstFrame;
+  if (firstFrame === undefined && !frames.has(0) && !frames.has(count ?? 0)) {
+    const message = `nothing in '${source.name}' tells whether its frames count from 0 or from 1: from 1, as MOTS has them, unless --first-frame 0 says otherwise`;
+    context.say({ code: 'first-frame-assumed', message });
+  }
+  const first = frames.has(0) ? 0 : (firstFrame ?? 1);
   return [...frames].sort(([a], [b]) => a - b).map(([frame, { shapes, ignored, ...size }]) => {
     const read = frameOfShapes({ name: nameOf(frame - first), file: source.name, ...size }, shapes, context);
     const draw: ReadFrame['draw'] = (canvas, labelOf) => (read.draw(canvas, labelOf), ignored.forEach((region) => region(canvas)));
