@@ -139,6 +139,13 @@ describe('what a mask is taken for', () => {
     });
   }
 
+  test('colours of 16 bits that 8 do not hold are refused, unless their brightness counts alone', () => {
+    const colours = TWO.map((number) => [[0, 0, 0], [40_000, 0, 0], [40_001, 0, 0]][number]);
+    const deep = (some, options) => readAnnotations([file(some, { depth: 16 })].map((bytes) => ({ name: 'f1.png', bytes })), options);
+    for (const options of [{}, { levels: 'exact' }]) assert.throws(() => deep(colours, options), { code: 'invalid-input', message: /^'f1\.png': it has colours of 16 bits that 8 bits do not hold: save it with 8 bits, or/ });
+    assert.deepEqual([...deep(colours, { levels: 100 }).frames.get('f1').read()], TWO.map((number) => Number(number > 0)));
+  });
+
   test('numbers above 254, and in 16 bits 255, get others, and both are said', () => {
     const { frames, names, notes } = read(file(TWO.map((number, p) => [0, 300, 255][number] || (p < 48 ? 7 : 0)), { depth: 16 }));
     assert.deepEqual([...frames.get('f1').read()], TWO.map((number, p) => number || (p < 48 ? 7 : 0)));
@@ -232,6 +239,14 @@ describe('masks and the program', () => {
       assert.deepEqual([code, stderr], [0, '']);
       assert.deepEqual(labelsOf(out, 2), labels);
     }
+  });
+
+  test('clip --masks refuses PNM files of 16 bits, which would lose 8', async (t) => {
+    const { frames, out, path } = framesOf(t, 3, (k) => frame(k / 2, SIZE));
+    mkdirSync(path('masks'));
+    writeFileSync(path('masks', 'f0.pgm'), Buffer.concat([Buffer.from(`P5 ${SIZE.width} ${SIZE.height} 65535\n`), Buffer.from(ONE.flatMap((is) => [0, is]))]));
+    const { code, stderr } = await veronese(['clip', frames, '--quality', 'fast', '--masks', path('masks'), '--out', out]);
+    assert.deepEqual([code, stderr.replace(path('masks'), '')], [1, "veronese: error: invalid-input: '/f0.pgm' has samples of 16 bits, and 8 of them would be lost: save it as PNG\n"]);
   });
 
   test('convert --to masks reads back to the same objects', async (t) => {

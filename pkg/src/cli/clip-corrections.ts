@@ -185,7 +185,8 @@ async function givenMasks(folder: string, names: string[], levels: Levels | unde
 async function pngOf(path: string): Promise<Uint8Array> {
   const bytes = await readInput(path);
   if (isPng(bytes)) return bytes;
-  const { width, height, data } = await decoded({ name: path, bytes });
+  const { width, height, data, range } = await decoded({ name: path, bytes });
+  if (range) throw new VeroneseError('invalid-input', `'${path}' has samples of 16 bits, and 8 of them would be lost: save it as PNG`);
   return encodeColourPng(width, height, data);
 }
 

@@ -26,6 +26,8 @@ interface Values {
   isPlain: boolean;
   /** The level that says nothing beside others: the largest one. */
   white: number;
+  /** Whether colours have 16 bits and are more than 8 of these can say. */
+  isRounded?: boolean;
   note?: AnnotationNote;
 }
 
@@ -149,7 +151,10 @@ function direct({ width, height, channels, depth, samples }: Samples): Values {
   for (let p = 0, at = 0; p < colours.length; p++, at += channels) {
     colours[p] = isGrey ? (samples[at] as number) : (byte(at) << 16) | (byte(at + 1) << 8) | byte(at + 2);
   }
-  const plain = { isColour: !isGrey, white: isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE, isPlain: true, width, height };
+  const isClear = (p: number) => channels % 2 === 0 && byte(channels * (p + 1) - 1) === 0;
+  // Of 8 bits, each byte is there twice.
+  const isRounded = !isGrey && depth === 16 && samples.some((value, at) => value % 257 !== 0 && at % channels < 3 && !isClear(Math.floor(at / channels)));
+  const plain = { isColour: !isGrey, white: isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE, isPlain: true, isRounded, width, height };
   const all = { ...plain, values: colours, seen: () => (isGrey ? { levels: colours } : { colours }) };
   if (channels % 2 === 1) return all;
   const alpha = Int32Array.from(colours, (_, p) => byte(channels * (p + 1) - 1));
@@ -181,7 +186,8 @@ function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array
   return { isColour: false, values, seen: isGrey ? levels : seen, isPlain: isGrey, white: UNLABELLED, width, height };
 }
 
-function readingOf({ isColour, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
+function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
+  if (isColour && isRounded) throw invalidInput('it has colours of 16 bits that 8 bits do not hold: save it with 8 bits, or the numbers of its objects as grey levels');
   const all = [...valuesIn(values)];
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
   const objects = all.filter((value) => value !== ground);
