@@ -197,6 +197,17 @@ describe('veronese clip --corrections', () => {
     assert.deepEqual(tracksOf(out).notes, [{ code: 'object-missing', message: sentence }]);
   });
 
+  test('pictures beside frames that are not read are said', async (t) => {
+    const { frames, out } = clip(t, 3);
+    for (const name of ['f0.tif', 'f10.TIFF', 'f9.tif']) writeFileSync(join(frames, name), 'II*');
+    const message = `'${frames}': not read: f0.tif and 2 more; frames are PNG, JPEG, WebP, BMP or PNM`;
+    for (const command of ['clip', 'batch']) {
+      const { stderr, code } = await veronese([command, '--quality', 'fast', frames, '--out', join(out, command)]);
+      assert.deepEqual([code, stderr], [0, `veronese: note: ${message}\n`], command);
+    }
+    assert.deepEqual(tracksOf(join(out, 'clip')).notes, [{ code: 'file-left-out', message }]);
+  });
+
   test('masks, labels and prompts of the original size are scaled with the frames', async (t) => {
     const { frames, corrections, said, given, masks, out, path } = clip(t);
     const options = [frames, '--max-size', '48', '--out'];

@@ -4,7 +4,7 @@ import { basename, extname, join } from 'node:path';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { inOrder } from '../calls/ordered.js';
 import type { SequenceCommand } from './arguments.js';
-import { findFrames, type Frame, readList } from './frames.js';
+import { findFrames, type Frame, leftOutNotes, readList } from './frames.js';
 import type { Io } from './io.js';
 import { Output } from './output.js';
 import { jsonLine, type Report } from './pair.js';
@@ -69,7 +69,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   } finally {
     output?.discard();
     bar.clear();
-    for (const each of command.name === 'video' ? notesOnVideo(command.file, about) : []) note(io, each);
+    for (const each of command.name === 'video' ? notesOnVideo(command.file, about) : leftOutNotes(command.frames)) note(io, each);
     for (const failure of failures) complain(io, failure);
   }
   if (failures.length === 0) return;

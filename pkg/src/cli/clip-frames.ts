@@ -8,7 +8,7 @@ import { VeroneseError } from '../common/errors.js';
 import type { ClipCommand } from './arguments.js';
 import type { FrameFile } from './clip-store.js';
 import { readInput, sha256 } from './files.js';
-import { findFrames, isVideo, readList } from './frames.js';
+import { findFrames, isVideo, leftOutNotes, readList } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
 import { decoded, narrowRange, type Range, rangeNote } from './pair.js';
@@ -127,7 +127,7 @@ export async function clipFrames({ frames: names, list, every, allowDamaged, max
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, maxSize, range: narrowRange(ranges) });
+  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, maxSize, range: narrowRange(ranges), notes: leftOutNotes(names) });
 }
 
 /** Whether an image has several frames: a PNG with the control of an animation, a WebP with its flag. */

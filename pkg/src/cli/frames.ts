@@ -5,6 +5,7 @@ import { readFile } from 'node:fs/promises';
 import { Socket } from 'node:net';
 import { basename, extname, join, parse, sep } from 'node:path';
 import { text } from 'node:stream/consumers';
+import type { Note } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
 import { notFound } from './files.js';
 import { isFileName } from './sequence.js';
@@ -12,6 +13,7 @@ import { isFileName } from './sequence.js';
 const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
 /** Pictures that are not read. */
 export const UNREAD_IMAGE = /\.(tiff?|avif|jp2|j2k|jxl|heic|heif|gif|exr|dng)$/i;
+const READ = 'PNG, JPEG, WebP, BMP or PNM';
 const MAGIC = /[*?[\]]/;
 /** Folders below each other that `**` follows. */
 const DEPTH = 32;
@@ -51,13 +53,26 @@ export function isVideo(name: string): boolean {
   return kind === undefined ? !MAGIC.test(name) && !IMAGE.test(name) : kind === 'file' && !IMAGE.test(name);
 }
 
+/** Says which pictures in folders of frames are not read. */
+export function leftOutNotes(names: readonly string[]): Note[] {
+  return names.filter((name) => kindOf(name) === 'folder').flatMap((name) => {
+    const [first, ...others] = unreadIn(name);
+    if (first === undefined) return [];
+    return [{ code: 'file-left-out', message: `'${name}': not read: ${first}${others.length > 0 ? ` and ${others.length} more` : ''}; frames are ${READ}` }];
+  });
+}
+
+function unreadIn(folder: string): string[] {
+  return entries(folder).filter((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.')).sort(byNumbers);
+}
+
 function framesOf(name: string): string[] {
   const kind = kindOf(name);
   if (kind === 'folder') {
     const frames = entries(name).filter((entry) => IMAGE.test(entry) && !entry.startsWith('.'));
-    const unread = entries(name).find((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.'));
+    const [unread] = unreadIn(name);
     if (frames.length === 0 && unread !== undefined) {
-      throw new VeroneseError('unreadable-image', `no image in the folder '${name}' is read, such as '${unread}': frames are PNG, JPEG, WebP, BMP or PNM`);
+      throw new VeroneseError('unreadable-image', `no image in the folder '${name}' is read, such as '${unread}': frames are ${READ}`);
     }
     if (frames.length === 0) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
     return frames.sort(byNumbers).map((entry) => join(name, entry));
