@@ -90,7 +90,7 @@ for (const found of BROWSERS) {
       const archive = unzipSync(await browser.downloaded('davis.zip'));
       const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
       for (const [index, { name }] of files.entries()) {
-        const { data } = await decodeImage(archive[`davis/Annotations/480p/f00-f05/${name}`]!);
+        const { data } = await decodeImage(archive[`davis/Annotations/480p/f00_to_f05/${name}`]!);
         const labels = Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([...data.subarray(4 * p, 4 * p + 3)].join()) ?? -1);
         expect(differences(labels, clip[index]!)).toBe(0);
       }

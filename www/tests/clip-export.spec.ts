@@ -19,7 +19,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     const formats = page.getByLabel('Format of the clip');
     // An indexed PNG for each frame, under the frame's name.
     const davis = unzipSync((await savedClip(page, 'DAVIS')).bytes);
-    const folder = 'davis/Annotations/480p/f00-f03';
+    const folder = 'davis/Annotations/480p/f00_to_f03';
     expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
     for (const [index, file] of files.entries()) expect(differences(await labelsOfDavis(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
     await expect(listed).toHaveText([`${folder}/f00.png … f03.png, 4 files`, 'davis/ImageSets/2017/val.txt']);

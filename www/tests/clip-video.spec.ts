@@ -70,12 +70,12 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   await openExport(page);
   const preview = page.locator('#clip-preview');
   await page.getByLabel('Format of the clip').selectOption({ label: 'Video, transparent' });
-  await expect(preview.locator('li')).toHaveText(['f00-f03-transparent.webm']);
+  await expect(preview.locator('li')).toHaveText(['f00_to_f03-transparent.webm']);
   await expect(preview.locator('figcaption')).toHaveText('Frame 0');
   expect(share(await pixelsOfPicture(preview.locator('img')), WIDTH, found[0]!, (rgba) => rgba[3] === 255, wanted)).toBe(0);
 
   const transparent = await savedClip(page, 'Video, transparent');
-  expect(transparent.name).toBe('f00-f03-transparent.webm');
+  expect(transparent.name).toBe('f00_to_f03-transparent.webm');
   const cut = await played(page, transparent.bytes, 'video/webm', at);
   expect([cut.width, cut.height]).toEqual([WIDTH, HEIGHT]);
   expect(cut.duration).toBeCloseTo(4 / 25, 2);
@@ -89,7 +89,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   }
 
   const green = await savedClip(page, 'Video, green screen');
-  expect(green.name).toMatch(/^f00-f03-green\.(mp4|webm)$/);
+  expect(green.name).toMatch(/^f00_to_f03-green\.(mp4|webm)$/);
   const screen = await played(page, green.bytes, green.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', at);
   expect([screen.width, screen.height]).toEqual(green.name.endsWith('mp4') ? [WIDTH - 1, HEIGHT - 1] : [WIDTH, HEIGHT]);
   for (const [i, labels] of found.entries()) {

@@ -40,14 +40,14 @@ async function keptWork(page: Page, { copied = true } = {}): Promise<Upload[]> {
   const files = await clipFrames(4);
   await openSegmented(page, files);
   await rename(page, '#objects', 1, 'Disc');
-  await written(page, 'f00-f03.png');
+  await written(page, 'f00 to f03');
   if (copied) await expect.poll(() => copies(page)).toBe(1);
   return files;
 }
 
 /** Goes on with that work by choosing its frames. */
 async function chooseFrames(page: Page, files: Upload[]): Promise<void> {
-  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
+  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00 to f03 4 frames, .*: choose the frames$/ }).click()]);
   await chooser.setFiles(files);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
 }
@@ -70,7 +70,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
 
   await visit(page);
   const work = page.getByRole('region', { name: 'Continue your work' }).getByRole('button');
-  await expect(work).toHaveText(/^f00-f03\.png4 frames, \d\d:\d\d$/);
+  await expect(work).toHaveText(/^f00 to f034 frames, \d\d:\d\d$/);
   expect(await places(page)).toEqual(before);
   await expect(page.locator('#continue details')).toBeHidden();
   // The picture has the frame with its masks: what is orange and blue is not so in the frame.
@@ -86,7 +86,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
   expect(strong.disc[0]! - strong.disc[2]!).toBeGreaterThan(60); // orange
 
   await work.click();
-  await expect(page.locator('#clip-name')).toHaveText('f00-f03.png, 4 frames, 100 × 70');
+  await expect(page.locator('#clip-name')).toHaveText('f00 to f03, 4 frames, 100 × 70');
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 4 frames.');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
   // The open clip is not offered.
@@ -103,7 +103,7 @@ test('the next visit shows the work, and one click opens it with its frames', as
 
   await openExport(page);
   await page.getByText('One project in this browser').click();
-  const forget = page.getByRole('button', { name: 'Forget the project of f00-f03.png' });
+  const forget = page.getByRole('button', { name: 'Forget the project of f00 to f03' });
   // The list is of work that goes on: it tells the size with the copy, and the focus stays.
   await forget.focus();
   const [header] = await headers(page);
@@ -180,13 +180,13 @@ test('of several the newest comes first, and a sample needs no copy', async ({ p
   const work = page.locator('#continue .work');
   await expect(work.first()).toHaveAccessibleName(/^parallax 2 frames, \d\d:\d\d$/);
   await page.getByText('1 more').click();
-  await expect(work.nth(1)).toHaveAccessibleName(/^f00-f03\.png/);
+  await expect(work.nth(1)).toHaveAccessibleName(/^f00 to f03/);
   await work.first().click();
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Window');
   await expect(page.getByRole('button', { name: 'Parallax', exact: true })).toHaveAttribute('aria-current', 'true');
   // Now the clip is the newest that is not open.
-  await expect(work.first()).toHaveAccessibleName(/^f00-f03\.png/);
+  await expect(work.first()).toHaveAccessibleName(/^f00 to f03/);
 });
 
 test('frames that are too large to copy are asked for', { tag: '@soak' }, async ({ page }) => {
@@ -206,7 +206,7 @@ test('copies of frames give way to work when the disk is full', { tag: '@soak' }
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: usage });
   await rename(page, '#objects', 2, 'Box');
   await expect.poll(() => copies(page)).toBe(0);
-  await written(page, 'f00-f03.png');
+  await written(page, 'f00 to f03');
   await expect(page.locator('#notice-code')).toHaveText('');
   await expect(page.locator('#saving button')).toHaveText(/^Saved without its frames/);
 });
@@ -244,7 +244,7 @@ test('work that the browser refuses to keep is shown as not saved', async ({ pag
   await expect(page.getByRole('alert')).toContainText('save the project before you leave');
   expect(await leaves(page)).toBe(false);
   await expect(page.locator('#saving [role=status]')).toHaveText('');
-  expect((await saved(page, saving)).name).toBe('f00-f03.veronese');
+  expect((await saved(page, saving)).name).toBe('f00_to_f03.veronese');
   expect(await leaves(page)).toBe(true);
 });
 
@@ -256,7 +256,7 @@ test('a clip is kept when it is opened, and one whose run a reload ended goes on
   await reloadEmpty(page);
   const work = page.getByRole('region', { name: 'Continue your work' }).getByRole('button');
   await work.click();
-  await expect(page.locator('#clip-name')).toContainText('f00-f03.png');
+  await expect(page.locator('#clip-name')).toContainText('f00 to f03');
   await done(page);
   await expect(page.locator('#clip-status')).toHaveText('');
   await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
@@ -266,12 +266,12 @@ test('a clip is kept when it is opened, and one whose run a reload ended goes on
   await upload(page, await clipFrames(12));
   await expect(page.locator('#clip-detail')).toHaveText(/^[2-9] of 12/);
   await hide(page); // as before a reload
-  await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00-f11') && /"pairs":\{"map":\[\[0/.test(project))).toBe(true);
+  await expect.poll(async () => (await projectsInBrowser(page)).some((project) => project.includes('f00 to f11') && /"pairs":\{"map":\[\[0/.test(project))).toBe(true);
   await expect.poll(() => copies(page)).toBe(2);
   await reloadEmpty(page);
   await page.getByLabel('Segment a clip when it is opened').check();
   const release = await holdBack(page, 'f08.png');
-  await work.filter({ hasText: 'f00-f11' }).click();
+  await work.filter({ hasText: 'f00 to f11' }).click();
   await expect(page.locator('#clip-detail')).toHaveText(/^[2-9] of 12/); // not from the first one on
   await release();
   await clipDone(page);

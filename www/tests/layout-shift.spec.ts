@@ -143,7 +143,7 @@ await told.tap();
     await cut('#status');
     // The whole picture moves as one piece.
     await upload(page, await greyFrames(3, (x, y, k) => wave(x + 2 * k, y)));
-    await expect(page.locator('#clip-name')).toContainText('g0-g2');
+    await expect(page.locator('#clip-name')).toContainText('g0 to g2');
     await done(page);
     const why = 'The whole picture follows one motion, of up to 2\\.\\d pixels: nothing is seen to move by itself\\.';
     await expect(page.locator('#status')).toHaveText(new RegExp(`^(No objects|One motion) found in [\\d.]+\\s+m?s\\. ${why}$`));
@@ -157,7 +157,7 @@ await told.tap();
     // What is around the middle moves.
     await page.evaluate(() => (location.hash = '#motions=auto'));
     await upload(page, await greyFrames(6, (x, y, k) => (Math.abs(x - 48) < 40 && Math.abs(y - 36) < 30 ? wave(3 * x, y) : wave(x + 3 * k, y + 2 * k))));
-    await expect(page.locator('#clip-name')).toContainText('g0-g5');
+    await expect(page.locator('#clip-name')).toContainText('g0 to g5');
     await segmentClip(page);
     await said(page, /it is likely to be the ground\.$/);
     expect(await cut('#clip-status')).toEqual([360, 390, 1280]);

@@ -22,13 +22,13 @@ test('brushing, stepping and exporting a clip need no scrolling at 1280 × 720, 
   await expect(page.locator('#track')).toBeInViewport({ ratio: 1 });
 
   const label = page.locator('#clip-name > span').first();
-  await expect(label).toHaveText(`${name} 0-${name} 3.png`);
-  await expect(page.locator('#clip-name')).toHaveAttribute('title', /camera 3 3\.png, 4 frames, 100\s×\s70$/);
+  await expect(label).toHaveText(`${name} 0 to ${name} 3`);
+  await expect(page.locator('#clip-name')).toHaveAttribute('title', /camera 3 3, 4 frames, 100\s×\s70$/);
   const [told, row] = await page.evaluate(() => ['#clip-name', '#clip-run'].map((part) => document.querySelector(part)!.getBoundingClientRect().height));
   expect(told).toBeLessThanOrEqual(32);
   expect(row).toBeLessThanOrEqual(32);
   await upload(page, frames.map((frame, k) => ({ ...frame, name: `market ${k}.png` })));
-  await expect(label).toHaveText('market 0-market 3.png');
+  await expect(label).toHaveText('market 0 to market 3');
   expect(await label.evaluate((part) => part.scrollWidth <= part.clientWidth)).toBe(true);
 });
 

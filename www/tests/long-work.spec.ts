@@ -14,8 +14,8 @@ test('the title of the tab says how far a clip is and, in the background, that i
   await hide(page);
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await clipDone(page);
-  await expect(page).toHaveTitle(`✓ f00-f07.png · ${own}`);
-  expect((await titles.jsonValue()).filter((title) => /^\d+\u00a0% f00-f07\.png · /.test(title)).length).toBeGreaterThan(1);
+  await expect(page).toHaveTitle(`✓ f00 to f07 · ${own}`);
+  expect((await titles.jsonValue()).filter((title) => /^\d+\u00a0% f00 to f07 · /.test(title)).length).toBeGreaterThan(1);
   await page.evaluate(() => {
     Object.defineProperty(document, 'visibilityState', { value: 'visible', configurable: true });
     document.dispatchEvent(new Event('visibilitychange'));
@@ -57,9 +57,9 @@ test('a correction says how far it is and how long it takes, goes on in the back
   await release();
   await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
-  await expect(page).toHaveTitle(`✓ f00-f11.png · ${own}`);
+  await expect(page).toHaveTitle(`✓ f00 to f11 · ${own}`);
   const { titles, shares } = await told.evaluate(({ titles, shares }) => ({ titles: [...titles], shares: [...shares] }));
-  expect(titles.some((title) => /^\d+\u00a0% f00-f11.png · /.test(title))).toBe(true);
+  expect(titles.some((title) => /^\d+\u00a0% f00 to f11 · /.test(title))).toBe(true);
   expect(Math.max(...shares)).toBe(1);
 
   await cancelWhen(page, /^[2-9] of 12 frames/);

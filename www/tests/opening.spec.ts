@@ -114,12 +114,12 @@ test('a step can be cancelled; a sample that cannot be read leaves the clip open
       await page.getByLabel(`Replace the ${slot} frame`).setInputFiles(await square(`${slot}.png`, 192, 128, 2, 0));
       await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toHaveText(`${slot}.png, 192 × 128`);
     }
-    await expect(page.locator('#clip-name')).toHaveText('first-second.png, 2 frames, 192 × 128');
+    await expect(page.locator('#clip-name')).toHaveText('first and second, 2 frames, 192 × 128');
   });
 
   await test.step('an unreadable frame leaves the timeline where it was', async () => {
     await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
-    await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
+    await expect(page.locator('#clip-name')).toHaveText('f0 to f2, 3 frames, 96 × 64');
     await done(page);
     await page.getByRole('button', { name: 'Second frame: step forward' }).click();
     await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');
@@ -139,7 +139,7 @@ test('frames that are chosen before the page is ready are opened, not the sample
   await page.goto('./', { waitUntil: 'commit' });
   await upload(page, await clipFrames(4));
   release();
-  await expect(page.locator('#clip-name')).toHaveText('f00-f03.png, 4 frames, 100 × 70');
+  await expect(page.locator('#clip-name')).toHaveText('f00 to f03, 4 frames, 100 × 70');
   await done(page);
   await expect(page.locator('#samples [aria-current=true]')).toHaveCount(0);
 });

@@ -14,7 +14,7 @@ function frames(count: number): Promise<Upload[]> {
 async function openPair(page: Page, files: Upload[]): Promise<void> {
   await holdAutomatic(page);
   await upload(page, files);
-  await expect(page.locator('#clip-name')).toHaveText('f0-f1.png, 2 frames, 100 × 64');
+  await expect(page.locator('#clip-name')).toHaveText('f0 and f1, 2 frames, 100 × 64');
   await clipDone(page);
 }
 
@@ -68,7 +68,7 @@ test('two frames have objects in both, which are corrected, undone and kept like
 
   await test.step('replaced and put back, swapped, and after another pair it is as it was', async () => {
     const name = page.locator('#objects .motion-name').nth(1);
-    for (const [k, clip] of [[3, 'f0-f3.png'], [1, 'f0-f1.png']] as const) {
+    for (const [k, clip] of [[3, 'f0 and f3'], [1, 'f0 and f1']] as const) {
       await page.locator('#inspect').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
       await page.getByLabel('Replace the second frame').setInputFiles([files[k]!]);
       await expect(page.locator('#clip-name')).toContainText(clip);
@@ -158,7 +158,7 @@ test('where nothing is kept, leaving asks first only with unsaved corrections; t
   await expect(page.locator('#status')).toHaveText(/^Live/);
   expect(await asks()).toBe(true);
   await page.getByRole('button', { name: 'Stop camera' }).click();
-  await expect(page.locator('#clip-name')).toHaveText(/^camera 1-camera 2\.png/);
+  await expect(page.locator('#clip-name')).toHaveText(/^camera 1 and camera 2,/);
   await upload(page, files);
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
 });

@@ -143,14 +143,14 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   const files = await clipFrames(4);
   const masks = await correctedClip(page, files);
   const project = await savedProject(page);
-  expect(project.name).toBe('f00-f03.veronese');
+  expect(project.name).toBe('f00_to_f03.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
-  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 4, name: 'f00-f03.png', frames: 4 });
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 4, name: 'f00 to f03', frames: 4 });
 
   await openExport(page);
   await page.getByText('One project in this browser').click();
-  await page.getByRole('button', { name: 'Forget the project of f00-f03.png' }).click();
-  await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is forgotten.');
+  await page.getByRole('button', { name: 'Forget the project of f00 to f03' }).click();
+  await expect(page.locator('#notice')).toContainText('The project of “f00 to f03” is forgotten.');
   await expect(page.locator('#projects')).toBeHidden();
   await reopen(page, files);
   await expect(page.locator('#kind-objects')).toBeHidden();
@@ -165,7 +165,7 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   await forgetAll(page);
   await reloadEmpty(page);
   await upload(page, [project]);
-  await expect(page.locator('#notice')).toContainText('The project of “f00-f03.png” is open. Now open its frames');
+  await expect(page.locator('#notice')).toContainText('The project of “f00 to f03” is open. Now open its frames');
   await upload(page, files);
   await isContinued(page, masks, 4);
 });
@@ -227,7 +227,7 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   await openClip(second, files);
   await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 4 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
-  await expect(second.locator('#notice-sentence')).toContainText('“f00-f03.png” is open in another tab');
+  await expect(second.locator('#notice-sentence')).toContainText('“f00 to f03” is open in another tab');
   await rename(second, '#objects', 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);

@@ -4,6 +4,7 @@ import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
 
 import type { Clip } from '../src/clips/clip.js';
+import { inFileNames } from '../src/common/naming.js';
 import { strings } from '../src/common/strings.js';
 import { type Runs, differingPixels, packed, unpacked } from '../src/correction/runs.js';
 import { eachPixel } from '../src/correction/strokes.js';
@@ -92,6 +93,11 @@ test('a link holds the settings, and invalid values are ignored', () => {
   expect(settingsFromHash(new URL(asked).hash).automatic).toBe(false);
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
   expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, automatic: null });
+});
+
+test("a clip's name makes names of files: nothing of it is lost but the extension of a video", () => {
+  const names = [strings.fromTo('00000', '00032', 33), strings.fromTo('shot.0001', 'shot.0033', 33), 'My clip.mp4', 'data/JPEGImages/bear', 'v1.5'];
+  expect(names.map(inFileNames)).toEqual(['00000_to_00032', 'shot.0001_to_shot.0033', 'My_clip', 'data_JPEGImages_bear', 'v1.5']);
 });
 
 test('command and script contain the settings that are not defaults', () => {

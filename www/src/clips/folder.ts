@@ -1,5 +1,6 @@
 //! A folder of frames as a clip, in the order of their names.
 
+import { strings } from '../common/strings.js';
 import { folderOfAll, nameIn } from '../frames/files.js';
 import { fingerprintOfImage } from '../frames/fingerprints.js';
 import { type DecodedFrame, frameFromFile } from '../frames/frame.js';
@@ -30,7 +31,8 @@ class Folder implements Clip {
     readonly sample: Sample | undefined,
   ) {
     this.#path = folderOfAll(files);
-    this.name = this.#path === '' ? fromTo(this.nameOf(0), this.nameOf(files.length - 1)) : this.#path;
+    const [first, last] = [0, files.length - 1].map((index) => this.nameOf(index).replace(/\.[^.]*$/, ''));
+    this.name = this.#path === '' ? strings.fromTo(first!, last!, files.length) : this.#path;
     this.count = files.length;
   }
 
@@ -63,11 +65,6 @@ class Folder implements Clip {
   close(): void {
     this.#closed = true;
   }
-}
-
-/** One name for the files from one to another: "00000-00039.jpg". */
-function fromTo(first: string, last: string): string {
-  return `${first.replace(/\.[^.]*$/, '')}-${last}`;
 }
 
 /** The size of an image as it is shown, without decoding it; `null` if it cannot be read, which choosing the frame reports. */

@@ -129,6 +129,8 @@ export const strings = {
   frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
   stabilised: (name: string): string => `, stabilised on ${name}`,
 
+  /** What frames are called that came without a folder. */
+  fromTo: (first: string, last: string, count: number): string => `${first} ${count === 2 ? 'and' : 'to'} ${last}`,
   clipFacts: (count: number, width: number, height: number): string => `${frames(count)}, ${size(width, height)}`,
   imagesIn: (folder: string, count: number): string => `${folder === '' ? 'No folder' : folder}, ${images(count)}`,
   allImages: (count: number): string => `All ${images(count)}, folder by folder`,

@@ -2,6 +2,7 @@
 
 import type { ClipMeta, LabelFrame } from 'veronese/formats';
 import type { Clip } from '../clips/clip.js';
+import { inFileNames } from '../common/naming.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
 import type { State } from '../state/state.js';
@@ -72,7 +73,7 @@ function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: r
   const wanted = new Set(objects.map(({ id }) => id));
   const sequence = (exported: readonly number[]): Sequence => ({
     meta: {
-      clip: stemOf(clip.name).replace(/[\\/:*?"<>|#]/g, '_'),
+      clip: inFileNames(clip.name),
       names,
       ...(classList.length > 0 && { classes: classList }),
       labels: [...wanted],

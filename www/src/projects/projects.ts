@@ -3,6 +3,7 @@
 
 import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
+import { inFileNames } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { type Sample, sampleCalled } from '../frames/samples.js';
 import { type FramePair, timelineOf } from '../state/pair.js';
@@ -139,7 +140,7 @@ export class Projects {
     if (project === null) return null;
     const content = await fileOf(project, new Date());
     this.#store.set(withSaved(this.#store.get(), project));
-    return { name: `${project.name.replace(/\.[^./]*$/, '').replace(/[\\/:*?"<>|#]/g, '_')}.veronese`, content };
+    return { name: `${inFileNames(project.name)}.veronese`, content };
   }
 
   /** The work on this clip, with a new picture if it is on screen. */
