@@ -1,7 +1,8 @@
 //! Masks of annotation tools, imported into a clip as corrections of its frames.
 
 import { type Page } from '@playwright/test';
-import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeYolo } from 'veronese/formats';
+import { encodeGreyPng } from 'veronese/codecs';
+import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeMots, encodeYolo } from 'veronese/formats';
 
 import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, said, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
@@ -71,6 +72,41 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     await drop([json('f01.json', {})]);
     await expect(notice).toHaveText('Segment the clip first.');
   });
+});
+
+test('masks of which nobody knows how to read them are read as a person chooses', async ({ page }) => {
+  await openSegmented(page, await clipFrames(4));
+  const [sentence, choices, close] = [page.locator('#notice-sentence'), page.locator('#notice-choices button'), page.locator('#notice-close')];
+  const shareAt = (p: number): number => Math.min(1, Math.max(0, (14 - Math.hypot((p % SIZE.width) - 70, Math.floor(p / SIZE.width) - 40)) / 4 + 0.5));
+  const soft = Uint8Array.from({ length: SIZE.width * SIZE.height }, (_, p) => Math.round(255 * shareAt(p)));
+  const grey = { name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodeGreyPng(SIZE.width, SIZE.height, soft)) };
+  await openExport(page);
+  await expect(page.locator('#import-masks')).toBeEnabled();
+  const choose = async (file: Upload, name: string): Promise<void> => {
+    await page.locator('#import-masks').setInputFiles([file]);
+    await page.getByRole('button', { name, exact: true }).click();
+    await expect(page.locator('#notice')).toBeHidden();
+  };
+  await page.locator('#import-masks').setInputFiles([grey]);
+  await expect(sentence).toHaveText(/^'f01\.png': it has .* levels only between others, as smoothed edges or lossy compression give: save it without\.$/);
+  await expect(choices).toHaveText(['Read as a soft mask, above one half', 'Take each level or colour for an object']);
+  await close.click();
+  await expect(page.locator('#undo')).toBeDisabled();
+  await choose(grey, 'Read as a soft mask, above one half');
+  await corrected(page);
+  const [masks] = await masksOf(page, [1]);
+  expect(differences(masks!, soft.map((level) => Number(level >= 128)))).toBe(0);
+
+  const drawn = withBox(new Uint8Array(SIZE.width * SIZE.height), 7, 10);
+  const frames = [new Uint8Array(drawn.length), drawn].map((labels, k) => ({ labels, ...SIZE, image: `f0${k}.png` }));
+  const { gt } = encodeMots(frames, { names: { 7: 'Plate' }, labels: [7] });
+  const text = { name: 'gt.txt', mimeType: 'text/plain', buffer: Buffer.from(gt) };
+  await page.locator('#import-masks').setInputFiles([text]);
+  await expect(sentence).toHaveText('Nothing in these masks tells whether their frames count from 0 or from 1.');
+  await expect(choices).toHaveText(['From 1', 'From 0']);
+  await close.click();
+  await choose(text, 'From 0');
+  await expect.poll(async () => differences((await masksOf(page, [2]))[0]!.map((label) => (label === 7 ? 7 : 0)), drawn)).toBe(0);
 });
 
 test('boxes without masks point to objects; what is left out is said', { tag: '@soak' }, async ({ page }) => {

@@ -9,5 +9,5 @@ export function report(store: Store, error: unknown): void {
 
 /** Reports what ended the work on the pair. */
 export function fail(store: Store, error: unknown): void {
-  store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
+  store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error), choices: [] } });
 }

@@ -103,6 +103,13 @@ export type Refusal = 'storage-full' | 'storage-refused' | 'open-elsewhere';
 export interface Notice {
   readonly sentence: string;
   readonly code: string | null;
+  /** What a person can choose, which ends the notice. */
+  readonly choices: readonly Choice[];
+}
+
+export interface Choice {
+  readonly label: string;
+  readonly choose: () => void;
 }
 
 /** Which frames are open: `session/frames.ts`, and `session/opening.ts` while they are loaded. */
@@ -242,8 +249,8 @@ export class Store {
   }
 
   /** Shows a notice; with a code it is an error. */
-  say(sentence: string, code: string | null = null): void {
-    this.set({ notice: { sentence, code } });
+  say(sentence: string, code: string | null = null, choices: readonly Choice[] = []): void {
+    this.set({ notice: { sentence, code, choices } });
   }
 
   /** Calls `listener` at every change. Returns a function that ends the subscription. */

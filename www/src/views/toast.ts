@@ -1,4 +1,4 @@
-//! The notice over the page: a message, or an error with its code. Messages disappear by themselves; errors stay.
+//! The notice over the page: a message, or an error with its code. Messages disappear by themselves; errors and what can be chosen stay.
 
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
@@ -9,6 +9,7 @@ const SEEN = 6000;
 export function mountToast(root: HTMLElement, store: Store): void {
   const sentence = find(root, '#notice-sentence', HTMLElement);
   const code = find(root, '#notice-code', HTMLElement);
+  const choices = find(root, '#notice-choices', HTMLElement);
   let going = 0;
   const close = (): void => store.set({ notice: null });
   find(root, '#notice-close', HTMLButtonElement).addEventListener('click', close);
@@ -16,7 +17,7 @@ export function mountToast(root: HTMLElement, store: Store): void {
   const goSoon = (): void => {
     clearTimeout(going);
     const { notice } = store.get();
-    if (notice !== null && notice.code === null) going = window.setTimeout(close, SEEN);
+    if (notice?.code === null && notice.choices.length === 0) going = window.setTimeout(close, SEEN);
   };
   // Not while it is hovered or focused.
   for (const event of ['pointerenter', 'focusin']) root.addEventListener(event, () => clearTimeout(going));
@@ -30,6 +31,14 @@ export function mountToast(root: HTMLElement, store: Store): void {
     root.classList.toggle('error', notice?.code != null);
     sentence.replaceChildren(...(notice === null ? [] : written(asSentence(notice.sentence))));
     code.textContent = notice?.code ?? '';
+    choices.replaceChildren(...(notice?.choices ?? []).map(({ label, choose }) => {
+      const button = Object.assign(element('button', label, 'button small'), { type: 'button' });
+      button.addEventListener('click', () => {
+        close();
+        choose();
+      });
+      return button;
+    }));
     goSoon();
   });
 }

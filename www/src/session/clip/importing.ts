@@ -1,7 +1,7 @@
 //! Masks from files of annotation tools, taken as corrections of the frames that they are of. Loaded on first use, with its texts.
 
-import { type AnnotationNote, readAnnotations } from 'veronese/formats';
-import { PageError } from '../../common/errors.js';
+import { type AnnotationNote, type AnnotationOptions, readAnnotations } from 'veronese/formats';
+import { PageError, codeOf, sentenceOf } from '../../common/errors.js';
 import { strings, withNotes } from '../../common/strings.js';
 import { packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
@@ -25,6 +25,10 @@ const texts = {
   none: (left: readonly string[]): string => `No frame with masks here is called ${listed(left)}.`,
   otherSize: (name: string, other: Size, all: Size): string =>
     `The masks of “${name}” are ${strings.size(other.width, other.height)}, the frames ${strings.size(all.width, all.height)}.`,
+  soft: 'Read as a soft mask, above one half',
+  exact: 'Take each level or colour for an object',
+  firstFrame: 'Nothing in these masks tells whether their frames count from 0 or from 1.',
+  from: (number: 0 | 1): string => `From ${number}`,
 };
 
 /** The first names, and how many others there are. */
@@ -39,6 +43,8 @@ const NO_PICTURES = /\.(json|xml|zip|txt|ya?ml)$/i;
 const YOLO = /^\s*\d+(\s+[\d.e+-]+){4}/;
 /** Of the header of a PNG: the place of its colour type, and that of indices into a palette. */
 const PNG = { colourType: 25, indexed: 3 };
+/** The part of an error of masks that look smoothed which names options of the command line. */
+const LEVELS = /, or say with --levels .*$/s;
 /** The class of objects that were given none. */
 const CLASS = 'object';
 
@@ -57,21 +63,30 @@ export async function areMasks(files: readonly File[], { tracked }: State): Prom
   return type === PNG.indexed;
 }
 
-/** One step of undo. What cannot be taken ends as a notice. */
-export async function importMasks(files: readonly File[], store: Store, objects: Objects, shown: Shown): Promise<void> {
+/** How files are to be read that do not tell it themselves. */
+type Said = Pick<AnnotationOptions, 'levels' | 'firstFrame'>;
+
+/** One step of undo. What cannot be taken ends as a notice, in which a person can choose how to read what nobody knows. */
+export async function importMasks(files: readonly File[], store: Store, objects: Objects, shown: Shown, said: Said = {}): Promise<void> {
+  const choice = (label: string, more: Said) => ({ label, choose: () => void importMasks(files, store, objects, shown, { ...said, ...more }) });
   const { tracked } = store.get();
   if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
   try {
-    const imported = await masksFrom(files, tracked);
+    const imported = await masksFrom(files, tracked, said);
     const { painted, prompts, classes, left, notes } = imported;
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
+    if (notes.some(({ code }) => code === 'first-frame-assumed')) {
+      return store.say(texts.firstFrame, null, ([1, 0] as const).map((firstFrame) => choice(texts.from(firstFrame), { firstFrame })));
+    }
     shown.kind('objects');
     void objects.carrying.correct({ annotations: annotationsOf(imported, tracked), notes: objects.withClasses(classes) });
     const taken = new Set([...painted.keys(), ...prompts.map(({ frame }) => frame)]).size;
     const sentence = withNotes(left.length > 0 ? texts.taken(taken, left) : '', notes).trim();
     if (sentence !== '') store.say(sentence);
   } catch (error) {
-    report(store, error);
+    const sentence = sentenceOf(error);
+    if (!LEVELS.test(sentence)) return report(store, error);
+    store.say(sentence.replace(LEVELS, ''), codeOf(error), [choice(texts.soft, { levels: 128 }), choice(texts.exact, { levels: 'exact' })]);
   }
 }
 
@@ -97,11 +112,11 @@ interface Imported {
 }
 
 /** Throws the package's errors, or a {@link PageError} if no frame is one of the clip's or the sizes differ. */
-async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Imported> {
+async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): Promise<Imported> {
   const { clip, frames, spans } = tracked;
   const read = async (file: File) => ({ name: pathOf(file).join('/'), bytes: new Uint8Array(await file.arrayBuffer()) });
   const stems = stemsOf(tracked);
-  const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems, size: { width: clip.width, height: clip.height } });
+  const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems, size: { width: clip.width, height: clip.height }, ...said });
   const indices = new Map(stems.map((stem, index) => [keyOf(stem), index]));
   const masked = (name: string) => {
     const index = indices.get(keyOf(name)) ?? -1;
