@@ -255,7 +255,7 @@ describe('numbers', () => {
     assert.deepEqual(frames(line(1) + line(2)), ['00000', '00001']);
     assert.deepEqual(frames(line(1) + line(2), { firstFrame: 0 }), ['00001', '00002']);
     assert.throws(() => frames(line(1), { firstFrame: 2 }), { code: 'invalid-option' });
-    const message = "nothing in 'a.txt' tells whether its frames count from 0 or from 1: from 1, as MOTS has them, unless --first-frame 0 says otherwise";
+    const message = "'a.txt': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame";
     const clip = ['a', 'b', 'c'];
     const notes = (text, options) => read(text, options).notes;
     for (const options of [{}, { frames: clip }]) assert.deepEqual(notes(line(1) + line(2), options), [{ code: 'first-frame-assumed', message }]);

@@ -89,7 +89,7 @@ test('masks of which nobody knows how to read them are read as a person chooses'
   };
   await page.locator('#import-masks').setInputFiles([grey]);
   await expect(sentence).toHaveText(/^'f01\.png': it has .* levels only between others, as smoothed edges or lossy compression give: save it without\.$/);
-  await expect(choices).toHaveText(['Read as a soft mask, above one half', 'Take each level or colour for an object']);
+  await expect(choices).toHaveText(['Read as a soft mask, above one half', 'Take each level for an object']);
   await close.click();
   await expect(page.locator('#undo')).toBeDisabled();
   await choose(grey, 'Read as a soft mask, above one half');
@@ -102,10 +102,10 @@ test('masks of which nobody knows how to read them are read as a person chooses'
   const { gt } = encodeMots(frames, { names: { 7: 'Plate' }, labels: [7] });
   const text = { name: 'gt.txt', mimeType: 'text/plain', buffer: Buffer.from(gt) };
   await page.locator('#import-masks').setInputFiles([text]);
-  await expect(sentence).toHaveText('Nothing in these masks tells whether their frames count from 0 or from 1.');
-  await expect(choices).toHaveText(['From 1', 'From 0']);
+  await expect(sentence).toHaveText("'gt.txt': nothing tells whether its first frame is 0 or 1.");
+  await expect(choices).toHaveText(['It is 1', 'It is 0']);
   await close.click();
-  await choose(text, 'From 0');
+  await choose(text, 'It is 0');
   await expect.poll(async () => differences((await masksOf(page, [2]))[0]!.map((label) => (label === 7 ? 7 : 0)), drawn)).toBe(0);
 });
 

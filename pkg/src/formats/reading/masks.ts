@@ -187,7 +187,7 @@ function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array
 }
 
 function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
-  if (isColour && isRounded) throw invalidInput('it has colours of 16 bits that 8 bits do not hold: save it with 8 bits, or the numbers of its objects as grey levels');
+  if (isColour && isRounded) throw invalidInput('it has colours of 16 bits that 8 do not hold: save it with 8, or as grey levels');
   const all = [...valuesIn(values)];
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
   const objects = all.filter((value) => value !== ground);

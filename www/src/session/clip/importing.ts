@@ -7,7 +7,7 @@ import { packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
-import type { State, Store } from '../../state/state.js';
+import type { Choice, State, Store } from '../../state/state.js';
 import type { Annotation, Prompt } from '../../state/annotation.js';
 import type { Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
@@ -26,9 +26,8 @@ const texts = {
   otherSize: (name: string, other: Size, all: Size): string =>
     `The masks of “${name}” are ${strings.size(other.width, other.height)}, the frames ${strings.size(all.width, all.height)}.`,
   soft: 'Read as a soft mask, above one half',
-  exact: 'Take each level or colour for an object',
-  firstFrame: 'Nothing in these masks tells whether their frames count from 0 or from 1.',
-  from: (number: 0 | 1): string => `From ${number}`,
+  exact: 'Take each level for an object',
+  first: 'It is ',
 };
 
 /** The first names, and how many others there are. */
@@ -43,8 +42,8 @@ const NO_PICTURES = /\.(json|xml|zip|txt|ya?ml)$/i;
 const YOLO = /^\s*\d+(\s+[\d.e+-]+){4}/;
 /** Of the header of a PNG: the place of its colour type, and that of indices into a palette. */
 const PNG = { colourType: 25, indexed: 3 };
-/** The part of an error of masks that look smoothed which names options of the command line. */
-const LEVELS = /, or say with --levels .*$/s;
+/** The part of a sentence that names options of the command line, in whose place there are choices. */
+const OPTIONS = /(, or|, taken is 1:) say with --.*$/s;
 /** The class of objects that were given none. */
 const CLASS = 'object';
 
@@ -69,15 +68,15 @@ type Said = Pick<AnnotationOptions, 'levels' | 'firstFrame'>;
 /** One step of undo. What cannot be taken ends as a notice, in which a person can choose how to read what nobody knows. */
 export async function importMasks(files: readonly File[], store: Store, objects: Objects, shown: Shown, said: Said = {}): Promise<void> {
   const choice = (label: string, more: Said) => ({ label, choose: () => void importMasks(files, store, objects, shown, { ...said, ...more }) });
+  const ask = (sentence: string, code: string | null, choices: readonly Choice[]) => store.say(sentence.replace(OPTIONS, ''), code, choices);
   const { tracked } = store.get();
   if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
   try {
     const imported = await masksFrom(files, tracked, said);
     const { painted, prompts, classes, left, notes } = imported;
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
-    if (notes.some(({ code }) => code === 'first-frame-assumed')) {
-      return store.say(texts.firstFrame, null, ([1, 0] as const).map((firstFrame) => choice(texts.from(firstFrame), { firstFrame })));
-    }
+    const unknown = notes.find(({ code }) => code === 'first-frame-assumed');
+    if (unknown) return ask(unknown.message, null, ([1, 0] as const).map((firstFrame) => choice(texts.first + firstFrame, { firstFrame })));
     shown.kind('objects');
     void objects.carrying.correct({ annotations: annotationsOf(imported, tracked), notes: objects.withClasses(classes) });
     const taken = new Set([...painted.keys(), ...prompts.map(({ frame }) => frame)]).size;
@@ -85,8 +84,8 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     if (sentence !== '') store.say(sentence);
   } catch (error) {
     const sentence = sentenceOf(error);
-    if (!LEVELS.test(sentence)) return report(store, error);
-    store.say(sentence.replace(LEVELS, ''), codeOf(error), [choice(texts.soft, { levels: 128 }), choice(texts.exact, { levels: 'exact' })]);
+    if (!OPTIONS.test(sentence)) return report(store, error);
+    ask(sentence, codeOf(error), [choice(texts.soft, { levels: 128 }), choice(texts.exact, { levels: 'exact' })]);
   }
 }
 
