@@ -6,10 +6,12 @@
 //!
 //! * A box begins with the ellipse in it; outside there is no object.
 //! * How far the object of a click reaches is open. Discs of several sizes begin, and the regions with one label or motion that the click
-//!   is in; the masks that come of them vote, each by how well it agrees with the others. What enough votes say begins the last fit.
+//!   is in; the masks that come of them vote, each by how well it agrees with the others. What has enough votes is the object.
 //!
 //! Clicks refine a mask in their order: each adds the part around it, or takes it away, as far as looks and labels near it say, and
 //! changes nothing else; a separate piece goes as a whole. How far that reaches is open as well, up to what is as the click says already.
+//! Where a click says that the mask is wrong, another one that came of earlier clicks may be right: what that changes around the click is a
+//! part, too. People click the middle of what is wrong, so parts vote by how near the click is to the deepest of their pixels.
 //! Other annotations make no difference to the mask: the same prompt always points to the same object, and takes nothing from what others
 //! have.
 
@@ -40,6 +42,10 @@ struct View<'a> {
     sure: Vec<u8>,
     /// Where the object may be.
     limit: Area,
+    /// The mask as the clicks so far leave it.
+    mask: Vec<u8>,
+    /// Masks that may be meant instead: of every beginning so far, with what clicks have changed since.
+    others: Vec<Vec<u8>>,
 }
 
 /// The beginning of a fit.
@@ -77,10 +83,13 @@ pub(super) fn outline(
         columns: scaled(x..x + columns, features.size[0]),
         rows: scaled(y..y + rows, features.size[1]),
     });
-    let mut view = View { features, found, sure: vec![2; features.pixels()], limit };
+    let nothing = vec![0; features.pixels()];
+    let mut view = View { features, found, sure: vec![2; features.pixels()], limit, mask: nothing, others: Vec::new() };
     let clicks: Vec<(usize, bool)> =
         prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
-    let mut refined = if prompt.within.is_some() { view.boxed() } else { vec![0; features.pixels()] };
+    if prompt.within.is_some() {
+        view.mask = view.boxed();
+    }
     for (at, inside) in &clicks {
         let click = features.pixel(*at, width);
         let centre = view.place(click);
@@ -89,9 +98,9 @@ pub(super) fn outline(
                 view.sure[p] = u8::from(!inside);
             }
         }
-        refined = view.refined(refined, click, *inside);
+        view.refine(click, *inside);
     }
-    let mut mask = upsample(&refined, features.size, 2, frame.luminance(), &Model::DEFAULT);
+    let mut mask = upsample(&view.mask, features.size, 2, frame.luminance(), &Model::DEFAULT);
     if let Some([x, y, columns, rows]) = prompt.within {
         let area = Area { columns: x..x + columns, rows: y..y + rows };
         let is_empty = !area.pixels(width).any(|p| mask[p] > 0);
@@ -124,15 +133,35 @@ impl View<'_> {
         self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &seen)
     }
 
-    /// A mask with the part around a click that is the object's, or without the part around one that is not.
-    fn refined(&self, mut mask: Vec<u8>, click: usize, inside: bool) -> Vec<u8> {
-        if (mask[click] > 0) == inside {
-            return mask;
+    /// Adds to the mask the part around a click that is the object's, or takes away the part around one that is not.
+    fn refine(&mut self, click: usize, inside: bool) {
+        if (self.mask[click] > 0) == inside {
+            return;
         }
-        if let Some(piece) = self.piece(&mask, click).filter(|_| !inside) {
-            mask.iter_mut().zip(piece).for_each(|(mask, is_in)| *mask ^= is_in);
-            return mask;
+        if !self.mask.contains(&1) {
+            // The first click is in the middle of many a part of the object, too: its depth says little.
+            let parts = self.parts(click, inside);
+            self.mask = self.elected(&parts, &agreements(&parts), click);
+            self.others = parts;
+            return;
         }
+        let part = self.piece(click).filter(|_| !inside).unwrap_or_else(|| {
+            let mut parts = self.parts(click, inside);
+            let of_others: Vec<Vec<u8>> = self.others.iter().map(|other| self.change(other, click, inside)).collect();
+            let changed = |part: &Vec<u8>| self.mask.iter().zip(part).map(|(mask, is_in)| mask ^ is_in).collect();
+            let now: Vec<Vec<u8>> = parts.iter().map(changed).collect();
+            self.others.extend(now);
+            parts.extend(of_others);
+            let central: Vec<f32> = parts.iter().map(|part| centrality(part, click, self.features.size[0])).collect();
+            self.elected(&parts, &central, click)
+        });
+        for mask in std::iter::once(&mut self.mask).chain(&mut self.others) {
+            mask.iter_mut().zip(&part).filter(|(_, is_in)| **is_in > 0).for_each(|(mask, _)| *mask = u8::from(inside));
+        }
+    }
+
+    /// The parts by which the mask may change as a click says, of beginnings of several sizes.
+    fn parts(&self, click: usize, inside: bool) -> Vec<Vec<u8>> {
         let (pixels, [width, height]) = (self.features.pixels(), self.features.size);
         let centre = self.place(click);
         let whole = 1.0 - model().rim;
@@ -140,7 +169,7 @@ impl View<'_> {
             let area = Area::of(&[click], width).grown((radius / whole) as usize + 1, width, height);
             self.ellipse(area, centre, [radius; 2], [whole, 1.0 / whole])
         };
-        let same = (0..pixels).filter(|&p| (mask[p] > 0) == inside).map(|p| self.square(p, centre, [1.0; 2]));
+        let same = (0..pixels).filter(|&p| (self.mask[p] > 0) == inside).map(|p| self.square(p, centre, [1.0; 2]));
         let reach = same.fold(f32::INFINITY, f32::min).sqrt().max(2.0);
         // From the side of a cell on, or half the way to what is as the click says.
         let longest = width.max(height) as f32;
@@ -149,33 +178,22 @@ impl View<'_> {
         // A third of the longer side.
         let discs = radii.take_while(|radius| 3.0 * *radius < longest && *radius <= reach).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
-        let parts: Vec<Vec<u8>> = discs.chain(regions).map(|from| self.part(click, &mask, inside, from)).collect();
-        let mut votes = vec![0.0f32; pixels];
-        let mut total = 0.0;
-        for part in &parts {
-            let others = parts.iter().map(|other| overlap(part, other)).sum::<f32>() - 1.0;
-            votes.iter_mut().zip(part).for_each(|(votes, &is_in)| *votes += others * others * f32::from(is_in));
-            total += others * others;
-        }
-        votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
-        let side = u8::from(!inside);
-        let agreed: Vec<usize> = (0..pixels)
-            .filter(|&p| match self.sure[p] {
-                2 => votes[p] > model().votes,
-                sure => sure == side,
-            })
-            .collect();
-        let mut sides = vec![1; pixels];
-        agreed.iter().for_each(|&p| sides[p] = 0);
-        let odds = votes.iter().map(|votes| 2.0 * model().beginning * (votes - model().votes)).collect();
-        let part = self.part(click, &mask, inside, Beginning { area: Area::of(&agreed, width), odds, sides });
-        mask.iter_mut().zip(part).for_each(|(mask, is_in)| *mask ^= is_in);
-        mask
+        discs.chain(regions).map(|from| self.part(click, inside, from)).collect()
     }
 
-    /// The connected part of a mask around a click, if it has no click of the object and is not the largest.
-    fn piece(&self, mask: &[u8], click: usize) -> Option<Vec<u8>> {
-        let parts = components(mask, self.features.size[0], Connectivity::Four);
+    /// The connected pixels around a click that are in parts with enough of the votes.
+    fn elected(&self, parts: &[Vec<u8>], weights: &[f32], click: usize) -> Vec<u8> {
+        let mut votes = vec![0.0f32; self.features.pixels()];
+        for (part, weight) in parts.iter().zip(weights) {
+            votes.iter_mut().zip(part).for_each(|(votes, &is_in)| *votes += weight * f32::from(is_in));
+        }
+        let enough = model().votes * weights.iter().sum::<f32>();
+        self.connected(click, &|p| votes[p] > enough)
+    }
+
+    /// The connected part of the mask around a click, if it has no click of the object and is not the largest.
+    fn piece(&self, click: usize) -> Option<Vec<u8>> {
+        let parts = components(&self.mask, self.features.size[0], Connectivity::Four);
         let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max()?;
         let own = parts.of[click];
         let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == 0);
@@ -183,9 +201,9 @@ impl View<'_> {
         is_separate.then(|| parts.of.iter().map(|&part| u8::from(part == own)).collect())
     }
 
-    /// The connected part around a click by which a mask changes as the click says, in a fit that begins with `from` being that part.
-    fn part(&self, click: usize, mask: &[u8], inside: bool, from: Beginning) -> Vec<u8> {
-        let (features, width) = (self.features, self.features.size[0]);
+    /// The connected part around a click by which the mask changes as the click says, in a fit that begins with `from` being that part.
+    fn part(&self, click: usize, inside: bool, from: Beginning) -> Vec<u8> {
+        let (features, mask, width) = (self.features, &self.mask, self.features.size[0]);
         let own: Vec<usize> = (0..mask.len()).filter(|&p| mask[p] > 0).collect();
         let fit = if own.is_empty() {
             let area = self.around(&from.area, &self.limit);
@@ -207,11 +225,20 @@ impl View<'_> {
             let sides = mask.iter().zip(&from.sides).map(side).collect();
             self.fitted(Beginning { area, odds, sides }, &seen)
         };
+        self.change(&fit, click, inside)
+    }
+
+    /// The connected part around a click by which the mask becomes another one as the click says, and no click says otherwise.
+    fn change(&self, other: &[u8], click: usize, inside: bool) -> Vec<u8> {
         let own = u8::from(inside);
-        let mut part: Vec<u8> = fit.iter().zip(mask).map(|(&fit, &mask)| u8::from(fit == own && mask != own)).collect();
-        let parts = components(&part, width, Connectivity::Four);
-        part.iter_mut().enumerate().for_each(|(p, is_in)| *is_in &= u8::from(parts.of[p] == parts.of[click]));
-        part
+        self.connected(click, &|p| other[p] == own && self.mask[p] != own && self.sure[p] != own)
+    }
+
+    /// The connected pixels of some kind around a click.
+    fn connected(&self, click: usize, is_in: &dyn Fn(usize) -> bool) -> Vec<u8> {
+        let all: Vec<u8> = (0..self.features.pixels()).map(|p| u8::from(is_in(p))).collect();
+        let parts = components(&all, self.features.size[0], Connectivity::Four);
+        all.iter().zip(&parts.of).map(|(is_in, part)| is_in & u8::from(*part == parts.of[click])).collect()
     }
 
     /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
@@ -301,11 +328,48 @@ impl View<'_> {
 }
 
 /// Intersection over union.
-fn overlap(one: &[u8], other: &[u8]) -> f32 {
+pub(super) fn overlap(one: &[u8], other: &[u8]) -> f32 {
     let (mut both, mut either) = (0usize, 0usize);
     for (one, other) in one.iter().zip(other) {
         both += usize::from(one & other);
         either += usize::from(one | other);
     }
     both as f32 / either.max(1) as f32
+}
+
+/// How well each part agrees with the others: the square of its summed overlaps with them. One alone has some weight, too.
+fn agreements(parts: &[Vec<u8>]) -> Vec<f32> {
+    let of = |part: &Vec<u8>| parts.iter().map(|other| overlap(part, other)).sum::<f32>() - 1.0;
+    parts.iter().map(|part| of(part).powi(2).max(f32::EPSILON)).collect()
+}
+
+/// How near a pixel is to the deepest one of a part: the fourth power of its share of that depth.
+fn centrality(part: &[u8], pixel: usize, width: usize) -> f32 {
+    let squares = squared_depths(part, width);
+    let deepest = squares.iter().copied().max().unwrap_or(0).max(1);
+    (squares[pixel] as f32 / deepest as f32).powi(2)
+}
+
+/// Squared distance of each pixel of a part from what is not in it, or beyond the frame.
+fn squared_depths(part: &[u8], width: usize) -> Vec<usize> {
+    // Along columns, then the nearest of each row.
+    let mut along = vec![0usize; part.len()];
+    for p in (0..part.len()).filter(|&p| part[p] > 0) {
+        along[p] = 1 + p.checked_sub(width).map_or(0, |above| along[above]);
+    }
+    for p in (0..part.len()).rev().filter(|&p| part[p] > 0) {
+        along[p] = along[p].min(1 + along.get(p + width).copied().unwrap_or(0));
+    }
+    let nearest = |row: &[usize], x: usize| {
+        let mut least = row[x] * row[x];
+        let mut aside = 1;
+        while aside * aside < least {
+            let left = x.checked_sub(aside).map_or(0, |left| row[left]);
+            let depth = left.min(row.get(x + aside).copied().unwrap_or(0));
+            least = least.min(aside * aside + depth * depth);
+            aside += 1;
+        }
+        least
+    };
+    along.chunks_exact(width).flat_map(|row| (0..width).map(move |x| nearest(row, x))).collect()
 }
