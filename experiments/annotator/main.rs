@@ -6,6 +6,7 @@ mod boundary;
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod cases;
 mod fit;
+mod harm;
 mod measure;
 mod objects;
 mod overlap;
@@ -35,6 +36,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
 
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each; writes measure.jsonl
+  harm           what a true mask of one frame, and rounds of strokes, do to the other frames: the same; writes harm.jsonl
   points         frames of the real clips with a box or clicks: the same; writes points.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
   pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
@@ -44,6 +46,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --only A,B         only clips whose name contains one of these
   --quality Q        fast or best; default best
   --rounds N         rounds of strokes; default 4
+  --at K,L           harm: the frames whose true masks are given; default the middle one
   --jobs N           clips at once; default one for each core
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
@@ -61,6 +64,7 @@ pub(crate) struct Options {
     only: Vec<String>,
     pub(crate) quality: Quality,
     pub(crate) rounds: usize,
+    pub(crate) at: Vec<usize>,
     jobs: Option<usize>,
     pub(crate) out: PathBuf,
     pub(crate) model: ClipModel,
@@ -78,6 +82,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         only: Vec::new(),
         quality: Quality::Best,
         rounds: 4,
+        at: Vec::new(),
         jobs: None,
         out: "out/annotator".into(),
         model: ClipModel::DEFAULT,
@@ -87,7 +92,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "points" | "objects" | "pairs" | "fit" => options.step = name,
+            "frames" | "measure" | "harm" | "points" | "objects" | "pairs" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -98,6 +103,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
                 };
             }
             "--rounds" => options.rounds = number(value()?)?,
+            "--at" => options.at = value()?.split(',').map(|text| number(text.to_owned())).collect::<Result<_, _>>()?,
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
             "--set" => set(&mut options.model, &value()?)?,
@@ -105,7 +111,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, points, objects, pairs or fit.".into()),
+        true => Err("Say which step: frames, measure, harm, points, objects, pairs or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -132,6 +138,11 @@ fn run(options: &Options) -> Result<(), Failure> {
             options.on_all(&cases, |case| objects::measure(case, options)).map(drop)
         }
         "points" => options.on_all(&options.real()?, |case| points::measure(case, options)).map(drop),
+        "harm" => {
+            let rows = options.on_all(&options.real()?, |case| harm::measure(case, options))?;
+            harm::print_summary(&rows.concat());
+            Ok(())
+        }
         "pairs" => options.on_all(&options.real()?, |case| pairs::measure(case, options)).map(drop),
         _ => options.on_all(&options.real()?, |case| measure::measure(case, options)).map(drop),
     }

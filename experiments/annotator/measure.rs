@@ -6,6 +6,7 @@ use serde::Serialize;
 use veronese::clip::{Click, Prompt, Spread};
 
 use crate::cases::{Case, Data};
+use crate::harm::Change;
 use crate::overlap::{between, each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View, depths};
 use crate::session::{Effort, Session};
@@ -93,7 +94,7 @@ fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Optio
     let mut effort = session.effort;
     let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(automatic, prompt, &truths));
     let (boxed, touched) = (boxed?, touched?);
-    let Rounds { click, rounds, far_lost, seconds: round_seconds, effort: of_rounds } =
+    let Rounds { click, rounds, far_lost, seconds: round_seconds, effort: of_rounds, .. } =
         corrected(case, data, automatic, options)?;
     let (others_changed, accepted_changed) =
         (others_changed(automatic, width)?, accepted_changed(automatic, &truths, width)?);
@@ -148,23 +149,30 @@ fn given<'a>(automatic: &Session<'a>, truths: &[Vec<bool>]) -> Result<(Session<'
 }
 
 /// What a click gives, and rounds of strokes after it.
-struct Rounds {
+pub(crate) struct Rounds {
     click: f64,
     /// J, that of the click first.
     rounds: Vec<f64>,
     far_lost: [usize; 2],
+    /// What each round did to the other frames.
+    pub(crate) changes: Vec<Change>,
     seconds: Vec<f64>,
     effort: Effort,
 }
 
-fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Options) -> Result<Rounds, Failure> {
+pub(crate) fn corrected(
+    case: &Case,
+    data: &Data,
+    automatic: &Session<'_>,
+    options: &Options,
+) -> Result<Rounds, Failure> {
     let (width, truths) = (width_of(case, data)?, truths_of(data));
     let (count, pixels) = (truths.len(), truths[0].len());
     let (label, click) = best_label(&automatic.labels, &truths)
         .unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
     let label = if click < FITS { NEW } else { label };
     let mut session = automatic.clone();
-    let (mut rounds, mut seconds) = (vec![click], Vec::new());
+    let (mut rounds, mut changes, mut seconds) = (vec![click], Vec::new(), Vec::new());
     let mut strokes: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
     let mut far_lost = [0; 2];
     for _ in 0..options.rounds {
@@ -176,14 +184,16 @@ fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Option
         let last = each(&found, &truths);
         session.paint(worst, said)?;
         seconds.push((session.effort.time - before).as_secs_f64());
-        let now = each(&masks(&session.labels, label), &truths);
+        let after = masks(&session.labels, label);
+        changes.push(Change::between([&found, &after], &truths, |t| t == worst));
+        let now = each(&after, &truths);
         for t in (0..now.len()).filter(|t| strokes.keys().all(|stroke| stroke.abs_diff(*t) > FAR)) {
             far_lost[1] += 1;
             far_lost[0] += usize::from(now[t] <= last[t] - LOSS);
         }
         rounds.push(mean(&now));
     }
-    Ok(Rounds { click, rounds, far_lost, seconds, effort: session.effort })
+    Ok(Rounds { click, rounds, far_lost, changes, seconds, effort: session.effort })
 }
 
 /// Draws a box around ground in the last frame but one, and counts the pixels of what was found that become anything but its object.

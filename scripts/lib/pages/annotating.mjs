@@ -4,6 +4,7 @@ import { amount, fixed, mean, origin, score, table, whole } from './table.mjs';
 
 export const PARTS = {
   object: ['annotator', (figures) => `${origin(figures)} Quality *${figures.quality}*.\n\n${object(figures)}`],
+  harm: ['annotator', harm],
   points: ['annotator', points],
   objects: ['annotator', objects],
   strokes: ['annotator', strokes],
@@ -51,6 +52,26 @@ function object({ real }) {
   ]);
   const titles = ['clips', 'fall in a round', 'far frames that lose', 'worst third, last round', 'worst third, mask', 'pixels of others', 'pixels of accepted'];
   return `${table(['clips', ...[...scores, ...times].map(([title]) => title)], rows)}\n\n${table(titles, trust)}`;
+}
+
+function harm({ harm }) {
+  if (harm.length === 0) return '';
+  const rounds = Math.max(...harm.map(({ rounds }) => rounds.length));
+  const ways = [
+    ['the true mask painted', ({ painted }) => painted],
+    ['the true mask outlined', ({ outlined }) => outlined],
+    ...Array.from({ length: rounds }, (_, k) => [`round ${k + 1} of strokes`, ({ rounds }) => rounds[k]]),
+  ];
+  const rows = ways.map(([name, of]) => {
+    const changes = harm.map(of).filter(Boolean);
+    const sum = (of) => changes.reduce((all, change) => all + of(change), 0);
+    const worse = changes.filter(({ before, after }) => after < before - 0.01).length;
+    const [before, after] = [({ before }) => before, ({ after }) => after].map((of) => score(mean(changes.map(of))));
+    const right = sum(({ mended }) => mended);
+    const wrong = sum(({ spoilt }) => spoilt);
+    return [`${name} (${changes.length})`, before, after, worse, whole(right / 1000), whole(wrong / 1000), fixed(wrong / right, 2)];
+  });
+  return table(['what is said of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'], rows);
 }
 
 function points({ points }) {
