@@ -21,7 +21,10 @@ export function placesBy(decode: (place: FrameFile, maxSize: number | undefined)
       // Two frames of pixels are taken at once, and held no longer than by the call itself.
       if (![first, second].some(isPlace)) return call(first as Pixels, second as Pixels, options);
       const { maxSize } = Object(options) as SegmentOptions;
-      return Promise.all([frame(first, maxSize), frame(second, maxSize)]).then(([one, other]) => call(one as Pixels, other as Pixels, options));
+      const frames = [frame(first, maxSize), frame(second, maxSize)];
+      // Of two that fail the first is named, whichever fails sooner.
+      const settled = Promise.allSettled(frames).then(() => Promise.all(frames));
+      return settled.then(([one, other]) => call(one as Pixels, other as Pixels, options));
     };
   return { frame, pair };
 }
