@@ -300,7 +300,7 @@ model! {
     found: f32 = 2.0;
     /// Largest log-likelihood ratio of a label found automatically, nats. Real.
     labels: f32 = 2.0;
-    /// Odds with which the fit of a prompt begins, nats: of the middle of a box or a disc, of a region, of votes. 1.5 costs .03 J where a click
+    /// Odds with which the fit of a prompt begins, nats: of the middle of a box or a disc, of a region. 1.5 costs .03 J where a click
     /// is given. Real.
     beginning: f32 = 2.0;
     /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .002 J after the second
@@ -391,6 +391,8 @@ model! {
     unseen: f32 = 0.2;
     /// How much better than usual a shift must be at which a hidden object is seen again, mean truncated difference.
     distinct: f32 = 0.1;
+    /// IoU of an object before and after strokes above which they have changed only part of it. Insensitive from .65 to .8. Real.
+    part: f32 = 0.65;
     /// Least probability from which an object is expected at a pixel.
     expected: f32 = 0.1;
     /// Least probability from which a pixel counts for the centre of an object.
@@ -403,8 +405,8 @@ model! {
     contradiction: f32 = 0.2;
     /// Rim of a disc or a box that need not be its object, as a share of the radius.
     rim: f32 = 0.2;
-    /// Share of the votes of a click's masks from which a pixel is the object's.
-    votes: f32 = 0.2;
+    /// Share of the votes of a click's parts from which it changes a pixel. .2 and .4 cost .01 J after the first click. Real.
+    votes: f32 = 0.3;
     /// Share of an object below which a separate piece goes with any stroke that takes away from it.
     piece: f32 = 0.2;
     /// Share of a separate piece's length that a stroke through it may leave.

@@ -245,6 +245,42 @@ fn a_correction_replaces_the_one_before_in_its_frame_and_can_be_taken_back() {
     }
 }
 
+#[test]
+fn what_is_said_together_spreads_in_one_pass_in_any_order() {
+    let shot = three();
+    let painted = |frame: usize, object: u8, labels: Vec<u8>| {
+        let labels = labels.into_iter().map(|label| if label == 0 || label == object { label } else { 255 }).collect();
+        Painted { frame, object: Some(object), labels, spread: Spread::Both }
+    };
+    let moving = shot.found(1);
+    let corrections = [
+        painted(1, 9, mask(&shot.truths[1], &[(2, 9)])),
+        painted(3, moving, shot.stroke(0, [14, 8, 12, 10])),
+        painted(5, 9, shot.stroke(9, [92, 66, 12, 8])),
+    ];
+    let prompts = [(2, 3), (6, 3)].map(|(frame, thing)| prompt(frame, prompts_of(&shot, frame, thing)[0], 40));
+    let said = |turn: usize| {
+        let (mut corrections, mut prompts) = (corrections.to_vec(), prompts.to_vec());
+        corrections.rotate_left(turn);
+        prompts.rotate_left(turn % 2);
+        let mut shot = shot.clone();
+        let mut job = shot.clip.annotate(Annotations { corrections, prompts, ..Annotations::default() }).unwrap();
+        let mut taken = 0;
+        while let Some(wanted) = job.wanted() {
+            job.take(&mut shot.clip, &shot.frames[wanted]).unwrap();
+            taken += 1;
+        }
+        // The annotated frames, then each frame to learn from it and on the ways forward and back.
+        assert!(taken <= 5 + 3 * shot.frames.len(), "{taken} frames");
+        shot.labels()
+    };
+    let labels = said(0);
+    assert_ne!(labels, shot.labels());
+    for turn in 1..3 {
+        assert_eq!(differing(&said(turn), &labels), [0; 0], "{turn}");
+    }
+}
+
 /// Two of a person that cross, close to one that was found and to one another.
 fn crossing() -> Shot {
     static MADE: LazyLock<Shot> = LazyLock::new(|| {
@@ -396,6 +432,23 @@ fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
                 assert!(merged == after, "{from} into {into}, frame {t}");
             }
         }
+    }
+}
+
+#[test]
+fn merged_objects_are_one_to_what_is_said_of_them() {
+    // Two that are found go together from now on; a dab on one of them says nothing of where both are.
+    let start = crossing();
+    let (one, other) = (start.found(1), start.found(3));
+    let mut shot = start.clone();
+    shot.renumber(other, one);
+    let before = shot.labels();
+    let [x, y, width, height] = shot.around(2, 3);
+    shot.correct(2, &shot.stroke(one, [x + width / 4, y + height / 4, width / 2, height / 2]));
+    for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
+        let [kept, lost] = [true, false]
+            .map(|is_kept| before.iter().zip(&after).filter(|(b, a)| **b == one && (**a == one) == is_kept).count());
+        assert!(100 * lost <= kept, "frame {t}: {lost} pixels are lost, {kept} are kept");
     }
 }
 

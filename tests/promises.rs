@@ -5,7 +5,10 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::support::moving::{annotate, frames_of, options, scene_of, thing, whole};
+use crate::support::moving::{
+    SIZE as FRAME, annotate, carrier, frames_of, moving_and_resting, moving_and_resting_clip, options, scene_of, thing,
+    whole,
+};
 use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, SegmentedClip, Spread};
 use veronese::{Error, Frame, Quality, Random};
 
@@ -243,6 +246,76 @@ fn what_is_right_stays_right_whatever_is_said() {
 #[ignore = "npm run soak"]
 fn what_is_right_stays_right_whatever_is_said_many_times() {
     assert_kept(3..10);
+}
+
+/// The pixels of some that hang together with others, which are in reach of it by so many pixels.
+fn connected(differs: &[bool], others: &[bool], reach: usize) -> Vec<bool> {
+    let [width, height] = FRAME;
+    let around = |p: usize, reach: usize| {
+        let [x, y] = [p % width, p / width];
+        let rows = y.saturating_sub(reach)..(y + reach + 1).min(height);
+        rows.flat_map(move |v| (x.saturating_sub(reach)..(x + reach + 1).min(width)).map(move |u| v * width + u))
+    };
+    let mut is_in = vec![false; differs.len()];
+    let mut waiting: Vec<usize> =
+        (0..differs.len()).filter(|&p| differs[p] && around(p, reach).any(|q| others[q])).collect();
+    while let Some(p) = waiting.pop() {
+        if !std::mem::replace(&mut is_in[p], true) {
+            waiting.extend(around(p, 1).filter(|&q| differs[q] && !is_in[q]));
+        }
+    }
+    is_in
+}
+
+#[test]
+fn a_correction_changes_an_object_only_where_it_was_said_and_where_that_went() {
+    let (frames, truths) = moving_and_resting();
+    let start = moving_and_resting_clip();
+    let shown = |clip: &SegmentedClip| -> Vec<Vec<u8>> {
+        frames_of(clip, &frames).into_iter().map(|frame| frame.labels).collect()
+    };
+    let before = shown(&start);
+    let (object, _) = carrier(&before[5], &truths[5], 1).unwrap();
+    // The thing is at column 10 + 4 t and row 20, of 34 × 30 pixels.
+    let (mut random, mut elsewhere) = (Random::from_seed(11), 0);
+    for k in 0..8 {
+        let (frame, adds) = (random.uniform(0.0, 12.0) as usize, k % 2 == 0);
+        let [side, row] = [random.uniform(0.0, 2.0) as usize, 20 + random.uniform(0.0, 22.0) as usize];
+        // Ground beside it, or a part of it at its border.
+        let column = 10 + 4 * frame + if side == 0 { 0 } else { 26 };
+        let column = if adds { if side == 0 { column - 8 } else { column + 8 } } else { column };
+        let is_in =
+            |p: usize| (column..column + 8).contains(&(p % FRAME[0])) && (row..row + 8).contains(&(p / FRAME[0]));
+        let label = if adds { object } else { 0 };
+        let labels = (0..FRAME[0] * FRAME[1]).map(|p| if is_in(p) { label } else { 255 }).collect();
+        let corrections = vec![Painted { frame, object: Some(object), labels, spread: Spread::Both }];
+        let mut clip = start.clone();
+        annotate(&mut clip, &frames, Annotations { corrections, ..Annotations::default() });
+        let after = shown(&clip);
+        let differs = |t: usize| -> Vec<bool> {
+            before[t].iter().zip(&after[t]).map(|(b, a)| (*b == object) != (*a == object)).collect()
+        };
+        let said = differs(frame);
+        assert!(said.contains(&true));
+        for t in (0..frames.len()).filter(|t| *t != frame) {
+            // What was said of the thing goes with it, and what was said of the ground rests.
+            let step = 4 * t as isize - 4 * frame as isize;
+            let went = |p: usize| {
+                let from = (p % FRAME[0]) as isize - step;
+                (0..FRAME[0] as isize).contains(&from) && said[p / FRAME[0] * FRAME[0] + from as usize]
+            };
+            let carried: Vec<bool> = (0..said.len()).map(|p| said[p] || went(p)).collect();
+            let (differs, reach) = (differs(t), 3);
+            let connected = connected(&differs, &carried, reach);
+            let alone = differs.iter().zip(&connected).filter(|(differs, is_in)| **differs && !**is_in).count();
+            assert_eq!(
+                alone, 0,
+                "stroke {k} in frame {frame}: pixels of frame {t} that hang together with nothing said"
+            );
+            elsewhere += differs.iter().filter(|differs| **differs).count();
+        }
+    }
+    assert!(elsewhere > 0, "corrections go through the clip");
 }
 
 fn assert_kept(seeds: Range<u64>) {

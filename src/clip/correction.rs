@@ -1,6 +1,7 @@
 //! Corrections: an annotation of one frame is certain there, and goes through the whole scene.
 //!
-//! Each object is propagated by its own annotations alone. Where two objects of a user propose a pixel, the one that had it keeps it.
+//! Annotations of several frames that are given together go through the scene together, in one pass. Each object is propagated by its own
+//! annotations alone. Where two objects of a user propose a pixel, the one that had it keeps it.
 //!
 //! 1. The annotations of all frames tell which objects change, and from which frames they are propagated (`correction/anchors.rs`).
 //! 2. A plan lists the frames to visit (`correction/plan.rs`). In the first ones the appearance of the objects is learnt
@@ -28,6 +29,8 @@ mod template;
 mod trace;
 mod track;
 
+use std::collections::VecDeque;
+
 use super::annotation::{ObjectSet, Spread, UNANNOTATED};
 use super::changes::Changes;
 use super::evidence::Flow;
@@ -47,14 +50,17 @@ use proposal::Proposal;
 use scaling::at_features;
 use track::Track;
 
-/// A correction of one frame that spreads through a [`SegmentedClip`]. It asks for the frames that it needs.
+/// Annotations of frames of one scene that spread through a [`SegmentedClip`] together. It asks for the frames that it needs.
 #[derive(Clone, Debug)]
-pub(super) struct FrameCorrection {
-    index: usize,
-    /// The annotation, until the frame has come.
-    change: Option<Change>,
+pub(super) struct SceneCorrection {
+    /// Indices of the annotated frames.
+    annotated: Vec<usize>,
+    /// Annotations whose frames have not come yet, with the indices of these.
+    waiting: VecDeque<(usize, Change)>,
     /// First and last frame of the scene.
     scene: [usize; 2],
+    /// Objects that the annotations change.
+    changing: ObjectSet,
     groups: Vec<Group>,
     /// Frames to visit, the next one last.
     visits: Vec<Visit>,
@@ -66,13 +72,16 @@ pub(super) struct FrameCorrection {
     extended: ObjectSet,
 }
 
-impl FrameCorrection {
-    pub(super) fn new(clip: &SegmentedClip, index: usize, change: Change) -> FrameCorrection {
-        let scene @ [first, last] = clip.scene(index);
-        FrameCorrection {
-            index,
-            change: Some(change),
+impl SceneCorrection {
+    /// Of at least one annotation, all of frames of one scene.
+    pub(super) fn new(clip: &SegmentedClip, waiting: VecDeque<(usize, Change)>) -> SceneCorrection {
+        let annotated: Vec<usize> = waiting.iter().map(|(index, _)| *index).collect();
+        let scene @ [first, last] = clip.scene(annotated[0]);
+        SceneCorrection {
+            annotated,
+            waiting,
             scene,
+            changing: [false; 256],
             groups: Vec::new(),
             visits: Vec::new(),
             is_done: vec![false; last + 1 - first],
@@ -83,7 +92,8 @@ impl FrameCorrection {
 
     /// Index of the frame to [`take`](Self::take) next; none when the correction has spread.
     pub(super) fn wanted(&self) -> Option<usize> {
-        if self.change.is_some() { Some(self.index) } else { self.visits.last().map(|visit| visit.frame) }
+        let waiting = self.waiting.front().map(|(index, _)| *index);
+        waiting.or_else(|| self.visits.last().map(|visit| visit.frame))
     }
 
     /// Takes the frame that is [`wanted`](Self::wanted).
@@ -95,8 +105,13 @@ impl FrameCorrection {
         let Some(index) = self.wanted() else { return Ok(()) };
         clip.check(index, frame)?;
         let arrived = Arrived { index, frame, features: &FrameFeatures::new(frame) };
-        if let Some(change) = self.change.take() {
+        while self.waiting.front().is_some_and(|(own, _)| *own == index)
+            && let Some((_, change)) = self.waiting.pop_front()
+        {
             self.begin(clip, &arrived, change, changes);
+            if self.waiting.is_empty() {
+                self.plan(clip);
+            }
         }
         // A frame may be wanted for several tasks after one another.
         while let Some(visit) = self.visits.pop_if(|visit| visit.frame == index) {
@@ -108,22 +123,23 @@ impl FrameCorrection {
                 }
             }
         }
-        if self.visits.is_empty() {
+        if self.waiting.is_empty() && self.visits.is_empty() {
             self.finish(clip, changes);
         }
         Ok(())
     }
 
-    /// Takes the annotation, changes its frame at once if it is new, and plans the visits.
+    /// Takes an annotation, and changes its frame at once if it is new.
     #[inline(never)]
     fn begin(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, change: Change, changes: &mut Changes) {
-        let before = clip.frames[self.index].annotation.clone().unwrap_or_default();
-        let shown = clip.shown(self.index, arrived.frame.luminance());
+        let (index, users) = (arrived.index, arrived.index - self.scene[0]);
+        let before = clip.frames[index].annotation.clone().unwrap_or_default();
+        let shown = clip.overlaid(index, &clip.found_full(index, arrived.frame.luminance()), &self.users[users]);
         let mut now = before.clone();
         match change {
             Change::Painted(painted) => painted.iter().for_each(|painted| now.paint(painted)),
             Change::Prompt(prompt) => {
-                let labels = outline(clip, self.index, arrived.frame, arrived.features, &shown, &prompt);
+                let labels = outline(clip, index, arrived.frame, arrived.features, &shown, &prompt);
                 now.point(prompt, &labels);
             }
         }
@@ -133,54 +149,73 @@ impl FrameCorrection {
         let mut changing: ObjectSet = std::array::from_fn(|k| k > 0 && !now.agrees(&before, k as u8));
         if !now.agrees(&before, 0) {
             // A label map that names no object says of those under it that they are not there.
-            now.takes_from = self.taken_from(clip, &now, &shown);
+            now.takes_from = self.taken_from(clip, &now, &shown, &self.users[users]);
             before.takes_from.iter().chain(&now.takes_from).for_each(|&object| changing[usize::from(object)] = true);
         }
-        self.extended = std::array::from_fn(|k| k == 0 || now.extends(&before, k as u8));
+        self.extended.iter_mut().enumerate().skip(1).for_each(|(k, of)| *of &= now.extends(&before, k as u8));
         let is_new = !now.is_same(&before);
         let anchors_before = clip.anchors(self.scene);
-        clip.frames[self.index].annotation = (!now.is_empty()).then_some(now);
+        clip.frames[index].annotation = (!now.is_empty()).then_some(now);
         clip.update_anchors(self.scene);
         let anchors = clip.anchors(self.scene);
         for (object, changes) in changing.iter_mut().enumerate().take(anchors.len()) {
             *changes |= anchors[object] != anchors_before[object];
             *changes &= !clip.locked[object] && clip.numbers[object] > 0;
         }
-        let members = groups(&changing, &anchors);
-        let [first, last] = self.scene;
-        let found = |object: u8| (first..=last).filter(|&t| clip.frames[t].found.names(object)).collect();
-        self.visits = visits(self.scene, &members, &found);
-        self.groups = members.into_iter().map(|members| Group::new(members, last + 1)).collect();
         if is_new {
-            self.at_once(clip, arrived, &shown, changes);
-            let labels = clip.frames[self.index].layer.as_ref().map(|layer| layer.labels.values()).unwrap_or_default();
-            if let Some(annotation) = &mut clip.frames[self.index].annotation {
+            self.at_once(clip, arrived, &shown, &changing, changes);
+            let labels = clip.frames[index].layer.as_ref().map(|layer| layer.labels.values()).unwrap_or_default();
+            if let Some(annotation) = &mut clip.frames[index].annotation {
                 annotation.keep_seen(&labels, &changing);
             }
         }
+        self.users[users] = clip.user_objects_in(index);
+        self.changing.iter_mut().zip(changing).for_each(|(all, now)| *all |= now);
+    }
+
+    /// Plans the visits by which the annotations spread.
+    fn plan(&mut self, clip: &SegmentedClip) {
+        let anchors = clip.anchors(self.scene);
+        let members = groups(&self.changing, &anchors);
+        let [first, last] = self.scene;
+        let found = |object: u8| (first..=last).filter(|&t| clip.is_found_in(t, object)).collect();
+        self.visits = visits(self.scene, &members, &found);
+        self.groups = members.into_iter().map(|members| Group::new(members, last + 1)).collect();
     }
 
     /// Other objects of a user that a label map which names none takes pixels from.
-    fn taken_from(&self, clip: &SegmentedClip, annotation: &FrameAnnotation, shown: &[u8]) -> Vec<u8> {
+    fn taken_from(
+        &self,
+        clip: &SegmentedClip,
+        annotation: &FrameAnnotation,
+        shown: &[u8],
+        users: &ObjectSet,
+    ) -> Vec<u8> {
         if !annotation.names_no_object() {
             return Vec::new();
         }
         let mut loses = [false; 256];
         let painted = annotation.painted_labels().unwrap_or_default();
         painted.iter().zip(shown).for_each(|(&painted, &shown)| loses[usize::from(shown)] |= painted == 0);
-        let users = &self.users[self.index - self.scene[0]];
         let is_taken = |k: usize| users[k] && loses[k] && !clip.locked[k];
         (1..UNANNOTATED).filter(|&object| is_taken(usize::from(object))).collect()
     }
 
     /// The annotated frame at once. Each object goes by where it was before strokes were drawn, so that it matters not which came before.
     #[inline(never)]
-    fn at_once(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, shown: &[u8], changes: &mut Changes) {
+    fn at_once(
+        &mut self,
+        clip: &mut SegmentedClip,
+        arrived: &Arrived<'_>,
+        shown: &[u8],
+        changing: &ObjectSet,
+        changes: &mut Changes,
+    ) {
         let Arrived { index, features, .. } = *arrived;
         let seeds = |object: u8| clip.seeds_at(index, object, features);
         let annotation = clip.frames[index].annotation.clone().unwrap_or_default();
         let mut proposals = Vec::new();
-        for &object in self.groups.iter().flat_map(|group| &group.changing) {
+        for object in (1..UNANNOTATED).filter(|&object| changing[usize::from(object)]) {
             let is_shown = || shown.iter().map(|&label| u8::from(label == object)).collect();
             let own: Vec<u8> = annotation.base(object).unwrap_or_else(is_shown);
             let own: Vec<u8> = own.into_iter().map(|inside| object * inside).collect();
@@ -249,7 +284,7 @@ impl FrameCorrection {
         proposals: &[(u8, Option<Proposal>)],
         changes: &mut Changes,
     ) {
-        if clip.frames[index].accepted && index != self.index {
+        if clip.frames[index].accepted && !self.annotated.contains(&index) {
             return;
         }
         let found = &clip.found_full(index, frame.luminance());

@@ -309,6 +309,12 @@ impl FrameAnnotation {
         seeds
     }
 
+    /// The seeds of an object at full size that were painted, if any were.
+    pub(super) fn painted_seeds(&self, object: u8) -> Option<Vec<Seed>> {
+        let is_painted = self.strokes(object).is_some() || self.names_in_map(object);
+        is_painted.then(|| self.seeds(object)).flatten()
+    }
+
     /// The painted labels at full size: the number of an object, 0 for the ground of a label map, 255 for nothing.
     #[inline(never)]
     pub(super) fn painted_labels(&self) -> Option<Vec<u8>> {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::annotation::{Accepted, Annotations, Painted, Prompt, UNANNOTATED};
 use super::changes::{Changed, Changes};
-use super::correction::FrameCorrection;
+use super::correction::SceneCorrection;
 use super::frame_annotation::{Change, FrameAnnotation};
 use super::segmented_clip::SegmentedClip;
 use crate::error::{Error, Result};
@@ -55,7 +55,7 @@ impl SegmentedClip {
 #[derive(Clone, Debug)]
 pub struct ClipJob {
     steps: VecDeque<Step>,
-    correction: Option<FrameCorrection>,
+    correction: Option<SceneCorrection>,
     /// Objects that are locked when all steps are done.
     locks: Vec<u8>,
     /// Objects and their new numbers, when all steps are done.
@@ -66,7 +66,8 @@ pub struct ClipJob {
 #[derive(Clone, Debug)]
 enum Step {
     Accept(Accepted),
-    Correct(usize, Change),
+    /// Annotations of the frames of a scene.
+    Correct(VecDeque<(usize, Change)>),
 }
 
 impl ClipJob {
@@ -104,23 +105,23 @@ impl ClipJob {
             let accept: Vec<Step> = accepted.into_iter().filter(is_new).map(Step::Accept).collect();
             if !accept.is_empty() {
                 // A frame is accepted as it is seen after the masks.
-                job.steps.extend(painted(&masks, &[]));
+                job.steps.extend(by_scene(clip, painted(&masks, &[])));
                 job.steps.extend(accept);
                 masks.retain(|mask| corrections.iter().any(|painted| painted.frame == mask.frame));
             }
         }
-        job.steps.extend(painted(&masks, &corrections));
-        job.steps.extend(prompts.into_iter().map(|prompt| Step::Correct(prompt.frame, Change::Prompt(prompt))));
+        let prompts = prompts.into_iter().map(|prompt| (prompt.frame, Change::Prompt(prompt)));
+        job.steps.extend(by_scene(clip, painted(&masks, &corrections).chain(prompts)));
         job.conclude(clip);
         Ok(job)
     }
 
     /// Index of the frame to [`take`](Self::take) next; none when all has taken effect.
     pub fn wanted(&self) -> Option<usize> {
-        let of_correction = self.correction.as_ref().and_then(FrameCorrection::wanted);
+        let of_correction = self.correction.as_ref().and_then(SceneCorrection::wanted);
         of_correction.or_else(|| match self.steps.front()? {
             Step::Accept(accepted) => Some(accepted.frame),
-            Step::Correct(index, _) => Some(*index),
+            Step::Correct(changes) => changes.front().map(|(index, _)| *index),
         })
     }
 
@@ -144,7 +145,7 @@ impl ClipJob {
             clip.check(wanted, frame)?;
             match self.steps.pop_front() {
                 Some(Step::Accept(accepted)) => clip.accept(frame, accepted, &mut self.changes),
-                Some(Step::Correct(index, change)) => self.correction = Some(FrameCorrection::new(clip, index, change)),
+                Some(Step::Correct(changes)) => self.correction = Some(SceneCorrection::new(clip, changes)),
                 None => {}
             }
         }
@@ -175,8 +176,21 @@ impl ClipJob {
     }
 }
 
-/// A step for each frame in which something is painted: a correction goes before the mask of its frame where it says anything.
-fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
+/// A step for each scene: what is said of its frames spreads together.
+fn by_scene(clip: &SegmentedClip, changes: impl Iterator<Item = (usize, Change)>) -> impl Iterator<Item = Step> {
+    let mut scenes: Vec<VecDeque<(usize, Change)>> = Vec::new();
+    for (index, change) in changes {
+        let scene = clip.scene(index);
+        match scenes.iter_mut().find(|of| of.front().is_some_and(|(other, _)| clip.scene(*other) == scene)) {
+            Some(changes) => changes.push_back((index, change)),
+            None => scenes.push(VecDeque::from([(index, change)])),
+        }
+    }
+    scenes.into_iter().map(Step::Correct)
+}
+
+/// What is painted of each frame: a correction goes before the mask of its frame where it says anything.
+fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (usize, Change)> {
     let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
     for painted in masks.iter().chain(corrections) {
         let at = frames.iter().position(|(index, _)| *index == painted.frame).unwrap_or_else(|| {
@@ -193,7 +207,7 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<Step> {
             }
         }
     }
-    frames.into_iter().map(|(index, painted)| Step::Correct(index, Change::Painted(painted))).collect()
+    frames.into_iter().map(|(index, painted)| (index, Change::Painted(painted)))
 }
 
 /// The objects that are locked together with annotations of themselves, which hold.

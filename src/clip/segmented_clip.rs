@@ -197,11 +197,28 @@ impl SegmentedClip {
         (found.labels.values(), self.odds_of(found))
     }
 
-    /// Labels of a frame as the clip was segmented, at another size.
+    /// Labels of a frame as the clip was segmented, at another size. Objects that were merged are one.
     pub(super) fn found_at(&self, index: usize, [width, height]: [usize; 2]) -> Vec<u8> {
+        let objects = self.objects_of_found();
         let (labels, [w, h]) = (self.frames[index].found.labels.values(), self.working_size());
         let place = |p: usize| (p / width * h / height).min(h - 1) * w + (p % width * w / width).min(w - 1);
-        (0..width * height).map(|p| labels[place(p)]).collect()
+        (0..width * height).map(|p| objects[usize::from(labels[place(p)])]).collect()
+    }
+
+    /// Whether an object, or one that was merged into it, was found in a frame.
+    pub(super) fn is_found_in(&self, index: usize, object: u8) -> bool {
+        let objects = self.objects_of_found();
+        self.frames[index].found.labels.each().any(|(label, _)| objects[usize::from(label)] == object)
+    }
+
+    /// By label found automatically: the object that it is of. One that was annotated before it was merged goes by its own annotations,
+    /// and one that was deleted tells of what is drawn anew in its place.
+    fn objects_of_found(&self) -> [u8; 256] {
+        let is_annotated = |label: u8| self.frames.iter().any(|frame| frame.anchors(label));
+        std::array::from_fn(|label| match self.numbers[label] {
+            number if number > 0 && usize::from(number) != label && !is_annotated(label as u8) => number,
+            _ => label as u8,
+        })
     }
 
     /// To the next frame of the scene; after the last one there is none.

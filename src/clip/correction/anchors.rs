@@ -3,6 +3,7 @@
 use super::features::FrameFeatures;
 use super::plan::Anchor;
 use super::scaling::{at_features, at_working_size};
+use super::strokes;
 use crate::clip::annotation::{ObjectSet, Seed, Spread, UNANNOTATED};
 use crate::clip::frame_annotation::FrameAnnotation;
 use crate::clip::segmented_clip::SegmentedClip;
@@ -33,6 +34,7 @@ impl SegmentedClip {
             let is_whole = |t: usize| {
                 self.frames[t].accepts(object)
                     || self.frames[t].annotation.as_ref().is_some_and(|of| of.is_whole(object))
+                    || self.paints_over(t, object)
             };
             let anchor = |frame| Some(Anchor { frame, spread: spread(frame)?, is_whole: is_whole(frame) });
             (first..=last).filter_map(anchor).collect()
@@ -86,7 +88,22 @@ impl SegmentedClip {
             Some((labels.into_iter().map(seed).collect(), Spread::Both))
         };
         let (seeds, spread) = annotated.or_else(accepted)?;
-        Some((at_features(&seeds, Seed::Nothing, self.size()[0], features), spread))
+        let mut seeds = at_features(&seeds, Seed::Nothing, self.size()[0], features);
+        if self.paints_over(t, object) {
+            strokes::fill(&mut seeds, &self.found_at(t, features.size), object);
+        }
+        Some((seeds, spread))
+    }
+
+    /// Whether somebody has painted over an object as a whole as it was found in a frame: what was painted is its mask then, though
+    /// nothing was said of the ground around. It goes by what was found, so that it matters not what else was said before.
+    #[inline(never)]
+    pub(super) fn paints_over(&self, t: usize, object: u8) -> bool {
+        let Some(seeds) = self.frames[t].annotation.as_ref().and_then(|of| of.painted_seeds(object)) else {
+            return false;
+        };
+        let seeds = at_working_size(&seeds, Seed::Nothing, self.size()[0], self.working_size(), self.working_step());
+        strokes::paints_over(&self.found_at(t, self.working_size()), object, &seeds)
     }
 
     /// 1 where a person has seen an object of a frame when strokes were drawn, at the size of the features.

@@ -118,15 +118,10 @@ impl Composition<'_> {
     /// Each pixel that is not held goes to the likeliest of the objects that propose it.
     fn propose(&self, rules: &Rules, draft: &mut Draft) {
         for (object, proposal) in self.proposals {
-            let proposal = proposal.as_ref().filter(|proposal| proposal.mask.contains(&1));
-            let seeds = rules.annotation.seeds(*object);
-            if proposal.is_none() && seeds.is_none() {
-                continue;
-            }
-            let mask = self.mask(rules, *object, proposal, seeds.as_deref());
+            let mask = self.mask(rules, *object, proposal.as_ref());
             let odds = |p: usize| {
                 let odds = |of: &Proposal| of.odds_at(self.pixel(p), self.features.size[0]);
-                proposal.map_or(0.0, odds).max(f32::MIN_POSITIVE)
+                proposal.as_ref().map_or(0.0, odds).max(f32::MIN_POSITIVE)
             };
             // The ground of a label map stays ground, but for objects that were there.
             let is_free =
@@ -141,33 +136,44 @@ impl Composition<'_> {
     }
 
     /// The full-size mask that an object proposes.
-    fn mask(&self, rules: &Rules, object: u8, proposal: Option<&Proposal>, seeds: Option<&[Seed]>) -> Vec<u8> {
+    fn mask(&self, rules: &Rules, object: u8, proposal: Option<&Proposal>) -> Vec<u8> {
         let (features, width) = (self.features, self.frame.width());
         let mut mask = vec![0; self.found.len()];
-        if let Some(proposal) = proposal {
-            let mut working = vec![0u8; features.pixels()];
-            proposal.area.pixels(features.size[0]).zip(&proposal.mask).for_each(|(p, &inside)| working[p] = inside);
-            mask = upsample(&working, features.size, 2, self.frame.luminance(), &Model::DEFAULT);
+        if let Some(proposal) = proposal.filter(|proposal| proposal.mask.contains(&1)) {
+            mask = upsample(&proposal.inside(features), features.size, 2, self.frame.luminance(), &Model::DEFAULT);
         }
-        if let Some(seeds) = seeds {
-            for (inside, seed) in mask.iter_mut().zip(seeds).filter(|(_, seed)| **seed != Seed::Nothing) {
+        if let Some(mut seeds) = rules.annotation.seeds(object) {
+            let base = rules.annotation.base(object);
+            let painted_over = base.as_ref().filter(|base| strokes::paints_over(base, 1, &seeds));
+            if let Some(base) = painted_over {
+                strokes::fill(&mut seeds, base, 1);
+            }
+            for (inside, seed) in mask.iter_mut().zip(&seeds).filter(|(_, seed)| **seed != Seed::Nothing) {
                 *inside = u8::from(*seed == Seed::Object);
             }
-            if let Some(base) = rules.annotation.base(object) {
-                // Who paints over an object as a whole means what is painted and no more.
-                if strokes::repaint(&base, seeds) {
-                    let open = mask.iter_mut().zip(&base).zip(seeds).filter(|(_, seed)| **seed == Seed::Nothing);
-                    open.for_each(|((inside, base), _)| *inside = *base);
-                } else {
-                    strokes::keep(&mut mask, &base, seeds, width);
-                }
+            if let Some(base) = &base {
+                strokes::keep(&mut mask, base, &seeds, width);
             }
-        } else if self.extended[usize::from(object)] {
-            let before: Vec<u8> = self.before.iter().map(|label| u8::from(*label == object)).collect();
-            let appearance = |p: usize| proposal.map_or(0.0, |proposal| proposal.appearance_at(self.pixel(p)));
-            strokes::settle(&mut mask, &before, &appearance, width);
+        } else if let Some((known, proposal)) = self.known(object).zip(proposal) {
+            let looks = |p: usize| proposal.signs.looks_at(self.pixel(p));
+            let change = proposal.signs.change.as_ref().map(|change| |p: usize| change[self.pixel(p)]);
+            let change = change.as_ref().map(|change| change as &dyn Fn(usize) -> f32);
+            strokes::settle(&mut mask, &known, &looks, change, width);
         }
         mask
+    }
+
+    /// Where an object is as far as the annotations of this frame tell nothing: 1 where it was found, or, if it was not, where it has been
+    /// so far, as long as nothing that was said of it is taken back.
+    fn known(&self, object: u8) -> Option<Vec<u8>> {
+        let numbers = &self.clip.numbers;
+        let is_found = |label: u8| label > 0 && numbers[usize::from(label)] == numbers[usize::from(object)];
+        let found: Vec<u8> = self.found.iter().map(|label| u8::from(is_found(*label))).collect();
+        if found.contains(&1) {
+            return Some(found);
+        }
+        let is_there = self.extended[usize::from(object)] && self.before.contains(&object);
+        is_there.then(|| self.before.iter().map(|label| u8::from(*label == object)).collect())
     }
 
     /// Nothing is left around an object of another one whose place it takes, but where it is painted not to be.

@@ -11,7 +11,9 @@ use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
 use super::label_evidence::LabelEvidence;
 use super::placement::{Placement, Whole};
-use super::proposal::{Proposal, centre_of, logit};
+use super::prompt::overlap;
+use super::proposal::{Proposal, Signs, centre_of, logit};
+use super::strokes;
 use super::trace::Trace;
 use crate::clip::annotation::Seed;
 use crate::clip::evidence::Flow;
@@ -46,7 +48,7 @@ pub(super) struct Observation<'a> {
 pub(super) struct Prediction {
     pub(super) area: Area,
     pub(super) odds: Vec<f32>,
-    appearance: Vec<f32>,
+    signs: Signs,
     centre: [f32; 2],
     placement: Option<Placement>,
     /// How much each pixel is awaited to be that of a hidden object.
@@ -69,6 +71,8 @@ pub(super) struct Propagator {
     label_evidence: LabelEvidence,
     /// From the frame passed last in which the whole mask is a person's.
     trace: Option<Trace>,
+    /// 1 where annotations have changed the object in the frame reached last; none if they are about all of it.
+    change: Option<Plane>,
     /// Whether it has learnt the annotations that spread to all frames.
     knows_annotations: bool,
 }
@@ -103,6 +107,7 @@ impl Propagator {
             appearance,
             label_evidence,
             trace: self.trace.clone(),
+            change: self.change.clone(),
             knows_annotations: self.knows_annotations,
         }
     }
@@ -172,6 +177,7 @@ impl Propagator {
         let centre = centre_of(&mask).unwrap_or(centre);
         let whole = Whole::new(&mask, features, centre, !partly);
         self.trace = of.is_whole.then(|| Trace::new(&mask, features));
+        self.change = Self::changed(of, object, &proposal.inside(features), &Signs::default());
         self.reach(of, Reached { mask, centre, whole }, [partly, true]);
         proposal
     }
@@ -204,10 +210,14 @@ impl Propagator {
         let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&reached.mask, model().motion);
         let all = gaussian(&reached.whole.template.mask, model().motion);
+        let along = |of: &Plane, p: usize| {
+            let [u, v] = to.at(p % width, p / width);
+            let [x, y] = [(p % width) as f32 + u as f32, (p / width) as f32 + v as f32];
+            Footprint::new(x, y, width, height).sample(of.values())
+        };
         let near = |p: usize| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
-            let [u, v] = to.at(p % width, p / width);
-            let along = Footprint::new(x + u as f32, y + v as f32, width, height).sample(soft.values());
+            let along = along(&soft, p);
             let with_all = placement.as_ref().map(|Placement { shift: [dx, dy], .. }| {
                 let footprint = Footprint::new(x - dx, y - dy, width, height);
                 if footprint.inside { footprint.sample(all.values()) } else { 0.0 }
@@ -258,17 +268,21 @@ impl Propagator {
             z.clamp(-model().certain, most)
         });
         let odds = odds.collect();
-        let mut appearance = vec![0.0; features.pixels()];
-        if let Some(remembered) = &remembered {
-            area.pixels(width).zip(remembered).for_each(|(p, r)| appearance[p] = logit(*r));
+        let mut looks = vec![0.0; features.pixels()];
+        for (k, p) in area.pixels(width).enumerate() {
+            let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
+            looks[p] = memory + model().trace * traced.as_ref().map_or(0.0, |of| of[k]);
         }
-        Some(Prediction { area, odds, appearance, centre, placement, awaited })
+        let change = self.change.as_ref().map(|change| gaussian(change, model().motion));
+        let change = change.map(|change| (0..width * height).map(|p| along(&change, p)).collect());
+        let signs = Signs { looks, change };
+        Some(Prediction { area, odds, signs, centre, placement, awaited })
     }
 
     /// Cuts the next frame by its prediction and its seeds, and goes on from there.
-    pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction) -> Proposal {
+    pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction, object: u8) -> Proposal {
         let features = of.features;
-        let Prediction { area, odds, appearance, centre, placement, .. } = prediction;
+        let Prediction { area, odds, signs, centre, placement, .. } = prediction;
         let solve = |seeds| Proposal::solved(features, area.clone(), odds.clone(), seeds);
         let contradicts = |proposal: &Proposal, seeds: &[Seed]| {
             let mut pixels = proposal.area.pixels(features.size[0]).zip(&proposal.mask);
@@ -298,14 +312,52 @@ impl Propagator {
         if of.is_whole && of.spreads {
             self.trace = Some(Trace::new(&mask, features));
         }
+        let now = goes_on.as_ref().unwrap_or(&proposal).inside(features);
+        self.change = Self::changed(of, object, &now, &signs);
         if let Some(reached) = self.reached.take() {
             let seen = centre_of(&mask).unwrap_or(centre);
             let whole = reached.whole.gone_on(&mask, features, seen, placement.as_ref());
             let centre = if whole.now { seen } else { centre };
             self.reach(of, Reached { mask, centre, whole }, [true, false]);
         }
-        proposal.appearance = appearance;
+        proposal.signs = signs;
         proposal
+    }
+
+    /// What annotations have changed of the object, after a frame with the mask `now`. Only what hangs together with its seeds, or with
+    /// what the change has become since an anchor, is part of it.
+    fn changed(of: &Observation<'_>, object: u8, now: &[u8], signs: &Signs) -> Option<Plane> {
+        let (features, width) = (of.features, of.features.size[0]);
+        let seeds = of.seeds.filter(|_| of.is_anchor && of.spreads);
+        if seeds.is_none() && signs.change.is_none() {
+            return None;
+        }
+        let found: Vec<u8> = of.found.iter().map(|label| u8::from(*label == object)).collect();
+        let mut is_changed = vec![false; found.len()];
+        let mut mark = |mask: &[u8]| {
+            is_changed
+                .iter_mut()
+                .zip(mask)
+                .zip(&found)
+                .for_each(|((is_changed, now), found)| *is_changed |= now != found);
+        };
+        if let Some(seeds) = seeds {
+            let mut now = now.to_vec();
+            strokes::keep(&mut now, &found, seeds, width);
+            if of.is_whole || overlap(&now, &found) < model().part {
+                return None;
+            }
+            mark(&now);
+        }
+        if let Some(change) = &signs.change {
+            if !found.contains(&1) {
+                return Some(features.plane_of(&|p| change[p]));
+            }
+            let mut now = now.to_vec();
+            strokes::settle(&mut now, &found, &|p| signs.looks_at(p), Some(&|p| change[p]), width);
+            mark(&now);
+        }
+        Some(features.plane(&|p| is_changed[p]))
     }
 
     /// Goes on from a frame. It learns its labels there if it `knows_little` of them.

@@ -18,8 +18,17 @@ pub(super) struct Proposal {
     pub(super) odds: Vec<f32>,
     /// 1 for the object.
     pub(super) mask: Vec<u8>,
-    /// Odds by the object's appearance alone at every pixel of the frame, 0 where they are not known; empty if they are nowhere.
-    pub(super) appearance: Vec<f32>,
+    /// What the pixels of the frame tell of changes of the object.
+    pub(super) signs: Signs,
+}
+
+/// What the pixels of a frame tell of changes of an object: a value for each of the frame's features, none if nothing is known.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Signs {
+    /// Log-odds of the object by its appearance, and by where the pixels were in a frame whose mask is a person's, nats.
+    pub(super) looks: Vec<f32>,
+    /// How much of each pixel annotations have changed, as it comes from the frame before, 0…1; none if they are about all of the object.
+    pub(super) change: Option<Vec<f32>>,
 }
 
 impl Proposal {
@@ -27,7 +36,7 @@ impl Proposal {
     pub(super) fn solved(features: &FrameFeatures, area: Area, odds: Vec<f32>, seeds: Option<&[Seed]>) -> Proposal {
         let Some(seeds) = seeds else {
             let mask = cut(features, &area, &odds);
-            return Proposal { area, odds, mask, appearance: Vec::new() };
+            return Proposal { area, odds, mask, signs: Signs::default() };
         };
         let odds: Vec<f32> = (0..features.pixels())
             .map(|p| match seeds[p] {
@@ -42,7 +51,7 @@ impl Proposal {
         } else {
             odds.iter().map(|&z| u8::from(z > 0.0)).collect()
         };
-        Proposal { area, odds, mask, appearance: Vec::new() }
+        Proposal { area, odds, mask, signs: Signs::default() }
     }
 
     /// The odds of two proposals, by the weights of each.
@@ -50,28 +59,39 @@ impl Proposal {
         let (area, width) = (proposals[0].area.with(&proposals[1].area), features.size[0]);
         let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
         let odds: Vec<f32> = area.pixels(width).map(|p| mean(proposals.map(|of| of.odds_at(p, width)))).collect();
-        let appearance = (0..features.pixels()).map(|p| mean(proposals.map(|of| of.appearance_at(p)))).collect();
+        let signs = Signs {
+            looks: (0..features.pixels()).map(|p| mean(proposals.map(|of| of.signs.looks_at(p)))).collect(),
+            change: match proposals.map(|of| &of.signs.change) {
+                [Some(one), Some(other)] => Some(one.iter().zip(other).map(|(one, other)| one.max(*other)).collect()),
+                _ => None,
+            },
+        };
         let mask = cut(features, &area, &odds);
-        Proposal { area, odds, mask, appearance }
+        Proposal { area, odds, mask, signs }
     }
 
-    /// The mask as a plane.
+    /// The mask of the whole frame.
+    pub(super) fn inside(&self, features: &FrameFeatures) -> Vec<u8> {
+        let mut mask = vec![0; features.pixels()];
+        self.area.pixels(features.size[0]).zip(&self.mask).for_each(|(p, &inside)| mask[p] = inside);
+        mask
+    }
+
+    /// The mask of the whole frame as a plane.
     pub(super) fn plane(&self, features: &FrameFeatures) -> Plane {
-        let mut plane = Plane::filled(features.size[0], features.size[1], 0.0);
-        for (p, &inside) in self.area.pixels(features.size[0]).zip(&self.mask) {
-            plane.values_mut()[p] = f32::from(inside);
-        }
-        plane
+        let mask = self.inside(features);
+        features.plane(&|p| mask[p] > 0)
     }
 
     /// Odds at a pixel.
     pub(super) fn odds_at(&self, p: usize, width: usize) -> f32 {
         odds_at(&self.area, &self.odds, p, width)
     }
+}
 
-    /// Odds at a pixel by the object's appearance alone; 0 if they are not known.
-    pub(super) fn appearance_at(&self, p: usize) -> f32 {
-        self.appearance.get(p).copied().unwrap_or(0.0)
+impl Signs {
+    pub(super) fn looks_at(&self, p: usize) -> f32 {
+        self.looks.get(p).copied().unwrap_or(0.0)
     }
 }
 

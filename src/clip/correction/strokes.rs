@@ -1,5 +1,5 @@
 //! Strokes change their frame where they are: one that adds to an object takes nothing away, one that takes away adds nothing, and what
-//! nothing connects with a stroke stays. In other frames, what is there holds unless the object looks otherwise. And where an object takes
+//! nothing connects with a stroke stays. In other frames, what was found holds unless the pixels tell otherwise. And where an object takes
 //! another's place, nothing is left of that around it.
 
 use crate::clip::annotation::{Seed, UNANNOTATED};
@@ -28,34 +28,54 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     smooth(mask, before, seeds, width);
 }
 
-/// Whether strokes paint over an object as a whole: they are mostly in it as it was `before`, and have most of it.
-pub(super) fn repaint(before: &[u8], seeds: &[Seed]) -> bool {
-    let mut counts = [0usize; 4];
-    before
-        .iter()
-        .zip(seeds)
-        .for_each(|(is_in, seed)| counts[usize::from(2 * is_in + u8::from(*seed == Seed::Object))] += 1);
-    let [_, beside, left, both] = counts;
-    both > left.max(beside)
+/// Whether annotations paint over an object as a whole: they leave less than a fifth of it open as it was `found`, and at least a fifth of
+/// what they paint was found. Then what is painted is its mask.
+pub(super) fn paints_over(found: &[u8], object: u8, seeds: &[Seed]) -> bool {
+    let (mut painted, mut erased, mut open, mut beside) = (0usize, 0usize, 0usize, 0usize);
+    for (found, seed) in found.iter().zip(seeds) {
+        match seed {
+            Seed::Object if *found == object => painted += 1,
+            Seed::Object => beside += 1,
+            Seed::Nothing if *found == object => open += 1,
+            _ if *found == object => erased += 1,
+            _ => {}
+        }
+    }
+    painted > 4 * open && 4 * (painted + erased) > beside
 }
 
-/// Where nothing is said, takes back what changes of an object's mask since it was `before`, unless it looks that direction: `looks` are the odds
-/// of the object by its looks. They are weighed over each connected change.
-#[inline(never)]
-pub(super) fn settle(mask: &mut [u8], before: &[u8], looks: &dyn Fn(usize) -> f32, width: usize) {
-    if !before.contains(&1) {
-        return;
+/// Says of the pixels of which nothing is said what was found.
+pub(super) fn fill(seeds: &mut [Seed], found: &[u8], object: u8) {
+    for (seed, found) in seeds.iter_mut().zip(found).filter(|(seed, _)| **seed == Seed::Nothing) {
+        *seed = if *found == object { Seed::Object } else { Seed::Other };
     }
+}
+
+/// In a frame of which nothing is said, takes back connected changes of the `known` mask that its pixels do not support: the sum of their
+/// `looks`, log-odds of the object, must be on the side of the change. Where annotations have changed only part of the object, a change
+/// must also hold pixels that they have changed: `change` is the share of these.
+#[inline(never)]
+pub(super) fn settle(
+    mask: &mut [u8],
+    known: &[u8],
+    looks: &dyn Fn(usize) -> f32,
+    change: Option<&dyn Fn(usize) -> f32>,
+    width: usize,
+) {
     // 1 is added, 2 is taken away.
-    let changes: Vec<u8> = mask.iter().zip(before).map(|(now, before)| now + 2 * before).collect();
+    let changes: Vec<u8> = mask.iter().zip(known).map(|(now, known)| now + 2 * known).collect();
     let parts = components(&changes, width, Connectivity::Eight);
     let mut sums = vec![0.0f32; parts.list.len()];
-    for (p, change) in changes.iter().enumerate().filter(|(_, change)| matches!(change, 1 | 2)) {
-        sums[parts.of[p] as usize] += if *change == 1 { looks(p) } else { -looks(p) };
+    let mut is_meant = vec![change.is_none(); parts.list.len()];
+    for (p, kind) in changes.iter().enumerate().filter(|(_, kind)| matches!(kind, 1 | 2)) {
+        let part = parts.of[p] as usize;
+        sums[part] += if *kind == 1 { looks(p) } else { -looks(p) };
+        is_meant[part] |= change.is_some_and(|share| share(p) > model().expected);
     }
     for (p, inside) in mask.iter_mut().enumerate() {
-        if matches!(changes[p], 1 | 2) && sums[parts.of[p] as usize] < 0.0 {
-            *inside = before[p];
+        let part = parts.of[p] as usize;
+        if matches!(changes[p], 1 | 2) && !(is_meant[part] && sums[part] > 0.0) {
+            *inside = known[p];
         }
     }
 }

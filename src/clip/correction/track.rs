@@ -72,7 +72,7 @@ impl Track {
         };
         let begins = direction.first(&self.anchors) == Some(frame) && !propagator.has_begun();
         let own = match prediction {
-            Some(prediction) => Some(propagator.update(of, prediction)),
+            Some(prediction) => Some(propagator.update(of, prediction, self.object)),
             None if begins => Some(propagator.begin(of, self.object)),
             None => None,
         };
