@@ -6,7 +6,7 @@ use crate::embedding::rank::RankCandidate;
 use crate::motion::AffineMotion;
 use crate::refinement::Report;
 
-/// The label of a measurement or pixel without a motion: an outlier, or a pixel whose motion is unknown.
+/// The label of a measurement or pixel without one: an outlier, a pixel whose motion is unknown, or one of which an annotation says nothing.
 pub const UNLABELLED: u8 = 255;
 
 /// The result of [`fit_motions`](crate::fit_motions).

@@ -7,7 +7,7 @@
 #[non_exhaustive]
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The two (or three) frames differ in size.
+    /// Two frames that are processed together differ in size.
     #[error("the frames differ in size: {}×{} and {}×{} pixels", first.0, first.1, second.0, second.1)]
     FrameSizeMismatch {
         /// Width and height of the first frame.

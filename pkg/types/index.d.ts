@@ -251,7 +251,7 @@ export interface ClipCorrection {
   frame: number;
   /**
    * The object that it is about, 1 to 254, and no other. Without it the labels are a map: it is about the objects that it names,
-   * and what it calls background is none of these. A map that names none says of all objects where they are not, as an eraser does.
+   * and its zeros are where none of these is. A map of 0 and 255 alone is an eraser: at its zeros there is no object.
    */
   object?: number | undefined;
   /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
@@ -349,8 +349,8 @@ export interface ClipEdits {
   /** The same as `delete`. */
   background?: readonly number[] | undefined;
   /**
-   * Names by number, for {@link ClipTrack.name}. Only what is said of an object itself changes one that has a name. Where this is given, it
-   * replaces the names of a `state`.
+   * Names by number, for {@link ClipTrack.name}. A name protects an object: annotations of others do not change its pixels. Where this is
+   * given, it replaces the names of a `state`.
    */
   names?: Readonly<Record<number, string>> | undefined;
   /** As the option `locked`. */

@@ -4,10 +4,8 @@
 //! ground that a box or clicks suppose is not their object, and nothing to any other.
 
 use super::saved::{Saved, saved};
+use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
-
-/// The label of a pixel that nothing is said about.
-pub(crate) const UNANNOTATED: u8 = u8::MAX;
 
 /// By number: whether the object is one of a set.
 pub(super) type ObjectSet = [bool; 256];
@@ -26,10 +24,20 @@ pub enum Spread {
     None,
 }
 
+/// A direction through the frames of a clip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Direction {
+    Forward,
+    Backward,
+}
+
 impl Spread {
-    /// Forward, backward.
-    pub(super) fn directions(self) -> [bool; 2] {
-        [matches!(self, Spread::Both | Spread::Forward), matches!(self, Spread::Both | Spread::Backward)]
+    /// Whether it spreads in a direction.
+    pub(super) fn goes(self, direction: Direction) -> bool {
+        match direction {
+            Direction::Forward => matches!(self, Spread::Both | Spread::Forward),
+            Direction::Backward => matches!(self, Spread::Both | Spread::Backward),
+        }
     }
 }
 
@@ -49,8 +57,8 @@ impl Saved for Spread {
 pub struct Painted {
     /// Index of the frame.
     pub frame: usize,
-    /// The object that it is about. Without one it is about all objects that the labels name; labels that name none say of all objects
-    /// where they are not.
+    /// The object that it is about. Without one it is about all objects whose numbers are among the labels. A map of 0 and 255 alone is an
+    /// eraser: at its zeros there is no object.
     pub object: Option<u8>,
     /// One label per pixel of the frame, row by row: the number of an object, a new number for a new one, 0 where none of these objects
     /// is, 255 where nothing is said. Without 255, as of an outline, they are the mask of an object, to the pixel.
@@ -105,11 +113,13 @@ pub struct Annotations {
     pub corrections: Vec<Painted>,
     /// One after another. Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
     pub prompts: Vec<Prompt>,
-    /// Objects that nothing changes until they are unlocked, but annotations given together with a new lock; none: as before.
+    /// Numbers of the objects that are locked from now on: no annotation changes their pixels, but those given together with a new lock.
+    /// Without this the locks stay as they are.
     pub locked: Option<Vec<u8>>,
-    /// Objects that only annotations of themselves change, because a person named them; none: as before.
+    /// Numbers of the objects that a person has named: annotations of other objects do not change their pixels. Without this the names
+    /// stay as they are.
     pub named: Option<Vec<u8>>,
-    /// Frames in which only what is painted there changes labels; none: as before.
+    /// The frames that a person has accepted: annotations of other frames do not change their labels. Without this they stay as they are.
     pub accepted: Option<Vec<Accepted>>,
     /// Objects and the numbers that they get for the whole clip: that of another object to merge them, 0 to make them background: such
     /// an object claims nothing any more. Numbers that no object has change nothing.
@@ -176,7 +186,7 @@ impl Annotations {
             for Painted { object, labels, .. } in painted {
                 fill(name, labels)?;
                 let Some(object) = *object else { continue };
-                if !is_object(object) || labels.iter().any(|label| ![0, object, UNANNOTATED].contains(label)) {
+                if !is_object(object) || labels.iter().any(|label| ![0, object, UNLABELLED].contains(label)) {
                     let reason = format!("what is said of object {object} alone has the labels 0, {object} and 255");
                     return invalid(name, reason);
                 }
@@ -186,7 +196,7 @@ impl Annotations {
         for labels in self.accepted.iter().flatten().filter_map(|of| of.labels.as_ref()) {
             fill("accepted", labels)?;
         }
-        let is_number = |[object, number]: &&[u8; 2]| is_object(*object) && *number != UNANNOTATED;
+        let is_number = |[object, number]: &&[u8; 2]| is_object(*object) && *number != UNLABELLED;
         if let Some([object, number]) = self.numbers.iter().find(|numbers| !is_number(numbers)) {
             let reason = "objects are 1 to 254, the background is 0";
             return invalid("objects", format!("object {object} cannot get the number {number}: {reason}"));
@@ -206,7 +216,7 @@ impl Annotations {
 }
 
 fn is_object(number: u8) -> bool {
-    number != 0 && number != UNANNOTATED
+    number != 0 && number != UNLABELLED
 }
 
 fn invalid<T>(name: &'static str, reason: String) -> Result<T> {

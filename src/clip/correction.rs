@@ -31,12 +31,13 @@ mod track;
 
 use std::collections::VecDeque;
 
-use super::annotation::{ObjectSet, Spread, UNANNOTATED};
+use super::annotation::{Direction, ObjectSet, Spread};
 use super::changes::Changes;
 use super::evidence::Flow;
 use super::frame_annotation::{Change, FrameAnnotation};
 use super::layer::Layer;
 use super::segmented_clip::SegmentedClip;
+use crate::answer::UNLABELLED;
 use crate::error::Result;
 use crate::frame::Frame;
 
@@ -44,7 +45,7 @@ use compose::Composition;
 use features::FrameFeatures;
 use group::{Group, Scene};
 pub use pair::{Correction, MAX_CORRECTED, Relabelling, relabel};
-use plan::{Anchor, Direction, Task, Visit, groups, visits};
+use plan::{Anchor, Task, Visit, groups, visits};
 use prompt::outline;
 use proposal::Proposal;
 use scaling::at_features;
@@ -198,7 +199,7 @@ impl SceneCorrection {
         let painted = annotation.painted_labels().unwrap_or_default();
         painted.iter().zip(shown).for_each(|(&painted, &shown)| loses[usize::from(shown)] |= painted == 0);
         let is_taken = |k: usize| users[k] && loses[k] && !clip.locked[k];
-        (1..UNANNOTATED).filter(|&object| is_taken(usize::from(object))).collect()
+        (1..UNLABELLED).filter(|&object| is_taken(usize::from(object))).collect()
     }
 
     /// The annotated frame at once. Each object goes by where it was before strokes were drawn, so that it matters not which came before.
@@ -215,11 +216,11 @@ impl SceneCorrection {
         let seeds = |object: u8| clip.seeds_at(index, object, features);
         let annotation = clip.frames[index].annotation.clone().unwrap_or_default();
         let mut proposals = Vec::new();
-        for object in (1..UNANNOTATED).filter(|&object| changing[usize::from(object)]) {
+        for object in (1..UNLABELLED).filter(|&object| changing[usize::from(object)]) {
             let is_shown = || shown.iter().map(|&label| u8::from(label == object)).collect();
             let own: Vec<u8> = annotation.base(object).unwrap_or_else(is_shown);
             let own: Vec<u8> = own.into_iter().map(|inside| object * inside).collect();
-            let own = at_features(&own, UNANNOTATED, clip.size()[0], features);
+            let own = at_features(&own, UNLABELLED, clip.size()[0], features);
             let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &own, flows: None };
             let anchor = Anchor { frame: index, spread: Spread::Both, is_whole: false };
             let mut track = Track::new(object, vec![anchor], index + 1);
@@ -311,7 +312,7 @@ impl SceneCorrection {
             let is_open = !self.is_done[t - self.scene[0]] && !state.accepted;
             let Some(layer) = state.layer.as_ref().filter(|_| is_open) else { continue };
             if layer.labels.each().any(|(label, _)| is_gone(label)) {
-                let labels = layer.labels.map(|label| if is_gone(label) { UNANNOTATED } else { label });
+                let labels = layer.labels.map(|label| if is_gone(label) { UNLABELLED } else { label });
                 let odds = clip.odds_of(layer);
                 changes.add(t);
                 clip.frames[t].layer = clip.layer_of(&labels.values(), &|_, at| odds.values()[at]);

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::evidence::Flow;
 use super::options::model;
+use crate::answer::UNLABELLED;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
@@ -56,9 +57,6 @@ pub(crate) struct WorkingFrame<'a> {
     /// Whether pixels whose odds do not decide are marked.
     pub(crate) mark_unknown: bool,
 }
-
-/// The label of a pixel that is marked.
-const UNLABELLED: u8 = u8::MAX;
 
 impl WorkingFrame<'_> {
     /// The frame described at the size of its luminance.

@@ -1,8 +1,9 @@
 //! Edits that need no propagation: numbers that are kept free, frames that are accepted, objects that are merged or deleted.
 
-use super::annotation::{Accepted, ObjectSet, UNANNOTATED};
+use super::annotation::{Accepted, ObjectSet};
 use super::changes::Changes;
 use super::segmented_clip::SegmentedClip;
+use crate::answer::UNLABELLED;
 use crate::frame::Frame;
 
 impl SegmentedClip {
@@ -15,10 +16,10 @@ impl SegmentedClip {
         for (label, _) in self.frames.iter().flat_map(|frame| frame.found.labels.each()) {
             is_found[usize::from(label)] = true;
         }
-        let objects = 1..UNANNOTATED;
+        let objects = 1..UNLABELLED;
         let is_taken = |k: &u8| is_found[usize::from(*k)] || user_objects[usize::from(*k)] || numbers.contains(k);
         let mut free = objects.clone().filter(|k| !is_taken(k));
-        let mut now: Vec<u8> = (0..=UNANNOTATED).collect();
+        let mut now: Vec<u8> = (0..=UNLABELLED).collect();
         for k in objects.clone().filter(|k| numbers.contains(k) && !user_objects[usize::from(*k)]) {
             let old = usize::from(k);
             let number = std::mem::replace(&mut self.numbers[old], k);
@@ -58,7 +59,7 @@ impl SegmentedClip {
         let before = self.frames[index].layer.as_ref().map(|layer| (layer.labels.values(), self.odds_of(layer)));
         let found = self.odds_of(&self.frames[index].found);
         let odds = |p: usize, at: usize| match &before {
-            Some((labels, odds)) if labels[p] != UNANNOTATED => odds.values()[at],
+            Some((labels, odds)) if labels[p] != UNLABELLED => odds.values()[at],
             _ => found.values()[at],
         };
         let layer = self.layer_of(&labels, &odds);

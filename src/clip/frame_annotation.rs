@@ -1,9 +1,10 @@
 //! A person's annotations of one frame, as they were given, and the seeds of each object that follow from them.
 
-use super::annotation::{ObjectSet, Painted, Prompt, Seed, Spread, UNANNOTATED};
+use super::annotation::{ObjectSet, Painted, Prompt, Seed, Spread};
 use super::options::model;
 use super::runs::Runs;
 use super::saved::saved;
+use crate::answer::UNLABELLED;
 use crate::components::{Component, Connectivity, components};
 
 /// The annotations of a frame.
@@ -75,7 +76,7 @@ impl FrameAnnotation {
         if self.painted.contains(&strokes) {
             return;
         }
-        let is_nothing = painted.labels.iter().all(|&label| label == UNANNOTATED);
+        let is_nothing = painted.labels.iter().all(|&label| label == UNLABELLED);
         if is_nothing && painted.object.is_none() {
             *self = FrameAnnotation::default();
             return;
@@ -99,7 +100,7 @@ impl FrameAnnotation {
     /// Forgets what is about deleted objects alone, by the numbers that objects are given. A label map also says where others are not.
     #[inline(never)]
     pub(super) fn forget(&mut self, numbers: &[u8]) {
-        for object in (1..UNANNOTATED).filter(|&object| numbers[usize::from(object)] == 0) {
+        for object in (1..UNLABELLED).filter(|&object| numbers[usize::from(object)] == 0) {
             self.take_back_painted(object);
             self.take_back_prompt(object);
         }
@@ -141,7 +142,7 @@ impl FrameAnnotation {
     /// Whether its label map names no object: where it is 0, there is none.
     #[inline(never)]
     pub(super) fn names_no_object(&self) -> bool {
-        self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == UNANNOTATED))
+        self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == UNLABELLED))
     }
 
     /// Whether anything is about an object by its number.
@@ -192,7 +193,7 @@ impl FrameAnnotation {
         self.pieces = pieces;
         let mut objects = [false; 256];
         now.iter().for_each(|&label| objects[usize::from(label)] = true);
-        for object in (1..UNANNOTATED).filter(|&k| objects[usize::from(k)]) {
+        for object in (1..UNLABELLED).filter(|&k| objects[usize::from(k)]) {
             let is_about = self.names_no_object() && !self.agrees(before, 0) || !self.agrees(before, object);
             let Some(seeds) = is_about.then(|| self.seeds(object)).flatten() else { continue };
             let old = before.seeds(object);
@@ -222,7 +223,7 @@ impl FrameAnnotation {
             };
             let goes: Vec<bool> = (0..parts.list.len()).map(goes).collect();
             let mut piece: Vec<u8> =
-                parts.of.iter().map(|&part| if goes[part as usize] { 0 } else { UNANNOTATED }).collect();
+                parts.of.iter().map(|&part| if goes[part as usize] { 0 } else { UNLABELLED }).collect();
             if !piece.contains(&0) {
                 continue;
             }
@@ -248,7 +249,7 @@ impl FrameAnnotation {
             let now = || Runs::of(&shown.iter().map(|&label| u8::from(label == k)).collect::<Vec<u8>>());
             (k, known.unwrap_or_else(now))
         };
-        self.bases = (1..UNANNOTATED).filter(|&k| is_stroked(k)).map(base).collect();
+        self.bases = (1..UNLABELLED).filter(|&k| is_stroked(k)).map(base).collect();
     }
 
     /// Where an object was before strokes were drawn: 1 at its pixels. There is none without strokes.
@@ -279,7 +280,7 @@ impl FrameAnnotation {
     /// Whether the mask of an object is painted as a whole: what a prompt outlines is no one's word.
     pub(super) fn is_whole(&self, object: u8) -> bool {
         let painted = [self.strokes(object), self.strokes(0).filter(|_| self.names_in_map(object))];
-        painted.into_iter().flatten().any(|of| !of.labels.names(UNANNOTATED))
+        painted.into_iter().flatten().any(|of| !of.labels.names(UNLABELLED))
     }
 
     /// Where the annotations of an object spread.
@@ -302,7 +303,7 @@ impl FrameAnnotation {
         for (labels, other) in layers.into_iter().filter_map(|(labels, other)| Some((labels?, other))) {
             let labels = labels.values();
             let seeds = seeds.get_or_insert_with(|| vec![Seed::Nothing; labels.len()]);
-            for (seed, label) in seeds.iter_mut().zip(labels).filter(|(_, label)| *label != UNANNOTATED) {
+            for (seed, label) in seeds.iter_mut().zip(labels).filter(|(_, label)| *label != UNLABELLED) {
                 *seed = if label == object { Seed::Object } else { other };
             }
         }
@@ -321,12 +322,12 @@ impl FrameAnnotation {
         let mut painted: Option<Vec<u8>> = None;
         for Strokes { object, labels, .. } in &self.painted {
             let labels = labels.values();
-            let painted = painted.get_or_insert_with(|| vec![UNANNOTATED; labels.len()]);
+            let painted = painted.get_or_insert_with(|| vec![UNLABELLED; labels.len()]);
             for (painted, label) in painted.iter_mut().zip(labels) {
-                if label != UNANNOTATED && (label != 0 || *object == 0) {
+                if label != UNLABELLED && (label != 0 || *object == 0) {
                     *painted = label;
                 } else if label == 0 && *painted == *object {
-                    *painted = UNANNOTATED;
+                    *painted = UNLABELLED;
                 }
             }
         }

@@ -9,6 +9,7 @@ mod object;
 mod sharing;
 mod sight;
 
+use crate::answer::UNLABELLED;
 use crate::clip::options::model;
 use std::rc::Rc;
 
@@ -24,8 +25,6 @@ use sight::{Sight, telling};
 
 /// Largest number of an object: 255 is kept for unlabelled pixels.
 pub(crate) const MAX_OBJECTS: usize = 254;
-/// A carried label that is not known: it hid behind something.
-const UNKNOWN: u8 = u8::MAX;
 
 /// An object that was a part of another one before a frame.
 #[derive(Clone, Copy, Debug)]
@@ -89,10 +88,10 @@ impl Identities {
     fn carried(&mut self, record: &Record, mask: &[u8]) -> Vec<u8> {
         let (Some(back), Some((last, labels))) = (&record.back, &self.last) else {
             self.objects.clear();
-            return vec![UNKNOWN; mask.len()];
+            return vec![UNLABELLED; mask.len()];
         };
         let return_flow = last.onward.as_ref().filter(|flow| flow.measured);
-        let mut carried = carried_labels(labels, back, return_flow, UNKNOWN);
+        let mut carried = carried_labels(labels, back, return_flow, UNLABELLED);
         // Where nothing is seen to move, an object may be hidden.
         if !record.repeats {
             self.objects.iter_mut().for_each(Object::move_on);
@@ -104,7 +103,7 @@ impl Identities {
     /// Foreground that the motions lead to no object, as one of its pairs took it for background, may be where an object's velocity leads.
     fn follow_velocities(&self, labels: &[u8], mask: &[u8], width: usize, carried: &mut [u8]) {
         let height = (labels.len() / width) as f64;
-        let lost = |label: u8| label == 0 || label == UNKNOWN;
+        let lost = |label: u8| label == 0 || label == UNLABELLED;
         for (p, carried) in carried.iter_mut().enumerate().filter(|(p, carried)| mask[*p] > 0 && lost(**carried)) {
             let (x, y) = ((p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
             let leads_here = |object: &&Object| {

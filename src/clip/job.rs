@@ -3,11 +3,12 @@
 
 use std::collections::VecDeque;
 
-use super::annotation::{Accepted, Annotations, Painted, Prompt, UNANNOTATED};
+use super::annotation::{Accepted, Annotations, Painted, Prompt};
 use super::changes::{Changed, Changes};
 use super::correction::SceneCorrection;
 use super::frame_annotation::{Change, FrameAnnotation};
 use super::segmented_clip::SegmentedClip;
+use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 
@@ -82,7 +83,7 @@ impl ClipJob {
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, locks, numbers, changes: Changes::default() };
         let mut is_given = [false; 256];
         masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
-        let given: Vec<u8> = (1..UNANNOTATED).filter(|&label| is_given[usize::from(label)]).collect();
+        let given: Vec<u8> = (1..UNLABELLED).filter(|&label| is_given[usize::from(label)]).collect();
         given.iter().for_each(|&label| clip.given[usize::from(label)] = true);
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
@@ -201,7 +202,7 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (
         match of_frame.iter_mut().find(|before| before.object == painted.object) {
             None => of_frame.push(painted.clone()),
             Some(mask) => {
-                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNANNOTATED);
+                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNLABELLED);
                 said.for_each(|(mask, label)| *mask = *label);
                 mask.spread = painted.spread;
             }
@@ -235,7 +236,7 @@ fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8>
         let before = before(painted.frame);
         let mut now: FrameAnnotation = before.clone();
         now.paint(painted);
-        (1..UNANNOTATED).find(|object| is_locked(object) && !now.agrees(&before, *object))
+        (1..UNLABELLED).find(|object| is_locked(object) && !now.agrees(&before, *object))
     };
     let prompted =
         |prompt: &&Prompt| is_locked(&prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt);

@@ -1,10 +1,11 @@
 //! The labels of a frame: those found automatically, with the layer of annotations over them.
 
-use super::annotation::{ObjectSet, UNANNOTATED};
+use super::annotation::ObjectSet;
 use super::description::{ClipFrame, WorkingFrame};
 use super::layer::Layer;
 use super::options::model;
 use super::segmented_clip::SegmentedClip;
+use crate::answer::UNLABELLED;
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
 
@@ -43,7 +44,7 @@ impl SegmentedClip {
             let p = corner(at);
             let odds = &mut odds.values_mut()[at];
             match &layer {
-                Some((of_layer, above)) if above[p] != UNANNOTATED => *odds = of_layer.values()[at],
+                Some((of_layer, above)) if above[p] != UNLABELLED => *odds = of_layer.values()[at],
                 _ if full[p] == 0 && found[p] > 0 => *odds = -model().certain,
                 _ => {}
             }
@@ -67,7 +68,7 @@ impl SegmentedClip {
     /// Full-size labels found automatically, with the layer of a frame over them. The found pixels of a user's object do not show, nor a
     /// deleted one, nor the rest of an object most of which lies under one that was given as masks.
     pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
-        let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNANNOTATED; found.len()]);
+        let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNLABELLED; found.len()]);
         let mut sizes = [[0usize; 2]; 256];
         for (&found, &label) in found.iter().zip(&layer) {
             sizes[usize::from(found)][0] += 1;
@@ -80,8 +81,8 @@ impl SegmentedClip {
         };
         let hidden: Vec<bool> = (0..=u8::MAX).map(is_hidden).collect();
         let label = |(&layer, &found): (&u8, &u8)| match layer {
-            UNANNOTATED if hidden[usize::from(found)] => 0,
-            UNANNOTATED => found,
+            UNLABELLED if hidden[usize::from(found)] => 0,
+            UNLABELLED => found,
             label => label,
         };
         layer.iter().zip(found).map(label).collect()
@@ -89,16 +90,16 @@ impl SegmentedClip {
 
     /// The labels of the layer of a frame, if it has one. Where a user's objects were deleted, the labels below show again.
     pub(super) fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
-        let is_deleted = |label: u8| label > 0 && label != UNANNOTATED && self.numbers[usize::from(label)] == 0;
+        let is_deleted = |label: u8| label > 0 && label != UNLABELLED && self.numbers[usize::from(label)] == 0;
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
-        labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNANNOTATED);
+        labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNLABELLED);
         Some(labels)
     }
 
     /// A layer of full-size labels, if they say anything. `odds` has those of a full-size pixel, and of the working pixel that it is the
     /// corner of.
     pub(super) fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
-        if labels.iter().all(|&label| label == UNANNOTATED) {
+        if labels.iter().all(|&label| label == UNLABELLED) {
             return None;
         }
         let ([width, height], corner) = (self.working_size(), self.corner());
@@ -106,7 +107,7 @@ impl SegmentedClip {
             let at = y * width + x;
             let p = corner(at);
             match labels[p] {
-                UNANNOTATED => 0.0,
+                UNLABELLED => 0.0,
                 0 => -2.0 * model().certain,
                 _ => odds(p, at),
             }

@@ -1,5 +1,5 @@
 //! Values of a clip as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
-//! then a hash of all that. ObjectSet are little-endian.
+//! then a hash of all that. Numbers are little-endian.
 
 use crate::error::{Error, Result};
 use crate::hash::hash;

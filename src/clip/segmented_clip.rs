@@ -1,11 +1,14 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use super::annotation::{ObjectSet, UNANNOTATED};
+use std::cmp::Ordering;
+
+use super::annotation::{Direction, ObjectSet};
 use super::evidence::Flow;
 use super::frame_state::FrameState;
 use super::layer::Layer;
 use super::options::ClipOptions;
 use super::saved::{Format, saved};
+use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
 use crate::options::{Quality, SegmentOptions};
@@ -80,7 +83,7 @@ impl SegmentedClip {
         let mut is_there: ObjectSet = [false; 256];
         let layers = self.frames.iter().flat_map(|frame| [Some(&frame.found), frame.layer.as_ref()]).flatten();
         layers.flat_map(|layer| layer.labels.each()).for_each(|(label, _)| is_there[usize::from(label)] = true);
-        (1..UNANNOTATED).filter(|&object| is_there[usize::from(object)]).collect()
+        (1..UNLABELLED).filter(|&object| is_there[usize::from(object)]).collect()
     }
 
     /// First and last frame of the scene of a frame.
@@ -102,8 +105,12 @@ impl SegmentedClip {
         for t in first..=last {
             let Some(annotation) = &self.frames[t].annotation else { continue };
             for &object in &annotation.anchored {
-                let [forward, backward] = annotation.spread_of(object).directions();
-                objects[usize::from(object)] |= t == index || (t < index && forward) || (t > index && backward);
+                let spread = annotation.spread_of(object);
+                objects[usize::from(object)] |= match t.cmp(&index) {
+                    Ordering::Less => spread.goes(Direction::Forward),
+                    Ordering::Equal => true,
+                    Ordering::Greater => spread.goes(Direction::Backward),
+                };
             }
         }
         objects

@@ -172,7 +172,7 @@ pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
 }
 
 /// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
-/// (1.4826 × median absolute deviation), between that of rounding and 8.
+/// (1.4826 × median absolute deviation), between that of rounding and the largest one of the model.
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     let level = &level.thinned();
     let scaled = level.scaled(motion);

@@ -303,7 +303,7 @@ class Correction:
     """Labels of one frame of a clip that are certain.
 
     255 says nothing. Without ``object`` the labels are a map: it is about the objects that it names (a number that no object has makes a new
-    one), and 0 is where none of these is. A map that names none says of all objects where they are not, as an eraser does. A correction
+    one), and 0 is where none of these is. A map of 0 and 255 alone is an eraser: at its zeros there is no object. A correction
     replaces what was painted in its frame of the same object, or as a map; one that says nothing takes it back.
     """
 

@@ -4,7 +4,8 @@ use super::features::FrameFeatures;
 use super::plan::Anchor;
 use super::scaling::{at_features, at_working_size};
 use super::strokes;
-use crate::clip::annotation::{ObjectSet, Seed, Spread, UNANNOTATED};
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::{ObjectSet, Seed, Spread};
 use crate::clip::frame_annotation::FrameAnnotation;
 use crate::clip::segmented_clip::SegmentedClip;
 
@@ -39,7 +40,7 @@ impl SegmentedClip {
             let anchor = |frame| Some(Anchor { frame, spread: spread(frame)?, is_whole: is_whole(frame) });
             (first..=last).filter_map(anchor).collect()
         };
-        (0..UNANNOTATED).map(of).collect()
+        (0..UNLABELLED).map(of).collect()
     }
 
     /// Decides which objects each frame of a scene is an anchor of: those that it names, and those found automatically that it erases partly.
@@ -70,7 +71,7 @@ impl SegmentedClip {
                 let k = usize::from(object);
                 self.numbers[k] > 0 && (names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k]))
             };
-            let anchored = (1..UNANNOTATED).filter(is_anchor).collect();
+            let anchored = (1..UNLABELLED).filter(is_anchor).collect();
             if let Some(annotation) = &mut self.frames[t].annotation {
                 annotation.anchored = anchored;
             }
@@ -110,16 +111,15 @@ impl SegmentedClip {
     #[inline(never)]
     pub(super) fn seen_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<Vec<u8>> {
         let seen = self.frames[t].annotation.as_ref()?.seen(object)?;
-        Some(at_features(&seen, u8::MAX, self.size()[0], features))
+        Some(at_features(&seen, UNLABELLED, self.size()[0], features))
     }
 
     /// How an annotation covers each object found automatically, by number.
     #[inline(never)]
     fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {
         let (size, step, full_width) = (self.working_size(), self.working_step(), self.size()[0]);
-        let scaled = |labels: &[u8]| at_working_size(labels, UNANNOTATED, full_width, size, step);
-        let painted =
-            annotation.painted_labels().map_or_else(|| vec![UNANNOTATED; size[0] * size[1]], |of| scaled(&of));
+        let scaled = |labels: &[u8]| at_working_size(labels, UNLABELLED, full_width, size, step);
+        let painted = annotation.painted_labels().map_or_else(|| vec![UNLABELLED; size[0] * size[1]], |of| scaled(&of));
         let erases = annotation.names_no_object();
         let (found, _) = self.found(t);
         let mut covered = [Covered::default(); 256];
@@ -127,11 +127,11 @@ impl SegmentedClip {
             let of = &mut covered[usize::from(found)];
             of.all += 1;
             of.ground += usize::from(painted == 0 && erases);
-            of.others += usize::from(painted != 0 && painted != UNANNOTATED && painted != found);
+            of.others += usize::from(painted != 0 && painted != UNLABELLED && painted != found);
         }
         for (object, outline) in annotation.outlines() {
             for (p, _) in scaled(&outline).into_iter().enumerate().filter(|(_, label)| *label == object) {
-                covered[usize::from(found[p])].others += usize::from(found[p] != object && painted[p] == UNANNOTATED);
+                covered[usize::from(found[p])].others += usize::from(found[p] != object && painted[p] == UNLABELLED);
             }
         }
         covered

@@ -6,7 +6,8 @@
 use super::features::FrameFeatures;
 use super::proposal::Proposal;
 use super::strokes;
-use crate::clip::annotation::{ObjectSet, Seed, UNANNOTATED};
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::{ObjectSet, Seed};
 use crate::clip::frame_annotation::FrameAnnotation;
 use crate::clip::layer::Layer;
 use crate::clip::options::model;
@@ -63,7 +64,7 @@ impl Composition<'_> {
         let rules = Rules {
             painted: annotation.painted_labels().unwrap_or_default(),
             annotation,
-            layer: clip.layer_labels(self.index).unwrap_or_else(|| vec![UNANNOTATED; self.found.len()]),
+            layer: clip.layer_labels(self.index).unwrap_or_else(|| vec![UNLABELLED; self.found.len()]),
             users: clip.user_objects_in(self.index),
             protected: clip.protected(),
             is_accepted: state.accepted,
@@ -93,17 +94,17 @@ impl Composition<'_> {
             (users[k] || protected[k] || *is_accepted) && !self.changes(label)
         };
         // A pixel that was taken from an object before it was protected stays taken.
-        let holds_found = |p: usize| layer[p] == UNANNOTATED && self.is_protected_below(rules, p);
+        let holds_found = |p: usize| layer[p] == UNLABELLED && self.is_protected_below(rules, p);
         let is_held = |(p, &label): (usize, &u8)| match label {
             0 => false,
-            UNANNOTATED => holds_found(p),
+            UNLABELLED => holds_found(p),
             label => holds(label),
         };
         let is_held: Vec<bool> = layer.iter().enumerate().map(is_held).collect();
         let label = |(&label, &is_held): (&u8, &bool)| match label {
             label if is_held => label,
             label if *is_accepted && !self.changes(label) => 0,
-            _ => UNANNOTATED,
+            _ => UNLABELLED,
         };
         let labels = layer.iter().zip(&is_held).map(label).collect();
         Draft { labels, odds: vec![0.0; layer.len()], is_held }
@@ -184,7 +185,7 @@ impl Composition<'_> {
             from != 0 && from != other && self.changes(other) && !rules.users[k] && !rules.protected[k]
         };
         let is_open = |p: usize| {
-            let is_painted = rules.painted.get(p).is_some_and(|label| *label != UNANNOTATED);
+            let is_painted = rules.painted.get(p).is_some_and(|label| *label != UNLABELLED);
             !is_painted && rules.annotation.is_within([p % width, p / width])
         };
         strokes::absorb_rims(&mut draft.labels, self.found, (&is_open, &takes), width, 2 * self.features.step);
@@ -193,7 +194,7 @@ impl Composition<'_> {
             for (label, _) in
                 draft.labels.iter_mut().zip(painted).filter(|(label, said)| *said == 0 && **label == *object)
             {
-                *label = UNANNOTATED;
+                *label = UNLABELLED;
             }
         }
     }
@@ -202,13 +203,13 @@ impl Composition<'_> {
     /// nowhere.
     fn paint(&self, rules: &Rules, draft: &mut Draft) {
         let erases = rules.annotation.names_no_object();
-        for (p, &label) in rules.painted.iter().enumerate().filter(|(_, label)| **label != UNANNOTATED) {
-            let below = usize::from(if rules.layer[p] == UNANNOTATED { self.found[p] } else { rules.layer[p] });
+        for (p, &label) in rules.painted.iter().enumerate().filter(|(_, label)| **label != UNLABELLED) {
+            let below = usize::from(if rules.layer[p] == UNLABELLED { self.found[p] } else { rules.layer[p] });
             let is_named = self.clip.locked[below] || self.clip.named[below];
             let is_kept = draft.is_held[p] && (is_named || rules.protected[below] && !rules.is_accepted);
             // The ground of a label map is that of the objects that it names.
             let is_others = match label {
-                0 => draft.labels[p] != UNANNOTATED && !erases,
+                0 => draft.labels[p] != UNLABELLED && !erases,
                 label => !self.changes(label),
             };
             if !is_kept && !is_others {
@@ -219,8 +220,8 @@ impl Composition<'_> {
 
     /// A protected object gets no pixel back that it had lost.
     fn give_nothing_back(&self, rules: &Rules, draft: &mut Draft) {
-        for (p, label) in draft.labels.iter_mut().enumerate().filter(|(_, label)| **label == UNANNOTATED) {
-            if rules.layer[p] != UNANNOTATED && self.is_protected_below(rules, p) {
+        for (p, label) in draft.labels.iter_mut().enumerate().filter(|(_, label)| **label == UNLABELLED) {
+            if rules.layer[p] != UNLABELLED && self.is_protected_below(rules, p) {
                 *label = 0;
             }
         }

@@ -2,11 +2,11 @@
 
 use super::features::FrameFeatures;
 use super::placement::Placement;
-use super::plan::{Direction, Members};
+use super::plan::Members;
 use super::propagator::{Observation, Prediction};
 use super::proposal::{Proposal, odds_at};
 use super::track::Track;
-use crate::clip::annotation::{Seed, Spread};
+use crate::clip::annotation::{Direction, Seed, Spread};
 use crate::clip::evidence::Flow;
 use crate::clip::options::model;
 use crate::frame::Plane;
@@ -62,7 +62,7 @@ impl Group {
                 seen: seen.as_deref(),
                 seeds: seeds.as_ref().map(|(seeds, _)| &seeds[..]),
                 is_anchor: track.anchor(frame).is_some(),
-                spreads: seeds.as_ref().is_none_or(|(_, spread)| spread.directions()[direction as usize]),
+                spreads: seeds.as_ref().is_none_or(|(_, spread)| spread.goes(direction)),
                 is_whole: track.anchor(frame).is_some_and(|anchor| anchor.is_whole),
                 spreads_to_all: track.anchor(frame).is_some_and(|anchor| anchor.spread == Spread::Both),
             })
@@ -140,7 +140,7 @@ fn compete(predictions: &mut [Option<Prediction>], width: usize) {
 mod tests {
     use super::*;
     use crate::Random;
-    use crate::clip::annotation::UNANNOTATED;
+    use crate::answer::UNLABELLED;
     use crate::motion::AffineMotion;
 
     const SIZE: [usize; 2] = [96, 64];
@@ -152,7 +152,7 @@ mod tests {
     /// The seeds of an object that a label map names.
     fn of_object(said: &[u8], number: u8) -> Vec<Seed> {
         let of = |&label: &u8| match label {
-            UNANNOTATED => Seed::Nothing,
+            UNLABELLED => Seed::Nothing,
             label if label == number => Seed::Object,
             _ => Seed::Other,
         };
@@ -212,7 +212,7 @@ mod tests {
         let found: Vec<u8> = (0..features.pixels()).map(|p| u8::from(at(p) > 0)).collect();
         let stroke = |part: usize, label: u8| -> Vec<u8> {
             let is_in = |p: &usize| at(*p) == part && (28..36).contains(&(p / SIZE[0]));
-            (0..features.pixels()).map(|p| if is_in(&p) { label } else { UNANNOTATED }).collect()
+            (0..features.pixels()).map(|p| if is_in(&p) { label } else { UNLABELLED }).collect()
         };
         let (here, later) = (stroke(1, 1), stroke(2, 0));
         let shares = [false, true].map(|hears| {

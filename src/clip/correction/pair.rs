@@ -145,7 +145,7 @@ impl Correction<'_> {
         }
         let mut divisions: Vec<Division> = Vec::new();
         for (set, &taken) in (0u16..).zip(&taken).filter(|(_, taken)| **taken != 0) {
-            // Strokes either direction are of the same division.
+            // A stroke that gives pixels to one side and a stroke that gives them to the other are of the same division.
             let [object, others] =
                 if taken.trailing_zeros() < set.trailing_zeros() { [set, taken] } else { [taken, set] };
             match divisions.iter_mut().find(|known| known.object == object) {

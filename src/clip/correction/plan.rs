@@ -1,6 +1,7 @@
 //! The frames that a correction visits, and what for: a pure function of the annotated frames of each object.
 
-use crate::clip::annotation::{ObjectSet, Spread, UNANNOTATED};
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::{Direction, ObjectSet, Spread};
 use crate::clip::options::MAX_LOOK_AHEAD;
 
 /// A frame that tells where an object is, and where that spreads.
@@ -12,17 +13,10 @@ pub(super) struct Anchor {
     pub(super) is_whole: bool,
 }
 
-/// A direction through the frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Direction {
-    Forward,
-    Backward,
-}
-
 impl Direction {
     /// The frame in which an object begins that has these anchors, in ascending order.
     pub(super) fn first(self, anchors: &[Anchor]) -> Option<usize> {
-        let spreads = |anchor: &&Anchor| anchor.spread.directions()[self as usize];
+        let spreads = |anchor: &&Anchor| anchor.spread.goes(self);
         let anchor = match self {
             Direction::Forward => anchors.iter().find(spreads),
             Direction::Backward => anchors.iter().rev().find(spreads),
@@ -60,7 +54,7 @@ pub(super) enum Task {
 /// Which objects are propagated together, by number, given those that change and the anchors of all.
 pub(super) fn groups(changing: &ObjectSet, anchors: &[Vec<Anchor>]) -> Vec<Members> {
     let mut groups: Vec<Members> = Vec::new();
-    for object in (1..UNANNOTATED).filter(|&object| changing[usize::from(object)]) {
+    for object in (1..UNLABELLED).filter(|&object| changing[usize::from(object)]) {
         let of = |object: u8| &anchors[usize::from(object)];
         let of_these = |group: &&mut Members| of(group.changing[0]) == of(object);
         if let Some(group) = groups.iter_mut().find(of_these) {
@@ -68,7 +62,7 @@ pub(super) fn groups(changing: &ObjectSet, anchors: &[Vec<Anchor>]) -> Vec<Membe
             continue;
         }
         let is_shared = |anchor: &&Anchor| of(object).iter().any(|own| own.frame == anchor.frame);
-        let shared = (1..UNANNOTATED).map(|other| (other, of(other).iter().filter(is_shared).copied().collect()));
+        let shared = (1..UNLABELLED).map(|other| (other, of(other).iter().filter(is_shared).copied().collect()));
         let members = shared.filter(|(other, anchors): &(u8, Vec<Anchor>)| *other == object || !anchors.is_empty());
         groups.push(Members { anchors: members.collect(), changing: vec![object] });
     }
@@ -83,7 +77,7 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
     let objects = || groups.iter().flat_map(|group| &group.anchors);
     let begins = |direction: Direction| objects().filter_map(move |(_, anchors)| direction.first(anchors));
     let (forward, backward) = (begins(Direction::Forward).min(), begins(Direction::Backward).max());
-    let tracked = (1..UNANNOTATED).filter(|object| objects().any(|(of, _)| of == object));
+    let tracked = (1..UNLABELLED).filter(|object| objects().any(|(of, _)| of == object));
     let samples: Vec<(u8, Vec<usize>)> = tracked.map(|object| (object, sample(&found(object)))).collect();
     let spreads_to_all = |frame: usize| {
         let anchor = Anchor { frame, spread: Spread::Both, is_whole: false };

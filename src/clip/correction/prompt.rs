@@ -21,7 +21,7 @@ use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
 use super::label_evidence::LabelEvidence;
 use super::proposal::{CERTAIN, cut, logit};
-use crate::clip::annotation::UNANNOTATED;
+use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Click, Prompt};
 use crate::clip::evidence::Flow;
 use crate::clip::options::model;
@@ -70,7 +70,7 @@ pub(super) fn outline(
     prompt: &Prompt,
 ) -> Vec<u8> {
     let width = frame.width();
-    let mut labels = vec![UNANNOTATED; shown.len()];
+    let mut labels = vec![UNLABELLED; shown.len()];
     if !prompt.points() {
         return labels;
     }

@@ -2,7 +2,8 @@
 //! nothing connects with a stroke stays. In other frames, what was found holds unless the pixels tell otherwise. And where an object takes
 //! another's place, nothing is left of that around it.
 
-use crate::clip::annotation::{Seed, UNANNOTATED};
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::Seed;
 use crate::clip::options::model;
 use crate::components::{Connectivity, components};
 
@@ -96,10 +97,10 @@ pub(super) fn absorb_rims(
     let mut sizes = [[0usize; 2]; 256];
     for (&found, &label) in found.iter().zip(&*layer) {
         sizes[usize::from(found)][0] += 1;
-        sizes[usize::from(found)][1] += usize::from(label != UNANNOTATED && takes(found, label));
+        sizes[usize::from(found)][1] += usize::from(label != UNLABELLED && takes(found, label));
     }
     let is_taken = |label: u8| 2 * sizes[usize::from(label)][1] > sizes[usize::from(label)][0];
-    let is_left = |p: usize, layer: &[u8]| layer[p] == UNANNOTATED && open(p) && is_taken(found[p]);
+    let is_left = |p: usize, layer: &[u8]| layer[p] == UNLABELLED && open(p) && is_taken(found[p]);
     let left: Vec<u8> = (0..layer.len()).map(|p| if is_left(p, layer) { found[p] } else { 0 }).collect();
     if left.iter().all(|label| *label == 0) {
         return;
@@ -119,7 +120,7 @@ pub(super) fn absorb_rims(
             ];
             let beside =
                 around.into_iter().filter(|&(is_inside, q)| is_inside && q < before.len()).map(|(_, q)| before[q]);
-            let other = beside.into_iter().find(|&label| label != UNANNOTATED && takes(found[p], label));
+            let other = beside.into_iter().find(|&label| label != UNLABELLED && takes(found[p], label));
             other.inspect(|other| nearest[p] = *other).is_none()
         });
     }

@@ -105,9 +105,9 @@ fn source(to: &Flow, from: &Flow, [x, y]: [usize; 2]) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::Random;
-    use crate::clip::annotation::{Seed, Spread};
+    use crate::clip::annotation::{Direction, Seed, Spread};
     use crate::clip::correction::group::{Group, Scene};
-    use crate::clip::correction::plan::{Anchor, Direction};
+    use crate::clip::correction::plan::Anchor;
     use crate::clip::correction::track::Track;
     use crate::motion::AffineMotion;
 

@@ -2,10 +2,10 @@
 
 use super::appearance::Source;
 use super::features::FrameFeatures;
-use super::plan::{Anchor, Direction};
+use super::plan::Anchor;
 use super::propagator::{Observation, Prediction, Propagator};
 use super::proposal::Proposal;
-use crate::clip::annotation::Seed;
+use crate::clip::annotation::{Direction, Seed};
 use crate::clip::options::model;
 
 #[derive(Clone, Debug)]
@@ -100,7 +100,7 @@ impl Track {
     /// Both directions, by nearness of their anchors.
     fn joined(&self, frame: usize, features: &FrameFeatures, forward: &Proposal, backward: &Proposal) -> Proposal {
         let distance = |anchor: Option<&Anchor>| anchor.map_or(0.0, |anchor| anchor.frame.abs_diff(frame) as f32);
-        let spreads = |anchor: &Anchor, direction| anchor.spread.directions()[direction as usize];
+        let spreads = |anchor: &Anchor, direction| anchor.spread.goes(direction);
         let is_before = |anchor: &&Anchor| anchor.frame <= frame && spreads(anchor, Direction::Forward);
         let is_after = |anchor: &&Anchor| anchor.frame >= frame && spreads(anchor, Direction::Backward);
         let since = distance(self.anchors.iter().rev().find(is_before));
