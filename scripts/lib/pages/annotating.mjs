@@ -69,7 +69,7 @@ function harm({ harm }) {
     const [before, after] = [({ before }) => before, ({ after }) => after].map((of) => score(mean(changes.map(of))));
     const right = sum(({ mended }) => mended);
     const wrong = sum(({ spoilt }) => spoilt);
-    return [`${name} (${changes.length})`, before, after, worse, whole(right / 1000), whole(wrong / 1000), fixed(wrong / right, 2)];
+    return [`${name} (${changes.length})`, before, after, worse, ...[right, wrong].map((pixels) => whole(Math.round(pixels / 1000))), fixed(wrong / right, 2)];
   });
   return table(['what is said of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'], rows);
 }
