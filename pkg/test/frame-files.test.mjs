@@ -73,12 +73,13 @@ test('streams of bytes: of a file, of a response, in pairs and in streams of fra
     yield* pieces;
   }
   const failures = [
-    [of('text'), 'invalid-input', 'a stream of a frame must give bytes, as Uint8Array'],
-    [of(), 'unreadable-image', 'the stream: the image cannot be read: it is empty'],
-    [createReadStream('nowhere.png'), 'unreadable-file', /^the stream cannot be read: ENOENT/],
+    [() => of('text'), 'invalid-input', 'a stream of a frame must give bytes, as Uint8Array'],
+    [() => of(), 'unreadable-image', 'the stream: the image cannot be read: it is empty'],
+    // Made when it is read: an error that comes before anyone listens ends the process.
+    [() => createReadStream('nowhere.png'), 'unreadable-file', /^the stream cannot be read: ENOENT/],
   ];
   for (const [given, code, message] of failures) {
-    const error = await failure(segmentPair(paths[0], given));
+    const error = await failure(segmentPair(paths[0], given()));
     assert.equal(error.code, code);
     if (typeof message === 'string') assert.equal(error.message, message);
     else assert.match(error.message, message);
