@@ -62,6 +62,8 @@ pub(super) struct SceneCorrection {
     scene: [usize; 2],
     /// Objects that the annotations change.
     changing: ObjectSet,
+    /// The anchors of each object as the annotations taken so far leave them.
+    anchors: Vec<Vec<Anchor>>,
     groups: Vec<Group>,
     /// Frames to visit, the next one last.
     visits: Vec<Visit>,
@@ -83,6 +85,7 @@ impl SceneCorrection {
             waiting,
             scene,
             changing: [false; 256],
+            anchors: clip.anchors(scene),
             groups: Vec::new(),
             visits: Vec::new(),
             is_done: vec![false; last + 1 - first],
@@ -150,17 +153,16 @@ impl SceneCorrection {
         let mut changing: ObjectSet = std::array::from_fn(|k| k > 0 && !now.agrees(&before, k as u8));
         if !now.agrees(&before, 0) {
             // A label map that names no object says of those under it that they are not there.
-            now.takes_from = self.taken_from(clip, &now, &shown, &self.users[users]);
+            now.takes_from = taken_from(clip, &now, &shown, &self.users[users]);
             before.takes_from.iter().chain(&now.takes_from).for_each(|&object| changing[usize::from(object)] = true);
         }
         self.extended.iter_mut().enumerate().skip(1).for_each(|(k, of)| *of &= now.extends(&before, k as u8));
         let is_new = !now.is_same(&before);
-        let anchors_before = clip.anchors(self.scene);
         clip.frames[index].annotation = (!now.is_empty()).then_some(now);
         clip.update_anchors(self.scene);
-        let anchors = clip.anchors(self.scene);
-        for (object, changes) in changing.iter_mut().enumerate().take(anchors.len()) {
-            *changes |= anchors[object] != anchors_before[object];
+        let anchors_before = std::mem::replace(&mut self.anchors, clip.anchors(self.scene));
+        for (object, changes) in changing.iter_mut().enumerate().take(anchors_before.len()) {
+            *changes |= self.anchors[object] != anchors_before[object];
             *changes &= !clip.locked[object] && clip.numbers[object] > 0;
         }
         if is_new {
@@ -176,30 +178,11 @@ impl SceneCorrection {
 
     /// Plans the visits by which the annotations spread.
     fn plan(&mut self, clip: &SegmentedClip) {
-        let anchors = clip.anchors(self.scene);
-        let members = groups(&self.changing, &anchors);
+        let members = groups(&self.changing, &self.anchors);
         let [first, last] = self.scene;
         let found = |object: u8| (first..=last).filter(|&t| clip.is_found_in(t, object)).collect();
         self.visits = visits(self.scene, &members, &found);
         self.groups = members.into_iter().map(|members| Group::new(members, last + 1)).collect();
-    }
-
-    /// Other objects of a user that a label map which names none takes pixels from.
-    fn taken_from(
-        &self,
-        clip: &SegmentedClip,
-        annotation: &FrameAnnotation,
-        shown: &[u8],
-        users: &ObjectSet,
-    ) -> Vec<u8> {
-        if !annotation.names_no_object() {
-            return Vec::new();
-        }
-        let mut loses = [false; 256];
-        let painted = annotation.painted_labels().unwrap_or_default();
-        painted.iter().zip(shown).for_each(|(&painted, &shown)| loses[usize::from(shown)] |= painted == 0);
-        let is_taken = |k: usize| users[k] && loses[k] && !clip.locked[k];
-        (1..UNLABELLED).filter(|&object| is_taken(usize::from(object))).collect()
     }
 
     /// The annotated frame at once. Each object goes by where it was before strokes were drawn, so that it matters not which came before.
@@ -319,6 +302,18 @@ impl SceneCorrection {
             }
         }
     }
+}
+
+/// Other objects of a user that a label map which names none takes pixels from.
+fn taken_from(clip: &SegmentedClip, annotation: &FrameAnnotation, shown: &[u8], users: &ObjectSet) -> Vec<u8> {
+    if !annotation.names_no_object() {
+        return Vec::new();
+    }
+    let mut loses = [false; 256];
+    let painted = annotation.painted_labels().unwrap_or_default();
+    painted.iter().zip(shown).for_each(|(&painted, &shown)| loses[usize::from(shown)] |= painted == 0);
+    let is_taken = |k: usize| users[k] && loses[k] && !clip.locked[k];
+    (1..UNLABELLED).filter(|&object| is_taken(usize::from(object))).collect()
 }
 
 /// A frame that has come.

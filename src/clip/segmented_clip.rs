@@ -220,7 +220,7 @@ impl SegmentedClip {
 
     /// By label found automatically: the object that it is of. One that was annotated before it was merged goes by its own annotations,
     /// and one that was deleted tells of what is drawn anew in its place.
-    fn objects_of_found(&self) -> [u8; 256] {
+    pub(super) fn objects_of_found(&self) -> [u8; 256] {
         let is_annotated = |label: u8| self.frames.iter().any(|frame| frame.anchors(label));
         std::array::from_fn(|label| match self.numbers[label] {
             number if number > 0 && usize::from(number) != label && !is_annotated(label as u8) => number,

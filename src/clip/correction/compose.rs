@@ -145,6 +145,7 @@ impl Composition<'_> {
         }
         if let Some(mut seeds) = rules.annotation.seeds(object) {
             let base = rules.annotation.base(object);
+            // In its frame a person paints over what is seen there, whatever was found.
             let painted_over = base.as_ref().filter(|base| strokes::paints_over(base, 1, &seeds));
             if let Some(base) = painted_over {
                 strokes::fill(&mut seeds, base, 1);
@@ -155,7 +156,7 @@ impl Composition<'_> {
             if let Some(base) = &base {
                 strokes::keep(&mut mask, base, &seeds, width);
             }
-        } else if let Some((known, proposal)) = self.known(object).zip(proposal) {
+        } else if let Some((proposal, known)) = proposal.and_then(|of| Some((of, self.known(object)?))) {
             let looks = |p: usize| proposal.signs.looks_at(self.pixel(p));
             let change = proposal.signs.change.as_ref().map(|change| |p: usize| change[self.pixel(p)]);
             let change = change.as_ref().map(|change| change as &dyn Fn(usize) -> f32);
@@ -167,9 +168,9 @@ impl Composition<'_> {
     /// Where an object is as far as the annotations of this frame tell nothing: 1 where it was found, or, if it was not, where it has been
     /// so far, as long as nothing that was said of it is taken back.
     fn known(&self, object: u8) -> Option<Vec<u8>> {
-        let numbers = &self.clip.numbers;
-        let is_found = |label: u8| label > 0 && numbers[usize::from(label)] == numbers[usize::from(object)];
-        let found: Vec<u8> = self.found.iter().map(|label| u8::from(is_found(*label))).collect();
+        let objects = self.clip.objects_of_found();
+        let is_found = |label: &u8| u8::from(objects[usize::from(*label)] == object);
+        let found: Vec<u8> = self.found.iter().map(is_found).collect();
         if found.contains(&1) {
             return Some(found);
         }
