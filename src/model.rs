@@ -72,7 +72,7 @@ model! {
 
     /// Longer side of the working size at most with quality `best`, pixels. Generated.
     work_side: usize = 480;
-    /// The same with quality `fast`, and of the level on which motions are selected and labels drafted in frames that are not halved.
+    /// The same with quality `fast`, and of the level on which motions are selected in frames that are not halved.
     /// Speed.
     work_side_fast: usize = 320;
     /// The coarsest level keeps the shorter side at least this long, pixels. Generated.
@@ -273,12 +273,8 @@ model! {
     /// Whether a background that may be at rest is solved a second time, at rest. This and the next five are 1, and 0 where an ablation leaves
     /// a part out that no other constant leaves nothing to do.
     solves_at_rest: usize = 1;
-    /// Whether a labelled background is made static if that shortens the description.
-    tries_static: usize = 1;
     /// Whether the search in large frames is carried on at a finer size.
     adds_detail: usize = 1;
-    /// Whether labels are drafted on a coarser level, then sharpened.
-    drafts: usize = 1;
     /// Whether regions are merged.
     merges: usize = 1;
     /// Whether regions are split.

@@ -7,7 +7,7 @@ use super::options::model;
 use crate::answer::UNLABELLED;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
-use crate::labelling::resolution::upsampling::upsample;
+use crate::labelling::upsampling::upsample;
 use crate::model::Model;
 use crate::motion::AffineMotion;
 

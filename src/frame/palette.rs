@@ -61,14 +61,4 @@ impl Palette {
     pub(crate) fn index(&self, pixel: usize) -> usize {
         usize::from(self.indices[pixel])
     }
-
-    /// Every `step`-th pixel of every `step`-th row.
-    pub(crate) fn thinned(&self, step: usize) -> Palette {
-        let size = self.size.map(|s| s.div_ceil(step));
-        let mut indices = Vec::with_capacity(size[0] * size[1]);
-        for row in self.indices.chunks_exact(self.size[0]).step_by(step) {
-            indices.extend(row.iter().step_by(step));
-        }
-        Palette { size, indices }
-    }
 }

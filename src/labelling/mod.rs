@@ -1,16 +1,16 @@
-//! From motions to masks: the terms of the labelling energy, their solver, regions that are split and merged, and the way from coarse
-//! labels to the full frame.
+//! From motions to masks: the terms of the labelling energy, their solver, regions that are split and merged, and the way from
+//! labels of the working size to the full frame.
 //!
 //! Inside a labelling the background has the label [`BACKGROUND`], however few pixels it may have. How a result is numbered is a matter
 //! of its report.
 
-pub(crate) mod coherence;
 pub(crate) mod confidence;
+pub(crate) mod options;
 pub(crate) mod regions;
-pub(crate) mod resolution;
 pub(crate) mod shadows;
 pub(crate) mod solver;
 pub(crate) mod terms;
+pub(crate) mod upsampling;
 
 use crate::frame::Plane;
 

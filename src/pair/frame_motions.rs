@@ -4,7 +4,7 @@
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
 use super::groups::Regions;
-use super::labels::{LabelledPair, label_on, return_shadows};
+use super::labels::{LabelledPair, Start, label, return_shadows};
 use super::settings::Settings;
 use super::{figure, hypotheses, motions};
 use crate::frame::pyramid::FramePyramid;
@@ -125,9 +125,9 @@ pub(crate) fn frame_motions(
 }
 
 /// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;
-/// none if they do not explain the pair, or frames are so narrow that they are not halved to the size of drafts.
+/// none if they do not explain the pair, or frames are so narrow that they are not halved to the size at which motions are selected.
 fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Settings) -> Option<(LabelledPair, [f64; 2])> {
-    if pair.draft > 0 || pair.selection > 0 {
+    if pair.selection > 0 {
         return None;
     }
     let model = settings.model;
@@ -144,7 +144,8 @@ fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Setting
     } else {
         return None;
     };
-    Some((label_on(pair, motions, &labels, true, settings), [enough, prior.searched]))
+    let start = Start::Expected { labels, regroups: true };
+    Some((label(pair, motions, None, start, settings, &mut ()), [enough, prior.searched]))
 }
 
 /// Whether another motion would pay for itself.
@@ -167,5 +168,5 @@ fn inverted(mut pair: Pair, motions: &[AffineMotion], mut labels: Vec<u8>, setti
     let dominant = pair.settle_dominant(dominant, settings);
     let (mut motions, _) = motions::follow(&pair, dominant, objects, &mut labels, settings);
     motions::add_missing(&pair, &mut motions, settings.most, settings);
-    label_on(pair, motions, &labels, false, settings)
+    label(pair, motions, None, Start::Expected { labels, regroups: false }, settings, &mut ())
 }

@@ -16,9 +16,7 @@ pub(crate) struct Pair {
     pub(crate) base: usize,
     /// Index of the level on which motions are first selected, the base level or a finer one.
     pub(crate) selection: usize,
-    /// Index of the level on which the draft labels are solved.
-    pub(crate) draft: usize,
-    /// Pictures and colours that the labels follow, at the sizes of the levels down to the base or the draft level.
+    /// Pictures and colours that the labels follow, at the sizes of the levels.
     pub(super) appearance: Rc<Appearance>,
     /// Full-size pixels per working pixel.
     pub(crate) reduction: f64,
@@ -37,9 +35,9 @@ impl Pair {
         let levels = levels(&pyramid.levels, &second.levels, settings.model);
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
-        let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
+        let [base, selection] = [settings.base_side, settings.selection_side].map(within);
         let appearance = Rc::clone(pyramid.appearance(first));
-        Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
+        Pair { levels, base, selection, appearance, reduction: pyramid.reduction as f64 }
     }
 
     pub(crate) fn finest(&self) -> &Level {

@@ -6,7 +6,7 @@
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
-use super::labels::{LabelledPair, label, label_on};
+use super::labels::{LabelledPair, Start, label};
 use super::motions::{add_detail, follow, motions_of, refine, select};
 use super::observer::Observer;
 use super::settings::Settings;
@@ -58,7 +58,7 @@ fn under(
     let rejected = refine(&pair, &mut selected, settings).or(rejected);
     observer.refined(&pair, &selected);
     observer.stage_begins("labels");
-    let labelled = label(pair, motions_of(&selected), rejected, settings, observer);
+    let labelled = label(pair, motions_of(&selected), rejected, Start::Costs, settings, observer);
     observer.labelled(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
 }
@@ -84,7 +84,8 @@ pub(super) fn carry_on(
     let rejected =
         add_detail(&pair, &mut motions, settings).or_else(|| found.rejected.map(|motion| motion.scaled(scale)));
     observer.stage_begins("labels");
-    let labelled = LabelledPair { rejected, ..label_on(pair, motions, &labels, false, settings) };
+    let start = Start::Expected { labels, regroups: false };
+    let labelled = label(pair, motions, rejected, start, settings, &mut ());
     observer.carried_on(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
 }

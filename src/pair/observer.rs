@@ -28,10 +28,10 @@ pub(crate) trait Observer {
     /// … and refined on the intensities of their pixels.
     fn refined(&mut self, _: &Pair, _: &[ScoredMotion]) {}
 
-    /// Labels of the draft level are solved …
-    fn drafted(&mut self, _: &Pair, _motions: &[AffineMotion], _labels: &[u8]) {}
+    /// Labels are solved, motions merged and split …
+    fn regrouped(&mut self, _: &Pair, _motions: &[AffineMotion], _labels: &[u8]) {}
 
-    /// … and those of the working size, which ends the hypothesis.
+    /// … and labels solved with colours, which ends the hypothesis.
     fn labelled(&mut self, _: &Pair, _motions: &[AffineMotion], _labels: &[u8]) {}
 
     /// Of two hypotheses this one is taken.

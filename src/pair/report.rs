@@ -20,7 +20,7 @@ use crate::answer::{Candidate, UNLABELLED};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
-use crate::labelling::resolution::upsampling::{enlarged, upsample};
+use crate::labelling::upsampling::{enlarged, upsample};
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;

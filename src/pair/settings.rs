@@ -3,7 +3,7 @@
 use crate::estimation::alignment::Convergence;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, MIN_SIDE};
-use crate::labelling::coherence::Coherence;
+use crate::labelling::options::LabellingOptions;
 use crate::labelling::solver::Solver;
 use crate::model::Model;
 use crate::options::{MotionCount, Quality, SegmentOptions};
@@ -16,8 +16,6 @@ pub(crate) struct Settings {
     pub(crate) base_side: usize,
     /// Longer side of the level on which motions are first selected at most, pixels.
     pub(crate) selection_side: usize,
-    /// Longer side of the level on which labels are drafted at most, pixels.
-    pub(crate) draft_side: usize,
     /// The coarsest level keeps the shorter side at least this long, pixels.
     pub(crate) smallest_side: usize,
     /// Highest degree of the multibody polynomial.
@@ -40,8 +38,8 @@ pub(crate) struct Settings {
     pub(crate) least: usize,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,
-    /// How labels hold together.
-    pub(crate) coherence: Coherence,
+    /// How labels are solved.
+    pub(crate) labelling: LabellingOptions,
     /// Whether shadows of objects are given back to the background.
     pub(crate) returns_shadows: bool,
     /// Whether a pair starts from the labels of the one before, where there is one.
@@ -87,7 +85,6 @@ impl Settings {
             halvings,
             base_side: model.base_side(),
             selection_side: fine_side,
-            draft_side: fine_side,
             smallest_side: model.smallest_side,
             degrees: model.degrees,
             measurements: model.measurements,
@@ -99,13 +96,7 @@ impl Settings {
             most: model.most,
             least: 1,
             visibility_rounds: model.visibility_rounds,
-            coherence: Coherence {
-                smoothness,
-                object_bias: model.object_bias,
-                draft_solver: Solver::FAST,
-                solver: Solver::BEST,
-                sharpening: Solver::BEST,
-            },
+            labelling: LabellingOptions { smoothness, object_bias: model.object_bias, solver: Solver::BEST },
             returns_shadows: model.light_price.is_finite(),
             follows: false,
             subject: options.subject,
@@ -119,25 +110,20 @@ impl Settings {
                 halvings: fast_halvings([model.work_side_fast, model.work_side], size, model),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: model.base_side(),
-                draft_side: model.base_side(),
                 tiles: model.tiles_fast,
                 tries: model.tries_fast,
                 visibility_rounds: model.visibility_rounds_fast,
-                coherence: Coherence {
+                labelling: LabellingOptions {
                     smoothness: fast_smoothness(
                         fast_halvings([model.work_side_fast, model.work_side], size, model),
                         model,
                     ),
                     solver: Solver::FAST,
-                    sharpening: Solver::LIGHT,
-                    ..best.coherence
+                    ..best.labelling
                 },
                 ..best
             },
         };
-        if model.drafts == 0 {
-            settings.draft_side = usize::MAX;
-        }
         if let MotionCount::Given(n) = options.motions {
             // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
             settings.most = n;
@@ -164,7 +150,7 @@ impl Settings {
         Settings { selection_side, completes, ..Settings::of_clip(options, size) }
     }
 
-    /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
+    /// The settings for the pairs of a stream. A fast one selects motions at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let settings = Settings::of_clip(options, size);
         if options.quality == Quality::Best {
@@ -172,9 +158,9 @@ impl Settings {
         }
         let (model, sides) = (settings.model, [settings.model.base_side(), settings.model.work_side_stream()]);
         let halvings = fast_halvings(sides, size, model);
-        let coherence = Coherence { smoothness: fast_smoothness(halvings, model), ..settings.coherence };
-        let fine_side = model.work_side_stream();
-        Settings { halvings, selection_side: fine_side, draft_side: fine_side, coherence, follows: true, ..settings }
+        let labelling = LabellingOptions { smoothness: fast_smoothness(halvings, model), ..settings.labelling };
+        let selection_side = model.work_side_stream();
+        Settings { halvings, selection_side, labelling, follows: true, ..settings }
     }
 
     /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
@@ -183,7 +169,7 @@ impl Settings {
         let halvings = halvings_to(self.model.detail_side(), size);
         let finer = self.halvings > 1 && halvings < self.halvings;
         let wanted = options.quality == Quality::Best && finer && self.model.adds_detail > 0;
-        wanted.then_some(Settings { halvings, draft_side: self.model.detail_side(), ..*self })
+        wanted.then_some(Settings { halvings, ..*self })
     }
 
     /// The solver of final labels.

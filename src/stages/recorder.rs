@@ -110,8 +110,8 @@ impl Observer for Recorder {
         (hypothesis.refined, hypothesis.refinement) = (supported(pair, refined), cheapest_labels(pair, refined));
     }
 
-    fn drafted(&mut self, pair: &Pair, motions: &[AffineMotion], labels: &[u8]) {
-        self.draft = labelling(pair, &pair.levels[pair.draft], motions, labels);
+    fn regrouped(&mut self, pair: &Pair, motions: &[AffineMotion], labels: &[u8]) {
+        self.draft = labelling(pair, pair.finest(), motions, labels);
     }
 
     fn labelled(&mut self, pair: &Pair, motions: &[AffineMotion], labels: &[u8]) {

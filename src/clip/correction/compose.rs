@@ -13,7 +13,7 @@ use crate::clip::layer::Layer;
 use crate::clip::options::model;
 use crate::clip::segmented_clip::SegmentedClip;
 use crate::frame::Frame;
-use crate::labelling::resolution::upsampling::upsample;
+use crate::labelling::upsampling::upsample;
 use crate::model::Model;
 
 /// A frame whose layer is made anew.

@@ -10,7 +10,7 @@ use crate::clip::annotation::Seed;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
-use crate::labelling::resolution::upsampling::upsample;
+use crate::labelling::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
 use crate::model::Model;
 use crate::motion::AffineMotion;
@@ -71,9 +71,7 @@ pub fn relabel(
 ) -> Result<Relabelling> {
     first.check_size_of(second)?;
     correction.check(first.width() * first.height())?;
-    // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
-    let settings =
-        Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()], &Model::DEFAULT) };
+    let settings = Settings::new(options, [first.width(), first.height()], &Model::DEFAULT);
     let mut stages = Stages::new(STAGES, progress);
     let mut labels = correction.labels.to_vec();
     if correction.is_disobeyed() {

@@ -30,7 +30,7 @@ use crate::components::{Connectivity, components};
 use crate::frame::Frame;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
-use crate::labelling::resolution::upsampling::upsample;
+use crate::labelling::upsampling::upsample;
 use crate::model::Model;
 
 /// A frame, and the evidence for a prompt.

@@ -29,21 +29,15 @@ impl Solver {
     pub(crate) const BEST: Solver = Solver { levels: 4, iterations: 10 };
 }
 
-/// Minimises the energy of a problem of at most [`MAX_LABELS`] labels; returns one label per pixel, row by row. With `init`, never labels
-/// of higher energy than those.
-pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Vec<u8> {
+/// Minimises the energy of a problem of at most [`MAX_LABELS`] labels; returns one label per pixel, row by row.
+pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver) -> Vec<u8> {
     let labels = problem.costs.len();
     debug_assert!(labels <= MAX_LABELS, "{labels} labels");
     let size = problem.width() * problem.height();
     if labels < 2 || size == 0 {
         return vec![0; size];
     }
-    let found = messages::minimise(problem, solver.levels, solver.iterations);
-    let init = init.filter(|l| l.len() == size && l.iter().all(|&l| usize::from(l) < labels));
-    match init {
-        Some(init) if problem.energy(init) < problem.energy(&found) => init.to_vec(),
-        _ => found,
-    }
+    messages::minimise(problem, solver.levels, solver.iterations)
 }
 
 #[cfg(test)]

@@ -47,6 +47,7 @@ impl Potts<'_> {
     }
 
     /// Energy of a labelling.
+    #[cfg(test)]
     pub(crate) fn energy(&self, labels: &[u8]) -> f64 {
         let (width, height) = (self.width(), self.height());
         let mut energy = 0.0;

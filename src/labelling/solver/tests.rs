@@ -162,7 +162,7 @@ fn narrow_grids_come_within_a_hundredth_of_the_optimum_and_their_bound_is_below_
             let problem = grid.problem();
             let optimum = optimum(&problem);
             for (k, solver) in SOLVERS.into_iter().enumerate() {
-                let found = problem.energy(&minimise(&problem, solver, None));
+                let found = problem.energy(&minimise(&problem, solver));
                 assert!(found >= optimum - 1e-4, "{found} below the optimum {optimum}");
                 excess[k] += (found / optimum - 1.0) / 20.0;
             }
@@ -194,7 +194,7 @@ fn the_bound_of_two_labels_is_their_optimum() {
         let problem = grid.problem();
         let (bound, optimum) = (bound(&problem, 500), optimum(&problem));
         assert!((bound / optimum - 1.0).abs() < 1e-5, "{bound} for {optimum}");
-        let found = problem.energy(&minimise(&problem, Solver::BEST, None));
+        let found = problem.energy(&minimise(&problem, Solver::BEST));
         assert!((found / optimum - 1.0).abs() < 1e-5, "{found} for {optimum}");
     }
 }
@@ -206,7 +206,7 @@ fn two_labels_come_near_their_bound() {
     let excess = seeds.map(|seed| {
         let grid = scene_like(seed.into(), 70, 51, 2);
         let problem = grid.problem();
-        let (bound, found) = (bound(&problem, 300), problem.energy(&minimise(&problem, Solver::BEST, None)));
+        let (bound, found) = (bound(&problem, 300), problem.energy(&minimise(&problem, Solver::BEST)));
         assert!(found >= bound - 1e-3, "{found} below the bound {bound}");
         found / bound - 1.0
     });
@@ -226,26 +226,12 @@ fn no_solver_is_worse_than_descent_and_the_bound_holds() {
         let reference = problem.energy(&descended);
         let bound = bound(&problem, 60);
         for solver in SOLVERS {
-            let found = minimise(&problem, solver, None);
+            let found = minimise(&problem, solver);
             let energy = problem.energy(&found);
             assert!(energy <= reference, "{solver:?}, {labels} labels: {energy} above {reference}");
             assert!(energy >= bound - 1e-3 * bound.abs(), "{solver:?}: {energy} below the bound {bound}");
-            assert_eq!(found, minimise(&problem, solver, None));
+            assert_eq!(found, minimise(&problem, solver));
         }
-    }
-}
-
-#[test]
-fn the_start_is_never_made_worse_and_bad_starts_are_ignored() {
-    let grid = random_grid(&mut Random::from_seed(14), 40, 30, 5);
-    let problem = grid.problem();
-    let good = minimise(&problem, Solver { levels: 4, iterations: 100 }, None);
-    assert!(problem.energy(&good) < problem.energy(&minimise(&problem, Solver::FAST, None)), "worth starting from");
-    for solver in SOLVERS {
-        let from_good = problem.energy(&minimise(&problem, solver, Some(&good)));
-        assert!(from_good <= problem.energy(&good) + 1e-9);
-        assert_eq!(minimise(&problem, solver, Some(&[9; 1200])), minimise(&problem, solver, None));
-        assert_eq!(minimise(&problem, solver, Some(&[0; 3])), minimise(&problem, solver, None));
     }
 }
 
@@ -257,14 +243,14 @@ fn forbidden_labels_and_odd_sizes_are_handled() {
         let weight = Plane::filled(width, height, 0.5);
         let problem = Potts { costs: &costs, horizontal: &weight, vertical: &weight };
         for solver in SOLVERS {
-            assert!(minimise(&problem, solver, None).iter().all(|&l| l == 1), "{solver:?} {width}×{height}");
+            assert!(minimise(&problem, solver).iter().all(|&l| l == 1), "{solver:?} {width}×{height}");
         }
     }
     let costs = vec![Plane::filled(20, 20, 1.0); MAX_LABELS];
     let weight = Plane::filled(20, 20, 1.0);
     let problem = Potts { costs: &costs, horizontal: &weight, vertical: &weight };
-    assert_eq!(minimise(&problem, Solver::BEST, None)[..], [0; 400]);
-    assert_eq!(minimise(&Potts { costs: &costs[..1], ..problem }, Solver::BEST, None)[..], [0; 400]);
+    assert_eq!(minimise(&problem, Solver::BEST)[..], [0; 400]);
+    assert_eq!(minimise(&Potts { costs: &costs[..1], ..problem }, Solver::BEST)[..], [0; 400]);
 }
 
 /// Costs and weights as the pipeline has them, on a generated scene with the true motions: truncated squared residuals over
@@ -302,7 +288,7 @@ fn scenes_are_solved_to_a_fraction_of_a_per_cent() {
         let problem = grid.problem();
         let bound = bound(&problem, 100);
         for (solver, most) in [(Solver::LIGHT, 0.005), (Solver::FAST, 0.002), (Solver::BEST, 0.0005)] {
-            let excess = problem.energy(&minimise(&problem, solver, None)) / bound - 1.0;
+            let excess = problem.energy(&minimise(&problem, solver)) / bound - 1.0;
             assert!(excess < most, "seed {seed}, {solver:?}: {excess:.5} above the bound");
         }
     }

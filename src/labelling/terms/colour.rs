@@ -9,38 +9,16 @@ use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
 use crate::model::Model;
 
-/// Cost of each colour under each label.
-#[derive(Clone, Debug)]
-pub(crate) struct ColourPrices {
-    /// The costs of all labels for the first colour, for the second, …
-    table: Vec<f32>,
-    labels: usize,
-}
-
-impl ColourPrices {
-    /// Learned from pixels, weighted by how clearly their motion wins.
-    pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8], model: &Model) -> ColourPrices {
-        let n = costs.len();
-        let weights = margins(costs, labels);
-        let trust = trust(palette, labels, &weights, n, model);
-        let mut table = posterior(palette, labels, &weights, n, model);
-        let largest = model.largest_cost();
-        table.iter_mut().for_each(|p| *p = (-model.colour_price * trust * trust * libm::logf(*p)).min(largest));
-        ColourPrices { table, labels: n }
-    }
-
-    /// The cost of a label for the colour of a pixel.
-    #[inline(always)]
-    pub(crate) fn of(&self, palette: &Palette, pixel: usize, label: usize) -> f32 {
-        self.table[palette.index(pixel) * self.labels + label]
-    }
-}
-
-/// Adds the costs of the colours.
+/// Adds the costs of the colours, learned from pixels that are weighted by how clearly their motion wins.
 pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8], model: &Model) {
-    let prices = ColourPrices::learned(palette, costs, labels, model);
+    let n = costs.len();
+    let weights = margins(costs, labels);
+    let trust = trust(palette, labels, &weights, n, model);
+    let mut prices = posterior(palette, labels, &weights, n, model);
+    let largest = model.largest_cost();
+    prices.iter_mut().for_each(|p| *p = (-model.colour_price * trust * trust * libm::logf(*p)).min(largest));
     for (label, cost) in costs.iter_mut().enumerate() {
-        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices.of(palette, p, label));
+        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices[palette.index(p) * n + label]);
     }
 }
 

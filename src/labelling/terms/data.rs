@@ -2,7 +2,7 @@
 
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
-use crate::labelling::coherence::Coherence;
+use crate::labelling::options::LabellingOptions;
 use crate::labelling::regions::description::weight_of_pixel;
 use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
 use crate::lanes::{each, each_with, lower};
@@ -10,15 +10,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cheapest, cost_where_seen};
 use crate::view::level::Level;
-
-/// Label cost of every motion at every pixel; the first is the dominant motion.
-///
-/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
-/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
-/// objects do not win pixels by moving them out of the frame.
-pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    LabelCosts::new(level, &compare(level, motions, Vec::new()), coherence).costs
-}
 
 /// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
 pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
@@ -46,44 +37,40 @@ pub(crate) fn estimation_costs(level: &Level, compared: &Compared) -> Vec<Plane>
     compared.iter().map(plane).collect()
 }
 
-/// Label costs, and the intermediate results that sharpening uses again.
-pub(crate) struct LabelCosts {
-    /// See [`label_costs`].
-    pub(crate) costs: Vec<Plane>,
-    pub(crate) variance_inflation: Plane,
-}
-
-impl LabelCosts {
-    /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
-    pub(crate) fn new(level: &Level, compared: &Compared, coherence: Coherence) -> LabelCosts {
-        let mut costs: Vec<Plane> = compared.iter().map(|(_, cost)| cost.clone()).collect();
-        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
-        let mut inflation = Plane::filled(level.width(), level.height(), 0.0);
-        let mut seen = vec![0.0; level.width()];
-        for y in 0..level.height() {
-            inflation_rows.write(y, inflation.row_mut(y));
-            seen.fill(f32::INFINITY);
-            for cost in &mut costs {
-                inflate_variance(cost.row_mut(y), inflation.row(y), level.model);
-                lower(&mut seen, cost.row(y));
-            }
-            for (label, cost) in costs.iter_mut().enumerate() {
-                to_label_costs(label, cost.row_mut(y), &seen, coherence, level.model);
-            }
+/// Label cost of every motion at every pixel; the first is the dominant motion.
+///
+/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
+/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
+/// objects do not win pixels by moving them out of the frame.
+///
+/// They are computed row by row, so that the only intermediate plane is that of the smallest costs.
+pub(crate) fn label_costs(level: &Level, compared: &Compared, options: LabellingOptions) -> Vec<Plane> {
+    let mut costs: Vec<Plane> = compared.iter().map(|(_, cost)| cost.clone()).collect();
+    let mut inflation = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
+    let [mut inflation_row, mut seen] = [vec![0.0; level.width()], vec![0.0; level.width()]];
+    for y in 0..level.height() {
+        inflation.write(y, &mut inflation_row);
+        seen.fill(f32::INFINITY);
+        for cost in &mut costs {
+            inflate_variance(cost.row_mut(y), &inflation_row, level.model);
+            lower(&mut seen, cost.row(y));
         }
-        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence));
-        LabelCosts { costs, variance_inflation: inflation }
+        for (label, cost) in costs.iter_mut().enumerate() {
+            to_label_costs(label, cost.row_mut(y), &seen, options, level.model);
+        }
     }
+    costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, options));
+    costs
 }
 
 /// Turns costs of a motion into those of its label: fills in pixels moved out of the frame and adds the object bias. `seen` is the
 /// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
-pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence, model: &Model) {
+fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], options: LabellingOptions, model: &Model) {
     let neutral = CostModel::labels(model).outside();
     let (least, most, object_bias) = match label {
         BACKGROUND => (f32::NEG_INFINITY, neutral, 0.0),
-        _ => (neutral, f32::INFINITY, coherence.object_bias),
+        _ => (neutral, f32::INFINITY, options.object_bias),
     };
     each_with(costs, [seen], |cost, [seen]| {
         let unseen = if seen < most { seen } else { neutral };
@@ -92,13 +79,9 @@ pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], cohe
     });
 }
 
-/// Price of an object's pixel on the frame's border, for each of the borders it lies on.
-pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
-    0.5 * coherence.smoothness
-}
-
-fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
-    let price = frame_border_price(coherence);
+/// Adds the price of an object's pixels on the frame's border, for each of the borders that they lie on.
+fn add_frame_border_price(cost: &mut Plane, options: LabellingOptions) {
+    let price = 0.5 * options.smoothness;
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);
@@ -113,7 +96,7 @@ fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::labelling::coherence::tests::COHERENCE;
+    use crate::labelling::options::LabellingOptions;
     use crate::view::level::build;
 
     fn noise(seed: u64) -> Plane {
@@ -127,18 +110,20 @@ mod tests {
         let same = &build(noise(1), noise(1), 24)[0];
         let other = &build(noise(1), noise(2), 24)[0];
         for level in [same, other] {
-            let object = label_costs(level, &[still, leaving], COHERENCE);
-            let dominant = label_costs(level, &[leaving, still], COHERENCE);
+            let costs = |motions: [AffineMotion; 2]| {
+                label_costs(level, &compare(level, &motions, Vec::new()), LabellingOptions::OF_TESTS)
+            };
+            let (object, dominant) = (costs([still, leaving]), costs([leaving, still]));
             for y in 1..47 {
                 for x in 45..63 {
-                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.object_bias, "({x}, {y})");
+                    assert!(object[1].at(x, y) >= object[0].at(x, y) + LabellingOptions::OF_TESTS.object_bias, "({x}, {y})");
                     assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
                 }
             }
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
-        let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
+        let unseen = label_costs(same, &compare(same, &[nowhere, nowhere], Vec::new()), LabellingOptions::OF_TESTS);
         assert_eq!(unseen[0].at(30, 30), CostModel::labels(&Model::DEFAULT).outside());
-        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
+        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - LabellingOptions::OF_TESTS.object_bias).abs() < 1e-6);
     }
 }

@@ -17,10 +17,17 @@ pub(crate) struct Borders {
 }
 
 impl Borders {
+    /// The prices with a λ along the edges of a picture with this noise, grey levels.
     pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> Borders {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
+        let price = Price::new(noise, smoothness, model);
         let mut borders = Self::uniform(width, height, smoothness);
-        borders.follow(picture, &Price::new(noise, smoothness, model), &Area::whole(width, height), [0, 0]);
+        for y in 0..height {
+            let (start, below) = (y * width, (y + 1).min(height - 1) * width);
+            let here = picture.run(start..start + width);
+            price.write(here, picture.run(below..below + width), borders.vertical.row_mut(y));
+            price.write(here, picture.run(start + 1..start + width), borders.horizontal.row_mut(y));
+        }
         borders
     }
 
@@ -47,34 +54,14 @@ impl Borders {
         Borders { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
-    /// Sets the prices of an area from the edges of the picture. The grid begins at the picture's pixel `corner`.
-    pub(crate) fn follow(&mut self, picture: &Picture, price: &Price, area: &Area, corner: [usize; 2]) {
-        let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let places = area.columns.start - corner[0]..area.columns.end - corner[0];
-        for y in area.rows.clone() {
-            let start = y * width;
-            let here = picture.run(start + area.columns.start..start + area.columns.end);
-            let below = (y + 1).min(height - 1) * width;
-            let below = picture.run(below + area.columns.start..below + area.columns.end);
-            price.write(here, below, &mut self.vertical.row_mut(y - corner[1])[places.clone()]);
-            let right = picture.run(start + area.columns.start + 1..start + (area.columns.end + 1).min(width));
-            price.write(here, right, &mut self.horizontal.row_mut(y - corner[1])[places.clone()]);
-        }
-    }
-
-    /// The labels of least energy found, never worse than those given.
-    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Vec<u8> {
-        minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
-    }
-
     /// The labels of least energy found.
     pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Vec<u8> {
-        minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
+        minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver)
     }
 }
 
 /// The price of a border as a function of the step across it.
-pub(crate) struct Price {
+struct Price {
     smoothness: f32,
     /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
     per_step: f32,
@@ -83,8 +70,7 @@ pub(crate) struct Price {
 }
 
 impl Price {
-    /// The price with a λ in frames with this noise, grey levels.
-    pub(crate) fn new(noise: f32, smoothness: f32, model: &Model) -> Price {
+    fn new(noise: f32, smoothness: f32, model: &Model) -> Price {
         let per_step = 1.0 / (model.noise_steps * noise.max(1.0));
         // A grey step is √3 times as long in RGB.
         Price { smoothness, per_step, edge_share: model.edge_share, colour_share: 1.0 / 3.0f32.sqrt() }
@@ -128,7 +114,7 @@ fn fading(z: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::labelling::coherence::tests::COHERENCE;
+    use crate::labelling::options::LabellingOptions;
 
     #[test]
     fn borders_are_cheap_along_edges_and_expensive_elsewhere() {
@@ -137,10 +123,10 @@ mod tests {
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
         let coloured =
             Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
-        let borders = Borders::new(&bright, 1.0, COHERENCE.smoothness, &Model::DEFAULT);
-        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE.smoothness, &Model::DEFAULT)] {
-            assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
-            assert!(borders.horizontal.at(31, 10) < (Model::DEFAULT.edge_share + 0.01) * COHERENCE.smoothness);
+        let borders = Borders::new(&bright, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT);
+        for borders in [&borders, &Borders::new(&coloured, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT)] {
+            assert_eq!(borders.horizontal.at(10, 10), LabellingOptions::OF_TESTS.smoothness);
+            assert!(borders.horizontal.at(31, 10) < (Model::DEFAULT.edge_share + 0.01) * LabellingOptions::OF_TESTS.smoothness);
         }
         // The costs locate the border only to within four pixels; the edge decides where exactly.
         let costs = [

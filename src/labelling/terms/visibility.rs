@@ -5,11 +5,10 @@ use crate::frame::filter::eroded;
 use crate::frame::warp::warp;
 use crate::labelling::{BACKGROUND, is_background, mask_of, objects};
 use crate::lanes::each_with;
-use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
 
-/// Costs in which a motion pays no more than [`Model::hidden_cost`] for pixels that it moves behind another object.
+/// Costs in which a motion pays no more than `Model::hidden_cost` for pixels that it moves behind another object.
 ///
 /// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
 /// grow into the background around others.
@@ -20,35 +19,19 @@ pub(crate) fn with_visibility(
     labels: &[u8],
     object_bias: f32,
 ) -> Vec<Plane> {
-    let hide = |(k, hidden): (usize, Vec<bool>)| {
-        let most = most_where_hidden(k, object_bias, level.model);
-        let mut out = costs[k].clone();
-        for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
-            *c = c.min(most);
+    let landed = landed(level, motions, labels);
+    let hide = |(k, costs): (usize, &Plane)| {
+        let most = level.model.hidden_cost + if k == BACKGROUND { 0.0 } else { object_bias };
+        let covered = covered(level, &motions[k], &landed, k);
+        let mut out = costs.clone();
+        for ((cost, covered), label) in out.values_mut().iter_mut().zip(covered.values()).zip(labels) {
+            if *covered > 0.5 && (k == BACKGROUND || !is_background(*label)) {
+                *cost = cost.min(most);
+            }
         }
         out
     };
-    hidden_under(level, motions, labels).into_iter().enumerate().map(hide).collect()
-}
-
-/// Largest cost of a label where its motion moves a pixel behind another object.
-pub(crate) fn most_where_hidden(label: usize, object_bias: f32, model: &Model) -> f32 {
-    model.hidden_cost + if label == BACKGROUND { 0.0 } else { object_bias }
-}
-
-/// For every motion, the pixels at which [`with_visibility`] limits its cost.
-pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Vec<bool>> {
-    let landed = landed(level, motions, labels);
-    let hidden = |k: usize| {
-        let covered = covered(level, &motions[k], &landed, k);
-        covered
-            .values()
-            .iter()
-            .zip(labels)
-            .map(|(covered, label)| *covered > 0.5 && (k == BACKGROUND || !is_background(*label)))
-            .collect()
-    };
-    (0..motions.len()).map(hidden).collect()
+    costs.iter().enumerate().map(hide).collect()
 }
 
 /// Pixels labelled dominant that the dominant motion moves behind an object.

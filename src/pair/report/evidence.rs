@@ -4,7 +4,7 @@ use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::regions::description::{length, price_of_motion, worth};
 use crate::labelling::solver::Solver;
-use crate::labelling::terms::data::{LabelCosts, compare, estimation_costs};
+use crate::labelling::terms::data::{compare, estimation_costs, label_costs};
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
 use crate::pair::labels::{LabelledPair, borders};
@@ -21,7 +21,7 @@ pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Cand
         labelled.motions.iter().chain(&labelled.rejected).copied().take(MAX_MOTIONS).collect();
     let compared = compare(level, &motions, Vec::new());
     let mut raw = estimation_costs(level, &compared);
-    let mut costs = LabelCosts::new(level, &compared, settings.coherence).costs;
+    let mut costs = label_costs(level, &compared, settings.labelling);
     let borders = borders(pair, pair.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&motions, &raw, &solve(&costs), width, level.model));
