@@ -44,12 +44,13 @@ impl ColourCounts {
 mod tests {
     use super::*;
     use crate::frame::Frame;
+    use crate::frame::scaling::Scaling;
 
     #[test]
     fn colours_of_one_side_speak_for_it_once_both_are_known() {
         let rgba: Vec<u8> =
             (0..64 * 48).flat_map(|p| if p % 64 < 20 { [250, 10, 10, 255] } else { [10, 10, 250, 255] }).collect();
-        let palette = Palette::new(&Frame::from_rgba(64, 48, rgba).unwrap(), 64, 48);
+        let palette = Palette::new(&Frame::from_rgba(64, 48, rgba).unwrap(), &Scaling::halved([64, 48], 0));
         let ratios =
             |odds: &dyn Fn(usize) -> f32| ColourCounts::of(&palette, &Plane::from_fn(64, 48, |x, _| odds(x))).ratios();
         let known = ratios(&|x| if x < 20 { 2.0 } else { -2.0 });

@@ -22,7 +22,6 @@ mod plan;
 mod prompt;
 mod propagator;
 mod proposal;
-mod scaling;
 mod still;
 mod strokes;
 mod template;
@@ -48,7 +47,6 @@ pub use pair::{Correction, MAX_CORRECTED, Relabelling, relabel};
 use plan::{Anchor, Task, Visit, groups, visits};
 use prompt::outline;
 use proposal::Proposal;
-use scaling::at_features;
 use track::Track;
 
 /// Annotations of frames of one scene that spread through a [`SegmentedClip`] together. It asks for the frames that it needs.
@@ -203,7 +201,7 @@ impl SceneCorrection {
             let is_shown = || shown.iter().map(|&label| u8::from(label == object)).collect();
             let own: Vec<u8> = annotation.base(object).unwrap_or_else(is_shown);
             let own: Vec<u8> = own.into_iter().map(|inside| object * inside).collect();
-            let own = at_features(&own, UNLABELLED, clip.size()[0], features);
+            let own = features.scaling.gathered(&own, UNLABELLED);
             let scene = Scene { features, seeds: &seeds, seen: &|_| None, found: &own, flows: None };
             let anchor = Anchor { frame: index, spread: Spread::Both, is_whole: false };
             let mut track = Track::new(object, vec![anchor], index + 1);

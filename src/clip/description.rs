@@ -6,6 +6,7 @@ use super::evidence::Flow;
 use super::options::model;
 use crate::answer::UNLABELLED;
 use crate::frame::Plane;
+use crate::frame::scaling::Scaling;
 use crate::labelling::BACKGROUND;
 use crate::labelling::upsampling::upsample;
 use crate::model::Model;
@@ -66,38 +67,30 @@ impl WorkingFrame<'_> {
 
     /// The frame with these labels of full size, marked where they are unknown if that is asked for.
     pub(crate) fn marked(&self, mut labels: Vec<u8>, width: usize) -> ClipFrame {
+        let scaling = Scaling::between([width, labels.len() / width], [self.odds.width(), self.odds.height()]);
         if self.mark_unknown {
-            self.mark_undecided(&mut labels, width);
+            for (label, odds) in labels.iter_mut().zip(scaling.enlarged(self.odds.values())) {
+                if odds.abs() < model().undecided {
+                    *label = UNLABELLED;
+                }
+            }
         }
-        self.describe(labels, width)
+        self.describe(labels, &scaling)
     }
 
     /// The labels at full size.
     pub(crate) fn upsampled(&self, luminance: &Plane) -> Vec<u8> {
-        let size = [self.odds.width(), self.odds.height()];
+        let full = [luminance.width(), luminance.height()];
+        let scaling = Scaling::between(full, [self.odds.width(), self.odds.height()]);
         let of = self.labels.iter().max().map_or(1, |&most| usize::from(most) + 1);
-        upsample(self.labels, size, of, luminance, &Model::DEFAULT)
-    }
-
-    fn reduction(&self, width: usize) -> usize {
-        width.div_ceil(self.odds.width()).next_power_of_two()
-    }
-
-    fn mark_undecided(&self, labels: &mut [u8], width: usize) {
-        let (step, last) = (self.reduction(width), [self.odds.width() - 1, self.odds.height() - 1]);
-        for (p, label) in labels.iter_mut().enumerate() {
-            let (x, y) = ((p % width / step).min(last[0]), (p / width / step).min(last[1]));
-            if self.odds.at(x, y).abs() < model().undecided {
-                *label = UNLABELLED;
-            }
-        }
+        upsample(self.labels, &scaling, of, luminance, &Model::DEFAULT)
     }
 
     /// The objects of full-size labels.
-    fn describe(&self, labels: Vec<u8>, width: usize) -> ClipFrame {
-        let scale = |motion: &AffineMotion| motion.scaled(self.reduction(width) as f64);
+    fn describe(&self, labels: Vec<u8>, scaling: &Scaling) -> ClipFrame {
+        let scale = |motion: &AffineMotion| motion.scaled(scaling.step as f64);
         let background = self.onward.map(|onward| scale(&onward.motions[BACKGROUND]));
-        let mut objects = boxes(&labels, width);
+        let mut objects = boxes(&labels, scaling.full[0]);
         for object in &mut objects {
             let pixels = || (0..self.labels.len()).filter(|&p| self.labels[p] == object.id);
             object.confidence = mean_probability(self.odds, pixels());

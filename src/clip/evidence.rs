@@ -5,6 +5,7 @@ use super::runs::Runs;
 use super::saved::saved;
 use crate::clip::options::model;
 use crate::frame::Plane;
+use crate::frame::scaling::Scaling;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::model::Model;
 use crate::motion::AffineMotion;
@@ -71,13 +72,11 @@ impl Flow {
         self.labels.len() / self.width
     }
 
-    /// The flow at another size, a multiple of its own.
-    pub(crate) fn enlarged(&self, [width, height]: [usize; 2]) -> Flow {
-        let factor = (width as f64 / self.width as f64).round();
-        let place = |p: usize| (p / width * self.height() / height) * self.width + p % width * self.width / width;
-        let labels = (0..width * height).map(|p| self.labels[place(p)]).collect();
-        let motions = self.motions.iter().map(|motion| motion.scaled(factor)).collect();
-        Flow { width, labels, motions, measured: self.measured }
+    /// The flow at a size from which its own is halved.
+    pub(crate) fn enlarged(&self, size: [usize; 2]) -> Flow {
+        let scaling = Scaling::between(size, [self.width, self.height()]);
+        let motions = self.motions.iter().map(|motion| motion.scaled(scaling.step as f64)).collect();
+        Flow { width: size[0], labels: scaling.enlarged(&self.labels), motions, measured: self.measured }
     }
 
     /// Where the pixels go if they keep the motions with which they came.

@@ -39,9 +39,9 @@ impl SegmentedClip {
         let mut full = self.overlaid(index, &found, &user_objects);
         full.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
         let layer = state.layer.as_ref().map(|layer| self.odds_of(layer)).zip(self.layer_labels(index));
-        let corner = self.corner();
+        let scaling = self.scaling();
         for at in 0..labels.len() {
-            let p = corner(at);
+            let p = scaling.corner(at);
             let odds = &mut odds.values_mut()[at];
             match &layer {
                 Some((of_layer, above)) if above[p] != UNLABELLED => *odds = of_layer.values()[at],
@@ -102,10 +102,11 @@ impl SegmentedClip {
         if labels.iter().all(|&label| label == UNLABELLED) {
             return None;
         }
-        let ([width, height], corner) = (self.working_size(), self.corner());
+        let scaling = self.scaling();
+        let [width, height] = scaling.small;
         let odds = Plane::from_fn(width, height, |x, y| {
             let at = y * width + x;
-            let p = corner(at);
+            let p = scaling.corner(at);
             match labels[p] {
                 UNLABELLED => 0.0,
                 0 => -2.0 * model().certain,
@@ -113,11 +114,5 @@ impl SegmentedClip {
             }
         });
         Some(Layer::of(labels, &odds))
-    }
-
-    /// The full-size pixel at the corner of each working pixel.
-    fn corner(&self) -> impl Fn(usize) -> usize {
-        let ([width, height], working, step) = (self.size(), self.working_size()[0], self.working_step());
-        move |at| (at / working * step).min(height - 1) * width + (at % working * step).min(width - 1)
     }
 }

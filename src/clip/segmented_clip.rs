@@ -10,6 +10,7 @@ use super::options::ClipOptions;
 use super::saved::{Format, saved};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
+use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
 use crate::options::{Quality, SegmentOptions};
 use crate::pair::settings::Settings;
@@ -158,7 +159,7 @@ impl SegmentedClip {
         if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) {
             return false;
         }
-        let [w, h] = self.working_size();
+        let [w, h] = self.scaling().small;
         self.frames.iter().all(|frame| frame.is_valid(w * h, width * height))
     }
 
@@ -182,19 +183,14 @@ impl SegmentedClip {
         ClipOptions { pair, look_ahead: self.stream.then_some(0) }.settings(self.size)
     }
 
-    /// Width and height of the working size.
-    pub(super) fn working_size(&self) -> [usize; 2] {
-        self.settings().working_size(self.size)
-    }
-
-    /// Full-size pixels for each pixel of the working size, along a side.
-    pub(super) fn working_step(&self) -> usize {
-        self.size[0].div_ceil(self.working_size()[0]).next_power_of_two()
+    /// The working size of the clip's frames.
+    pub(super) fn scaling(&self) -> Scaling {
+        self.settings().scaling(self.size)
     }
 
     /// The odds of a layer.
     pub(super) fn odds_of(&self, layer: &Layer) -> Plane {
-        let [width, height] = self.working_size();
+        let [width, height] = self.scaling().small;
         layer.odds.odds(width, height)
     }
 
@@ -204,12 +200,11 @@ impl SegmentedClip {
         (found.labels.values(), self.odds_of(found))
     }
 
-    /// Labels of a frame as the clip was segmented, at another size. Objects that were merged are one.
-    pub(super) fn found_at(&self, index: usize, [width, height]: [usize; 2]) -> Vec<u8> {
-        let objects = self.objects_of_found();
-        let (labels, [w, h]) = (self.frames[index].found.labels.values(), self.working_size());
-        let place = |p: usize| (p / width * h / height).min(h - 1) * w + (p % width * w / width).min(w - 1);
-        (0..width * height).map(|p| objects[usize::from(labels[place(p)])]).collect()
+    /// Labels of a frame as the clip was segmented, at a size that is no smaller. Objects that were merged are one.
+    pub(super) fn found_at(&self, index: usize, size: [usize; 2]) -> Vec<u8> {
+        let (objects, labels) = (self.objects_of_found(), self.frames[index].found.labels.values());
+        let labels: Vec<u8> = labels.iter().map(|&label| objects[usize::from(label)]).collect();
+        Scaling::between(size, self.scaling().small).enlarged(&labels)
     }
 
     /// Whether an object, or one that was merged into it, was found in a frame.
@@ -230,11 +225,11 @@ impl SegmentedClip {
 
     /// To the next frame of the scene; after the last one there is none.
     pub(super) fn onward(&self, index: usize) -> Option<Flow> {
-        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
     }
 
     /// To the frame before; before the first one of a scene there is none.
     pub(super) fn back(&self, index: usize) -> Option<Flow> {
-        self.frames[index].back.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+        self.frames[index].back.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
     }
 }

@@ -138,7 +138,7 @@ impl ClipSegmenter {
             _ => self.origin,
         };
         let origin = hash(before, &own.to_le_bytes());
-        let working = self.tracker.options().settings(size).working_size(size);
+        let working = self.tracker.options().settings(size).scaling(size).small;
         let is_of_these = |known: &FramePairs| known.origin == origin && known.pairs.is_valid(working[0] * working[1]);
         if !known.is_none_or(is_of_these) {
             return Err(invalid("pairs", "they are of other frames or options"));
@@ -161,7 +161,7 @@ impl ClipSegmenter {
         }
         // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
         if look_ahead.is_none() {
-            let width = self.tracker.options().settings(size).working_size(size)[0];
+            let width = self.tracker.options().settings(size).scaling(size).small[0];
             self.part(width);
             self.group(width);
         }

@@ -134,7 +134,7 @@ impl Tracker {
         }
         newest.repeats = last.frame.colours() == newest.frame.colours();
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
-            _ if newest.repeats => self.repeated(&newest, &settings),
+            _ if newest.repeats => self.repeated(&newest),
             None => both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
@@ -143,8 +143,8 @@ impl Tracker {
 
     /// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
     /// next pair is expected to be like the last one.
-    fn repeated(&self, newest: &Newest, settings: &Settings) -> Pairs {
-        let size @ [width, height] = settings.working_size([newest.frame.width(), newest.frame.height()]);
+    fn repeated(&self, newest: &Newest) -> Pairs {
+        let size @ [width, height] = newest.pyramid.scaling.small;
         let told = || (Plane::filled(width, height, 0.0), Flow { measured: true, ..Flow::still(size) });
         let onward = (self.options.look_ahead.is_none() || self.waits).then(told);
         Pairs { onward, back: Some(told()), prior: self.prior.clone() }

@@ -8,6 +8,7 @@ pub(crate) mod palette;
 pub(crate) mod picture;
 mod plane;
 pub(crate) mod pyramid;
+pub(crate) mod scaling;
 pub(crate) mod warp;
 
 pub use derivatives::{Derivatives, derivatives};

@@ -1,6 +1,7 @@
 //! The quantised colours of a frame.
 
 use super::Frame;
+use super::scaling::Scaling;
 
 /// Steps per colour channel: 8³ colours are few enough to learn from one frame and still tell clothes from grass. Not varied.
 const STEPS: usize = 8;
@@ -27,8 +28,7 @@ impl Palette {
     }
 
     /// Quantises the mean colours over the full-size pixels of each working pixel.
-    pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
-        let step = frame.width().div_ceil(width).next_power_of_two();
+    pub(crate) fn new(frame: &Frame, &Scaling { small: [width, height], step, .. }: &Scaling) -> Palette {
         let mut indices = Vec::with_capacity(width * height);
         let mut sums = vec![[0u32; 4]; width];
         for rows in frame.colours().chunks(frame.width() * step) {

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use super::filter::{gaussian, gradients, halve};
 use super::palette::Palette;
 use super::picture::{Picture, colours};
+use super::scaling::Scaling;
 use super::{Frame, Plane};
 use crate::lanes::each_with;
 
@@ -64,8 +65,8 @@ pub(crate) fn levels_of(luminance: Plane, smallest: usize) -> Vec<FrameLevel> {
 pub(crate) struct FramePyramid {
     /// From the working size down.
     pub(crate) levels: Vec<FrameLevel>,
-    /// Full-size pixels per working pixel.
-    pub(crate) reduction: usize,
+    /// From the frame to the working size.
+    pub(crate) scaling: Scaling,
     /// Luminance of the working size without blur.
     unblurred: Plane,
     appearance: OnceCell<Rc<Appearance>>,
@@ -87,15 +88,16 @@ impl FramePyramid {
         let mut unblurred = frame.luminance().clone();
         (0..halvings).for_each(|_| unblurred = halve(&unblurred));
         let levels = levels_of(gaussian(&unblurred, PRE_BLUR), smallest);
-        FramePyramid { levels, reduction: 1 << halvings, unblurred, appearance: OnceCell::new() }
+        let scaling = Scaling::halved([frame.width(), frame.height()], halvings);
+        FramePyramid { levels, scaling, unblurred, appearance: OnceCell::new() }
     }
 
     /// The appearance of the frame, which must be the one that this was made of. It is computed the first time.
     pub(crate) fn appearance(&self, frame: &Frame) -> &Rc<Appearance> {
         self.appearance.get_or_init(|| {
-            let (width, height) = (self.unblurred.width(), self.unblurred.height());
-            let palette = Palette::new(frame, width, height);
-            let mut pictures = vec![Picture { luminance: self.unblurred.clone(), colours: colours(frame, width) }];
+            let palette = Palette::new(frame, &self.scaling);
+            let colours = colours(frame, self.scaling.small[0]);
+            let mut pictures = vec![Picture { luminance: self.unblurred.clone(), colours }];
             while pictures.len() < self.levels.len() {
                 let half = pictures[pictures.len() - 1].halved();
                 pictures.push(half);

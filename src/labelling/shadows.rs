@@ -108,6 +108,7 @@ fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -
 mod tests {
     use super::*;
     use crate::frame::Frame;
+    use crate::frame::scaling::Scaling;
     use crate::view::level::build;
 
     const SIZE: [usize; 2] = [120, 80];
@@ -143,7 +144,8 @@ mod tests {
                 [r, g, b, 255]
             })
             .collect();
-        let palette = Palette::new(&Frame::from_rgba(width, height, &colours).unwrap(), width, height);
+        let palette =
+            Palette::new(&Frame::from_rgba(width, height, &colours).unwrap(), &Scaling::halved([width, height], 0));
         let labels = (0..width * height).map(|p| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
             u8::from(thing(x, y) || shadow(x, y))

@@ -3,8 +3,11 @@
 //!
 //! Tiles are processed one by one with the labels near them. Most tiles have one label nearby and need no filtering.
 
+use std::ops::Range;
+
 use crate::frame::Plane;
 use crate::frame::area::Area;
+use crate::frame::scaling::Scaling;
 use crate::lanes::each_with;
 use crate::model::Model;
 
@@ -13,14 +16,13 @@ const RADIUS: usize = 4;
 /// Side of a tile, full-size pixels. For speed.
 const TILE: usize = 32;
 
-/// Labels at the size of `guide`, from labels at a 2^k-th of it.
-pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, guide: &Plane, model: &Model) -> Vec<u8> {
-    let (full_width, full_height) = (guide.width(), guide.height());
-    if (width, height) == (full_width, full_height) {
+/// Labels below `of` of the small size at the full one, which `guide` has.
+pub(crate) fn upsample(labels: &[u8], scaling: &Scaling, of: usize, guide: &Plane, model: &Model) -> Vec<u8> {
+    if scaling.step == 1 {
         return labels.to_vec();
     }
-    let scale = factor(width, full_width).max(factor(height, full_height));
-    let grid = LabelGrid { labels, width, height, scale };
+    let [full_width, full_height] = scaling.full;
+    let grid = LabelGrid { labels, scaling };
     let mut winner = vec![0u8; full_width * full_height];
     for top in (0..full_height).step_by(TILE) {
         for left in (0..full_width).step_by(TILE) {
@@ -66,40 +68,26 @@ fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winne
     }
 }
 
-/// A plane of the working size enlarged bilinearly to full size.
-pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
-    let size = [small.width(), small.height()];
-    let scale = factor(size[0], width).max(factor(size[1], height));
-    let patch = Patch::enlarged(Area::whole(width, height), size, scale, |x, y| small.at(x, y));
-    Plane::from_vec(width, height, patch.values)
-}
-
-/// The power of two between two sizes of one side.
-fn factor(small: usize, large: usize) -> usize {
-    let mut factor = 1;
-    while large.div_ceil(factor) > small {
-        factor *= 2;
-    }
-    factor
+/// A plane of the small size enlarged bilinearly to the full one.
+pub(crate) fn enlarged(small: &Plane, scaling: &Scaling) -> Plane {
+    let [width, height] = scaling.full;
+    Plane::from_vec(width, height, Patch::enlarged(Area::whole(width, height), scaling, |x, y| small.at(x, y)).values)
 }
 
 /// Labels at a fraction of the full size.
 struct LabelGrid<'a> {
     labels: &'a [u8],
-    width: usize,
-    height: usize,
-    scale: usize,
+    scaling: &'a Scaling,
 }
 
 impl LabelGrid<'_> {
     /// The labels, below `of`, that have any weight in an area of the full size, in order.
     fn present(&self, area: &Area, of: usize) -> Vec<u8> {
         let mut found = vec![false; of];
-        let cells = |from: usize, to: usize, size: usize| {
-            (from / self.scale).min(size - 1)..((to - 1) / self.scale + 2).min(size)
-        };
-        for y in cells(area.rows.start, area.rows.end, self.height) {
-            for &label in &self.labels[y * self.width..][cells(area.columns.start, area.columns.end, self.width)] {
+        let Scaling { small: [width, height], step, .. } = *self.scaling;
+        let cells = |of: &Range<usize>, size: usize| of.start / step..((of.end - 1) / step + 2).min(size);
+        for y in cells(&area.rows, height) {
+            for &label in &self.labels[y * width..][cells(&area.columns, width)] {
                 if let Some(slot) = found.get_mut(usize::from(label)) {
                     *slot = true;
                 }
@@ -110,15 +98,16 @@ impl LabelGrid<'_> {
 
     /// One label's mask, enlarged bilinearly: full pixel X lies at X / 2^k.
     fn mask(&self, label: u8, area: Area) -> Patch {
-        let at = |x: usize, y: usize| if self.labels[y * self.width + x] == label { 1.0 } else { 0.0 };
-        Patch::enlarged(area, [self.width, self.height], self.scale, at)
+        let width = self.scaling.small[0];
+        let at = |x: usize, y: usize| if self.labels[y * width + x] == label { 1.0 } else { 0.0 };
+        Patch::enlarged(area, self.scaling, at)
     }
 }
 
-/// Position of a full-size coordinate in a grid `scale` times smaller: index of the grid point at or before it, and the fraction
-/// beyond.
-fn place(x: usize, scale: usize, size: usize) -> (usize, f32) {
-    if x / scale + 1 >= size { (size - 1, 0.0) } else { (x / scale, (x % scale) as f32 / scale as f32) }
+/// Position of a full-size coordinate in a grid of `size` points, `step` times smaller: index of the grid point at or before it, and the
+/// fraction beyond.
+fn place(x: usize, step: usize, size: usize) -> (usize, f32) {
+    if x / step + 1 >= size { (size - 1, 0.0) } else { (x / step, (x % step) as f32 / step as f32) }
 }
 
 /// Values of the pixels of an area; rows and columns are addressed as in the frame.
@@ -136,13 +125,14 @@ impl Patch {
         Patch { area, values }
     }
 
-    /// Bilinear enlargement of an area from values at a `scale`-th of the size: full-size pixel X lies at X / scale.
-    fn enlarged(area: Area, [width, height]: [usize; 2], scale: usize, at: impl Fn(usize, usize) -> f32) -> Patch {
+    /// Bilinear enlargement of an area of the full size from small values: full-size pixel X lies at X / step.
+    fn enlarged(area: Area, scaling: &Scaling, at: impl Fn(usize, usize) -> f32) -> Patch {
+        let Scaling { small: [width, height], step, .. } = *scaling;
         // A row of the small grid at the columns of the area.
         let stretched = |y: usize, row: &mut Vec<f32>| {
             row.clear();
             row.extend(area.columns.clone().map(|x| {
-                let (left, share) = place(x, scale, width);
+                let (left, share) = place(x, step, width);
                 let (a, b) = (at(left, y), at((left + 1).min(width - 1), y));
                 a + share * (b - a)
             }));
@@ -151,7 +141,7 @@ impl Patch {
         let mut between = None;
         let mut values = Vec::with_capacity(area.width() * area.height());
         for y in area.rows.clone() {
-            let (upper, share) = place(y, scale, height);
+            let (upper, share) = place(y, step, height);
             if between != Some(upper) {
                 stretched(upper, &mut top);
                 stretched((upper + 1).min(height - 1), &mut bottom);
@@ -270,7 +260,7 @@ mod tests {
         // The true edge lies at x = 33, which half the size cannot resolve.
         let guide = Plane::from_fn(64, 48, |x, _| if x < 33 { 40.0 } else { 200.0 });
         let labels: Vec<u8> = (0..32 * 24).map(|p| u8::from(p % 32 >= 17)).collect();
-        let full = upsample(&labels, [32, 24], 2, &guide, &Model::DEFAULT);
+        let full = upsample(&labels, &Scaling::halved([64, 48], 1), 2, &guide, &Model::DEFAULT);
         for y in 4..44 {
             let row: Vec<u8> = full[y * 64..(y + 1) * 64].to_vec();
             let expected: Vec<u8> = (0..64).map(|x| u8::from(x >= 33)).collect();

@@ -127,7 +127,7 @@ pub(crate) fn frame_motions(
 /// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;
 /// none if they do not explain the pair, or frames are so narrow that they are not halved to the size at which motions are selected.
 fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Settings) -> Option<(LabelledPair, [f64; 2])> {
-    if pair.selection > 0 {
+    if pair.draft > 0 || pair.selection > 0 {
         return None;
     }
     let model = settings.model;

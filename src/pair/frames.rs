@@ -5,6 +5,7 @@ use std::rc::Rc;
 use super::settings::Settings;
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::frame::scaling::Scaling;
 use crate::view::level::{Level, levels};
 
 /// The levels of a pair, from the working size down. A pair of the same frames the other way round is one with the frames swapped.
@@ -16,10 +17,12 @@ pub(crate) struct Pair {
     pub(crate) base: usize,
     /// Index of the level on which motions are first selected, the base level or a finer one.
     pub(crate) selection: usize,
+    /// Index of the level on which labels are drafted.
+    pub(crate) draft: usize,
     /// Pictures and colours that the labels follow, at the sizes of the levels.
     pub(super) appearance: Rc<Appearance>,
-    /// Full-size pixels per working pixel.
-    pub(crate) reduction: f64,
+    /// From the frames to the working size.
+    pub(crate) scaling: Scaling,
 }
 
 impl Pair {
@@ -35,12 +38,17 @@ impl Pair {
         let levels = levels(&pyramid.levels, &second.levels, settings.model);
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
-        let [base, selection] = [settings.base_side, settings.selection_side].map(within);
+        let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
         let appearance = Rc::clone(pyramid.appearance(first));
-        Pair { levels, base, selection, appearance, reduction: pyramid.reduction as f64 }
+        Pair { levels, base, selection, draft, appearance, scaling: pyramid.scaling }
     }
 
     pub(crate) fn finest(&self) -> &Level {
         &self.levels[0]
+    }
+
+    /// From the working size to the level on which labels are drafted.
+    pub(super) fn draft_scaling(&self) -> Scaling {
+        Scaling::halved(self.scaling.small, self.draft)
     }
 }

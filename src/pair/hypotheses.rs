@@ -11,6 +11,7 @@ use super::motions::{add_detail, follow, motions_of, refine, select};
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
+use crate::frame::scaling::Scaling;
 use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
@@ -70,16 +71,13 @@ pub(super) fn carry_on(
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> LabelledPair {
-    let scale = found.pair.reduction / pair.reduction;
+    let scaling = Scaling::between(pair.scaling.small, found.pair.scaling.small);
+    let scale = scaling.step as f64;
     let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.scaled(scale)).collect();
     observer.stage_begins("dominant");
     let dominant = pair.settle_dominant(Dominant::Known(&motions[BACKGROUND]), settings);
     observer.stage_begins("refinement");
-    let [fine, coarse] = [&pair, &found.pair].map(|pair| pair.finest());
-    let step = scale as usize;
-    let mut labels: Vec<u8> = (0..fine.width() * fine.height())
-        .map(|p| found.labels[p / fine.width() / step * coarse.width() + p % fine.width() / step])
-        .collect();
+    let mut labels = scaling.enlarged(&found.labels);
     let (mut motions, _) = follow(&pair, dominant, &motions[BACKGROUND + 1..], &mut labels, settings);
     let rejected =
         add_detail(&pair, &mut motions, settings).or_else(|| found.rejected.map(|motion| motion.scaled(scale)));

@@ -1,7 +1,8 @@
 //! The label of every working pixel.
 //!
-//! Motions that do not pay for themselves are pruned, costs are corrected for occlusion, regions are merged and split, colours are learnt,
-//! and small components removed. In the end, shadows are given back to the background.
+//! On the draft level, motions that do not pay for themselves are pruned, costs are corrected for occlusion, and regions are merged and
+//! split. At the working size labels are then solved once more, with colours, and small components removed. In the end, shadows are given
+//! back to the background.
 
 use super::frames::Pair;
 use super::observer::Observer;
@@ -44,12 +45,13 @@ impl LabelledPair {
 pub(super) enum Start {
     /// The cheapest motion of each pixel.
     Costs,
-    /// Labels that are expected. Regions are merged and split, or taken as they are.
+    /// Labels that are expected at the working size. Regions are merged and split, or taken as they are.
     Expected { labels: Vec<u8>, regroups: bool },
 }
 
-/// The energy of the labels: the motions, their costs, the weights of borders, and the labels of least energy so far.
+/// The energy of the labels on a level: the motions, their costs, the weights of borders, and the labels of least energy so far.
 struct LabelEnergy<'a> {
+    pair: &'a Pair,
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
@@ -76,31 +78,25 @@ pub(super) fn label(
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> LabelledPair {
-    let mut energy = LabelEnergy::new(&pair, motions, settings);
-    energy.rejected = rejected;
-    let regroups = match start {
+    let mut energy = LabelEnergy::new(&pair, motions, rejected, settings);
+    let (rounds, regroups) = match start {
         Start::Costs => {
-            energy.solve(Solver::FAST);
-            energy.prune();
-            energy.correct_occlusion();
-            true
+            energy.solve();
+            (settings.visibility_rounds, true)
         }
         Start::Expected { labels, regroups } => {
-            energy.expect(labels);
-            energy.prune();
-            energy.hide_occluded();
-            regroups
+            energy.expect(pair.draft_scaling().thinned(&labels));
+            (1, regroups)
         }
     };
+    energy.prune();
+    energy.correct_occlusion(rounds);
     if regroups {
         energy.regroup();
     }
     observer.regrouped(&pair, &energy.motions, &energy.labels);
-    energy.add_colour_costs(&pair);
-    energy.solve(settings.labelling.solver);
-    energy.prune();
-    energy.clean();
-    let LabelEnergy { motions, labels, rejected, .. } = energy;
+    let (mut labels, mut motions, rejected) = (energy.final_labels(), energy.motions, energy.rejected);
+    remove_small_components(&mut labels, &mut motions, pair.finest());
     LabelledPair { pair, motions, labels, rejected }
 }
 
@@ -112,9 +108,7 @@ pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
     }
     let (palette, borders) = (&pair.appearance.palette, borders(pair, 0, settings));
     shadows::return_shadows(pair.finest(), palette, &borders, motions, labels, settings.labelling.solver);
-    for k in absorb_small_components(labels, pair.finest(), motions.len()) {
-        motions.remove(k);
-    }
+    remove_small_components(labels, motions, pair.finest());
 }
 
 /// Label costs of motions: no motion pays for pixels that are occluded in the second frame, as far as `labels` tell.
@@ -133,21 +127,27 @@ pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders
 
 impl<'a> LabelEnergy<'a> {
     /// The energy of labels that all are those of the background.
-    fn new(pair: &'a Pair, motions: Vec<AffineMotion>, settings: &'a Settings) -> LabelEnergy<'a> {
-        let level = pair.finest();
+    fn new(
+        pair: &'a Pair,
+        motions: Vec<AffineMotion>,
+        rejected: Option<AffineMotion>,
+        settings: &'a Settings,
+    ) -> LabelEnergy<'a> {
+        let level = &pair.levels[pair.draft];
         let compared = compare(level, &motions, Vec::new());
         let uncorrected = label_costs(level, &compared, settings.labelling);
         LabelEnergy {
+            pair,
             level,
             settings,
-            borders: borders(pair, 0, settings),
+            borders: borders(pair, pair.draft, settings),
             costs: uncorrected.clone(),
             uncorrected,
             raw: estimation_costs(level, &compared),
             compared,
             labels: vec![BACKGROUND as u8; level.width() * level.height()],
             motions,
-            rejected: None,
+            rejected,
         }
     }
 
@@ -159,23 +159,33 @@ impl<'a> LabelEnergy<'a> {
         self.raw = estimation_costs(self.level, &self.compared);
     }
 
-    fn solve(&mut self, solver: Solver) {
-        self.labels = self.borders.solve(&self.costs, solver);
+    fn solve(&mut self) {
+        self.labels = self.borders.solve(&self.costs, Solver::FAST);
     }
 
     /// Starts from expected labels. Where the last motion is expected nowhere, as where it was added, they are solved.
     fn expect(&mut self, labels: Vec<u8>) {
         self.labels = labels;
         if counts(&self.labels, self.motions.len()).last() == Some(&0) {
-            self.solve(Solver::FAST);
+            self.solve();
         }
     }
 
-    /// Adds the costs of the colours.
-    fn add_colour_costs(&mut self, pair: &Pair) {
-        if self.motions.len() > 1 && self.settings.model.colour_price > 0.0 {
-            add_colours(&mut self.costs, &pair.appearance.palette, &self.labels, self.level.model);
+    /// Labels of the working size, with the costs of the colours.
+    fn final_labels(&mut self) -> Vec<u8> {
+        let LabelEnergy { pair, settings, .. } = self;
+        let level = pair.finest();
+        let options = settings.labelling;
+        if pair.draft > 0 {
+            self.labels = pair.draft_scaling().enlarged(&self.labels);
+            let costs = label_costs(level, &compare(level, &self.motions, Vec::new()), options);
+            self.costs = with_visibility(level, &self.motions, &costs, &self.labels, options.object_bias);
+            self.borders = borders(pair, 0, settings);
         }
+        if self.motions.len() > 1 && settings.model.colour_price > 0.0 {
+            add_colours(&mut self.costs, &pair.appearance.palette, &self.labels, settings.model);
+        }
+        self.borders.solve(&self.costs, options.solver)
     }
 
     /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
@@ -202,13 +212,13 @@ impl<'a> LabelEnergy<'a> {
     }
 
     /// Corrects for occlusion in several rounds, since what is occluded depends on the labels.
-    fn correct_occlusion(&mut self) {
+    fn correct_occlusion(&mut self, rounds: usize) {
         if self.motions.len() < 2 {
             return;
         }
-        for _ in 0..self.settings.visibility_rounds {
+        for _ in 0..rounds {
             self.hide_occluded();
-            self.solve(Solver::FAST);
+            self.solve();
         }
         self.prune();
     }
@@ -244,7 +254,7 @@ impl<'a> LabelEnergy<'a> {
             }
             self.recompute_costs();
             self.hide_occluded();
-            self.solve(Solver::FAST);
+            self.solve();
         }
     }
 
@@ -259,7 +269,7 @@ impl<'a> LabelEnergy<'a> {
         }
         self.recompute_costs();
         self.hide_occluded();
-        self.solve(Solver::FAST);
+        self.solve();
         true
     }
 
@@ -268,6 +278,13 @@ impl<'a> LabelEnergy<'a> {
         for k in absorb_small_components(&mut self.labels, self.level, self.motions.len()) {
             self.remove(k);
         }
+    }
+}
+
+/// Gives small components of labels to the labels around them, and removes motions that are then without pixels.
+fn remove_small_components(labels: &mut [u8], motions: &mut Vec<AffineMotion>, level: &Level) {
+    for k in absorb_small_components(labels, level, motions.len()) {
+        motions.remove(k);
     }
 }
 

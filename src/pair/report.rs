@@ -17,6 +17,7 @@ use super::groups::Regions;
 use super::labels::LabelledPair;
 use super::settings::Settings;
 use crate::answer::{Candidate, UNLABELLED};
+use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
@@ -110,14 +111,14 @@ pub(super) fn report(
     };
     let mut sure = probabilities(&costs, &labelled.labels, model);
     let unknown = options.mark_unknown.then(|| unknown::unknown(&labelled, &sure));
-    let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
+    let full = upsample(&labelled.labels, &pair.scaling, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
-    let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);
+    let junctions = junctions::junctions(regions.clone(), pair.scaling.step, &order);
     let group_of = figure::groups(regions, &labelled.motions, &labelled.labels, level, settings.subject);
     let groups: Vec<usize> = order.iter().map(|&k| group_of[k]).collect();
     let mut confidence = options.confidence.then(|| {
         doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);
-        confidence(&sure, &full, first.width())
+        confidence(&sure, &full, &pair.scaling)
     });
     drop(costs);
     let mut rank = [0u8; 256];
@@ -125,12 +126,17 @@ pub(super) fn report(
     let mut labels = full;
     labels.iter_mut().for_each(|l| *l = rank[usize::from(*l)]);
     if let Some(unknown) = unknown {
-        mark_unlabelled(&mut labels, first.width(), &unknown, size, pair.reduction);
+        labels
+            .iter_mut()
+            .zip(pair.scaling.enlarged(&unknown))
+            .filter(|(_, unknown)| *unknown)
+            .for_each(|(l, _)| *l = UNLABELLED);
     }
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
-    let matrices: Vec<AffineMotion> = order.iter().map(|&k| labelled.motions[k].scaled(pair.reduction)).collect();
+    let matrices: Vec<AffineMotion> =
+        order.iter().map(|&k| labelled.motions[k].scaled(pair.scaling.step as f64)).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
         width: first.width(),
@@ -146,10 +152,10 @@ pub(super) fn report(
 }
 
 /// The probability of each pixel's label at full size, in steps of 1/255.
-fn confidence(probabilities: &[Plane], labels: &[u8], width: usize) -> Vec<u8> {
+fn confidence(probabilities: &[Plane], labels: &[u8], scaling: &Scaling) -> Vec<u8> {
     let mut confidence = vec![0; labels.len()];
     for (k, of_motion) in probabilities.iter().enumerate() {
-        let full = enlarged(of_motion, width, labels.len() / width);
+        let full = enlarged(of_motion, scaling);
         for ((c, p), _) in
             confidence.iter_mut().zip(full.values()).zip(labels).filter(|(_, label)| usize::from(**label) == k)
         {
@@ -165,18 +171,4 @@ fn by_size(labels: &[u8], of: usize) -> Vec<usize> {
     let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);
     order
-}
-
-/// The working pixel that a full-size pixel belongs to.
-fn working_pixel(p: usize, width: usize, size: [usize; 2], reduction: f64) -> usize {
-    let step = reduction as usize;
-    (p / width / step).min(size[1] - 1) * size[0] + (p % width / step).min(size[0] - 1)
-}
-
-fn mark_unlabelled(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
-    for (p, label) in labels.iter_mut().enumerate() {
-        if unknown[working_pixel(p, width, size, reduction)] {
-            *label = UNLABELLED;
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! Settings of a pair that depend on the quality, an option or the size of the frames. The numbers themselves are those of the [`Model`].
 
 use crate::estimation::alignment::Convergence;
+use crate::frame::Frame;
 use crate::frame::pyramid::FramePyramid;
-use crate::frame::{Frame, MIN_SIDE};
+use crate::frame::scaling::Scaling;
 use crate::labelling::options::LabellingOptions;
 use crate::labelling::solver::Solver;
 use crate::model::Model;
@@ -16,6 +17,8 @@ pub(crate) struct Settings {
     pub(crate) base_side: usize,
     /// Longer side of the level on which motions are first selected at most, pixels.
     pub(crate) selection_side: usize,
+    /// Longer side of the level on which labels are drafted at most, pixels.
+    pub(crate) draft_side: usize,
     /// The coarsest level keeps the shorter side at least this long, pixels.
     pub(crate) smallest_side: usize,
     /// Highest degree of the multibody polynomial.
@@ -50,19 +53,9 @@ pub(crate) struct Settings {
     pub(crate) model: &'static Model,
 }
 
-/// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
-fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
-    let (mut longer, mut shorter, mut halvings) = (width.max(height), width.min(height), 0);
-    while longer > work_side && shorter >= 2 * MIN_SIDE {
-        (longer, shorter) = (longer.div_ceil(2), shorter.div_ceil(2));
-        halvings += 1;
-    }
-    halvings
-}
-
 /// How often frames are halved with quality `fast`, to this side of the working size and, where they are large, to that.
 fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2], model: &Model) -> usize {
-    halvings_to(if size[0].max(size[1]) > model.detail_side() { of_large } else { side }, size)
+    Scaling::within(size, if size[0].max(size[1]) > model.detail_side() { of_large } else { side }).halvings()
 }
 
 /// λ of quality `fast` for frames that are halved so many times.
@@ -73,7 +66,7 @@ fn fast_smoothness(halvings: usize, model: &Model) -> f32 {
 impl Settings {
     /// The settings for a pair of frames of the given width and height.
     pub(crate) fn new(options: &SegmentOptions, size: [usize; 2], model: &'static Model) -> Settings {
-        let halvings = halvings_to(model.work_side, size);
+        let halvings = Scaling::within(size, model.work_side).halvings();
         // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
         // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
         let (fine_side, smoothness) = if halvings > 0 {
@@ -85,6 +78,7 @@ impl Settings {
             halvings,
             base_side: model.base_side(),
             selection_side: fine_side,
+            draft_side: fine_side,
             smallest_side: model.smallest_side,
             degrees: model.degrees,
             measurements: model.measurements,
@@ -110,6 +104,7 @@ impl Settings {
                 halvings: fast_halvings([model.work_side_fast, model.work_side], size, model),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: model.base_side(),
+                draft_side: model.base_side(),
                 tiles: model.tiles_fast,
                 tries: model.tries_fast,
                 visibility_rounds: model.visibility_rounds_fast,
@@ -150,7 +145,7 @@ impl Settings {
         Settings { selection_side, completes, ..Settings::of_clip(options, size) }
     }
 
-    /// The settings for the pairs of a stream. A fast one selects motions at the working size.
+    /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let settings = Settings::of_clip(options, size);
         if options.quality == Quality::Best {
@@ -159,17 +154,17 @@ impl Settings {
         let (model, sides) = (settings.model, [settings.model.base_side(), settings.model.work_side_stream()]);
         let halvings = fast_halvings(sides, size, model);
         let labelling = LabellingOptions { smoothness: fast_smoothness(halvings, model), ..settings.labelling };
-        let selection_side = model.work_side_stream();
-        Settings { halvings, selection_side, labelling, follows: true, ..settings }
+        let fine_side = model.work_side_stream();
+        Settings { halvings, selection_side: fine_side, draft_side: fine_side, labelling, follows: true, ..settings }
     }
 
     /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
     /// `fast` or the size of the frames asks for no more.
     pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
-        let halvings = halvings_to(self.model.detail_side(), size);
+        let halvings = Scaling::within(size, self.model.detail_side()).halvings();
         let finer = self.halvings > 1 && halvings < self.halvings;
         let wanted = options.quality == Quality::Best && finer && self.model.adds_detail > 0;
-        wanted.then_some(Settings { halvings, ..*self })
+        wanted.then_some(Settings { halvings, draft_side: self.model.detail_side(), ..*self })
     }
 
     /// The solver of final labels.
@@ -180,9 +175,9 @@ impl Settings {
         }
     }
 
-    /// Width and height of the working size of frames of the given width and height.
-    pub(crate) fn working_size(&self, size: [usize; 2]) -> [usize; 2] {
-        size.map(|side| (0..self.halvings).fold(side, |side, _| side.div_ceil(2)))
+    /// The working size of frames of the given width and height.
+    pub(crate) fn scaling(&self, size: [usize; 2]) -> Scaling {
+        Scaling::halved(size, self.halvings)
     }
 
     /// The pyramid of a frame.

@@ -54,7 +54,7 @@ struct Recorder {
 impl Observer for Recorder {
     fn dominant_found(&mut self, pair: &Pair, dominant: AffineMotion, flow: &LocalFlow, settings: &Settings) {
         let level = &pair.levels[pair.base];
-        let scale = level.pixel() * pair.reduction;
+        let scale = level.pixel() * (pair.scaling.step as f64);
         let none = Plane::filled(level.width(), level.height(), 0.0);
         let local = samples(level, &dominant, &flow.u, &flow.v);
         let mut temporal = local.residual;
@@ -63,14 +63,14 @@ impl Observer for Recorder {
         let mut local_flow = [flow.u.clone(), flow.v.clone()];
         local_flow.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|flow| *flow *= scale as f32);
         self.hypotheses.push(Background {
-            dominant: dominant.scaled(pair.reduction),
+            dominant: dominant.scaled(pair.scaling.step as f64),
             base: grid(pair, level),
             noise: f64::from(level.noise),
             residual: samples(level, &dominant, &none, &none).residual,
             derivatives: Derivatives { x: local.gx, y: local.gy, t: temporal },
             local_flow,
             measured: measured(level, &dominant, flow, settings, scale),
-            candidates: candidates(level, &dominant, flow, settings, pair.reduction),
+            candidates: candidates(level, &dominant, flow, settings, pair.scaling.step as f64),
             price: 0.0,
             selected: Vec::new(),
             selection: Labelling::default(),
@@ -87,13 +87,13 @@ impl Observer for Recorder {
         hypothesis.price = how.price;
         let candidates = &mut hypothesis.candidates;
         let known = proposals.iter().skip(candidates.len());
-        let known = known.map(|motion| candidate(motion, CandidateSource::Hypothesis, pair.reduction));
+        let known = known.map(|motion| candidate(motion, CandidateSource::Hypothesis, pair.scaling.step as f64));
         candidates.extend(known.collect::<Vec<_>>());
         let level = &pair.levels[pair.selection];
         let rough = RoughCosts::new(&level.thinned(), level.thinning(), proposals);
         let gains = rough.gains(&dominant.cost, how.window, level.model);
         for ((candidate, motion), gain) in candidates.iter_mut().zip(proposals).zip(gains) {
-            debug_assert_eq!(candidate.matrix, motion.scaled(pair.reduction));
+            debug_assert_eq!(candidate.matrix, motion.scaled(pair.scaling.step as f64));
             let both = [dominant.clone(), ScoredMotion::new(level, *motion)];
             candidate.gain = gain;
             candidate.support = shares(&cheapest(&both), 2)[1];
@@ -187,18 +187,18 @@ fn cheapest_labels(pair: &Pair, scored: &[ScoredMotion]) -> Labelling {
 }
 
 fn labelling(pair: &Pair, level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Labelling {
-    let motions = motions.iter().map(|motion| motion.scaled(pair.reduction)).collect();
+    let motions = motions.iter().map(|motion| motion.scaled(pair.scaling.step as f64)).collect();
     Labelling { grid: grid(pair, level), motions, labels: labels.to_vec() }
 }
 
 fn grid(pair: &Pair, level: &Level) -> Grid {
-    Grid { width: level.width(), height: level.height(), scale: level.pixel() * pair.reduction }
+    Grid { width: level.width(), height: level.height(), scale: level.pixel() * (pair.scaling.step as f64) }
 }
 
 /// Motions with the share of the pixels at which each is cheapest.
 fn supported(pair: &Pair, scored: &[ScoredMotion]) -> Vec<SelectedMotion> {
     let motion = |(scored, support): (&ScoredMotion, f64)| SelectedMotion {
-        matrix: scored.motion.scaled(pair.reduction),
+        matrix: scored.motion.scaled(pair.scaling.step as f64),
         support,
     };
     scored.iter().zip(shares(&cheapest(scored), scored.len())).map(motion).collect()

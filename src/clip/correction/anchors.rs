@@ -2,7 +2,6 @@
 
 use super::features::FrameFeatures;
 use super::plan::Anchor;
-use super::scaling::{at_features, at_working_size};
 use super::strokes;
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{ObjectSet, Seed, Spread};
@@ -89,7 +88,7 @@ impl SegmentedClip {
             Some((labels.into_iter().map(seed).collect(), Spread::Both))
         };
         let (seeds, spread) = annotated.or_else(accepted)?;
-        let mut seeds = at_features(&seeds, Seed::Nothing, self.size()[0], features);
+        let mut seeds = features.scaling.gathered(&seeds, Seed::Nothing);
         if self.paints_over(t, object) {
             strokes::fill(&mut seeds, &self.found_at(t, features.size), object);
         }
@@ -103,25 +102,24 @@ impl SegmentedClip {
         let Some(seeds) = self.frames[t].annotation.as_ref().and_then(|of| of.painted_seeds(object)) else {
             return false;
         };
-        let seeds = at_working_size(&seeds, Seed::Nothing, self.size()[0], self.working_size(), self.working_step());
-        strokes::paints_over(&self.found_at(t, self.working_size()), object, &seeds)
+        let scaling = self.scaling();
+        strokes::paints_over(&self.found_at(t, scaling.small), object, &scaling.gathered(&seeds, Seed::Nothing))
     }
 
     /// 1 where a person has seen an object of a frame when strokes were drawn, at the size of the features.
     #[inline(never)]
     pub(super) fn seen_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<Vec<u8>> {
         let seen = self.frames[t].annotation.as_ref()?.seen(object)?;
-        Some(at_features(&seen, UNLABELLED, self.size()[0], features))
+        Some(features.scaling.gathered(&seen, UNLABELLED))
     }
 
     /// How an annotation covers each object found automatically, by number.
     #[inline(never)]
     fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {
-        let (size, step, full_width) = (self.working_size(), self.working_step(), self.size()[0]);
-        let scaled = |labels: &[u8]| at_working_size(labels, UNLABELLED, full_width, size, step);
-        let painted = annotation.painted_labels().map_or_else(|| vec![UNLABELLED; size[0] * size[1]], |of| scaled(&of));
-        let erases = annotation.names_no_object();
         let (found, _) = self.found(t);
+        let painted = annotation.painted_labels().map(|labels| self.scaling().gathered(&labels, UNLABELLED));
+        let painted = painted.unwrap_or_else(|| vec![UNLABELLED; found.len()]);
+        let erases = annotation.names_no_object();
         let mut covered = [Covered::default(); 256];
         for (&found, &painted) in found.iter().zip(&painted) {
             let of = &mut covered[usize::from(found)];
@@ -130,7 +128,13 @@ impl SegmentedClip {
             of.others += usize::from(painted != 0 && painted != UNLABELLED && painted != found);
         }
         for (object, outline) in annotation.outlines() {
-            for (p, _) in scaled(&outline).into_iter().enumerate().filter(|(_, label)| *label == object) {
+            for (p, _) in self
+                .scaling()
+                .gathered(&outline, UNLABELLED)
+                .into_iter()
+                .enumerate()
+                .filter(|(_, label)| *label == object)
+            {
                 covered[usize::from(found[p])].others += usize::from(found[p] != object && painted[p] == UNLABELLED);
             }
         }

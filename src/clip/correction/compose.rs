@@ -141,7 +141,7 @@ impl Composition<'_> {
         let (features, width) = (self.features, self.frame.width());
         let mut mask = vec![0; self.found.len()];
         if let Some(proposal) = proposal.filter(|proposal| proposal.mask.contains(&1)) {
-            mask = upsample(&proposal.inside(features), features.size, 2, self.frame.luminance(), &Model::DEFAULT);
+            mask = upsample(&proposal.inside(features), &features.scaling, 2, self.frame.luminance(), &Model::DEFAULT);
         }
         if let Some(mut seeds) = rules.annotation.seeds(object) {
             let base = rules.annotation.base(object);
@@ -189,7 +189,7 @@ impl Composition<'_> {
             let is_painted = rules.painted.get(p).is_some_and(|label| *label != UNLABELLED);
             !is_painted && rules.annotation.is_within([p % width, p / width])
         };
-        strokes::absorb_rims(&mut draft.labels, self.found, (&is_open, &takes), width, 2 * self.features.step);
+        strokes::absorb_rims(&mut draft.labels, self.found, (&is_open, &takes), width, 2 * self.features.scaling.step);
         for (object, _) in self.proposals {
             let painted = rules.annotation.painted_of(*object).unwrap_or_default();
             for (label, _) in
@@ -230,6 +230,6 @@ impl Composition<'_> {
 
     /// The pixel of the working size that a full-size pixel belongs to.
     fn pixel(&self, p: usize) -> usize {
-        self.features.pixel(p, self.frame.width())
+        self.features.scaling.small_pixel(p)
     }
 }

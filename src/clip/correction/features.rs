@@ -5,6 +5,7 @@ use crate::frame::area::Area;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::lab::lab;
 use crate::frame::picture::{Picture, colours};
+use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
@@ -27,8 +28,8 @@ fn colour_cell([l, a, b]: [f32; 3]) -> u16 {
 #[derive(Clone, Debug)]
 pub(super) struct FrameFeatures {
     pub(super) size: [usize; 2],
-    /// Full-size pixels for each of these.
-    pub(super) step: usize,
+    /// From the full size.
+    pub(super) scaling: Scaling,
     /// Colour cell of every pixel.
     pub(super) colours: Vec<u16>,
     /// L, a, b …
@@ -39,28 +40,19 @@ pub(super) struct FrameFeatures {
     pub(super) borders: Borders,
 }
 
-/// Full-size pixels for each pixel of the working size.
-fn step_of(size: [usize; 2]) -> usize {
-    let mut step = 1;
-    while size[0].max(size[1]).div_ceil(step) > Model::DEFAULT.work_side {
-        step *= 2;
-    }
-    step
-}
-
 impl FrameFeatures {
     pub(super) fn new(frame: &Frame) -> FrameFeatures {
-        let step = step_of([frame.width(), frame.height()]);
+        let scaling = Scaling::within([frame.width(), frame.height()], Model::DEFAULT.work_side);
         let mut luminance = frame.luminance().clone();
-        (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
+        (0..scaling.halvings()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
         let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().motion));
-        let size = [picture.luminance.width(), picture.luminance.height()];
+        let size = scaling.small;
         let colours =
             (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
         let borders = Borders::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
-        FrameFeatures { size, step, colours, fine, coarse, borders }
+        FrameFeatures { size, scaling, colours, fine, coarse, borders }
     }
 }
 
@@ -75,12 +67,6 @@ impl FrameFeatures {
 
     pub(super) fn middle(&self) -> [f32; 2] {
         self.size.map(|side| 0.5 * side as f32)
-    }
-
-    /// The pixel of the working size that a full-size pixel belongs to.
-    pub(super) fn pixel(&self, p: usize, full_width: usize) -> usize {
-        let (x, y) = (p % full_width / self.step, p / full_width / self.step);
-        y.min(self.size[1] - 1) * self.size[0] + x.min(self.size[0] - 1)
     }
 
     /// A plane of values.

@@ -8,10 +8,11 @@ use super::still::Still;
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::Seed;
 use crate::error::{Error, Result};
+use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
-use crate::labelling::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
+use crate::labelling::upsampling::upsample;
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
@@ -179,7 +180,7 @@ struct Working<'a> {
 impl<'a> Working<'a> {
     fn new(first: &'a Frame, second: &Frame, correction: &'a Correction<'a>, settings: &Settings) -> Working<'a> {
         let mut pair = Pair::of_frames([first, second], settings);
-        let reduction = pair.reduction;
+        let reduction = pair.scaling.step as f64;
         let motions: Vec<AffineMotion> = correction.motions.iter().map(|m| m.scaled(1.0 / reduction)).collect();
         pair.settle_dominant(Dominant::Known(&motions[0]), settings);
         let (width, step) = (first.width(), reduction as usize);
@@ -249,7 +250,13 @@ impl<'a> Working<'a> {
         let found: Vec<bool> = found.into_iter().map(|pixels| pixels > half).collect();
         let odds = |x, y| self.price(others, y * columns + x) - self.price(object, y * columns + x);
         let mask = self.still.mask(&said, &found, &Plane::from_fn(columns, rows, odds));
-        let full = upsample(&mask, size, 2, self.frame.luminance(), &Model::DEFAULT);
+        let full = upsample(
+            &mask,
+            &Scaling::between([self.frame.width(), self.frame.height()], size),
+            2,
+            self.frame.luminance(),
+            &Model::DEFAULT,
+        );
         let [within, without] = [object, others].map(|side| self.choice(side));
         for (p, (label, &inside)) in labels.iter_mut().zip(&full).enumerate() {
             if inside > 0 && (is_in(*label, others) || *label == UNLABELLED) {

@@ -77,8 +77,8 @@ pub(super) fn outline(
     let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(features.size).labels);
     let own = clip.found_at(index, features.size);
     let found = [Some(own), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
-    let scaled =
-        |side: Range<usize>, size: usize| side.start / features.step..side.end.div_ceil(features.step).min(size);
+    let step = features.scaling.step;
+    let scaled = |side: Range<usize>, size: usize| side.start / step..side.end.div_ceil(step).min(size);
     let limit = prompt.within.map_or(features.area(), |[x, y, columns, rows]| Area {
         columns: scaled(x..x + columns, features.size[0]),
         rows: scaled(y..y + rows, features.size[1]),
@@ -91,7 +91,7 @@ pub(super) fn outline(
         view.mask = view.boxed();
     }
     for (at, inside) in &clicks {
-        let click = features.pixel(*at, width);
+        let click = features.scaling.small_pixel(*at);
         let centre = view.place(click);
         for p in 0..features.pixels() {
             if view.square(p, centre, [model().click; 2]) < 1.0 {
@@ -100,7 +100,7 @@ pub(super) fn outline(
         }
         view.refine(click, *inside);
     }
-    let mut mask = upsample(&view.mask, features.size, 2, frame.luminance(), &Model::DEFAULT);
+    let mut mask = upsample(&view.mask, &features.scaling, 2, frame.luminance(), &Model::DEFAULT);
     if let Some([x, y, columns, rows]) = prompt.within {
         let area = Area { columns: x..x + columns, rows: y..y + rows };
         let is_empty = !area.pixels(width).any(|p| mask[p] > 0);

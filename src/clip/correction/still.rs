@@ -25,7 +25,7 @@ impl Still {
 
     /// Full-size pixels for each of these.
     pub(crate) fn step(&self) -> usize {
-        self.0.step
+        self.0.scaling.step
     }
 
     /// The labels of least energy, given the price of each at every pixel.

@@ -93,6 +93,7 @@ fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model:
 mod tests {
     use super::*;
     use crate::frame::Frame;
+    use crate::frame::scaling::Scaling;
 
     /// Left and right half of the frame have a motion each; only every third column knows which.
     fn costs(width: usize, height: usize) -> ([Plane; 2], Vec<u8>) {
@@ -127,11 +128,11 @@ mod tests {
     fn colours_that_separate_the_labels_are_used_and_others_are_not() {
         let (costs, labels) = costs(72, 48);
         let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = said(&Palette::new(&telling, 72, 48), &costs, &labels);
+        let said = said(&Palette::new(&telling, &Scaling::halved([72, 48], 0)), &costs, &labels);
         assert!(said[1].at(10, 20) > said[0].at(10, 20) + 0.5);
         assert!(said[0].at(60, 20) > said[1].at(60, 20) + 0.5);
         let shared = frame(|x, y| if (x / 2 + y / 2) % 2 == 0 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = self::said(&Palette::new(&shared, 72, 48), &costs, &labels);
+        let said = self::said(&Palette::new(&shared, &Scaling::halved([72, 48], 0)), &costs, &labels);
         assert!((said[0].at(10, 20) - said[1].at(10, 20)).abs() < 0.01);
     }
 }

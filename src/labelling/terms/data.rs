@@ -116,7 +116,10 @@ mod tests {
             let (object, dominant) = (costs([still, leaving]), costs([leaving, still]));
             for y in 1..47 {
                 for x in 45..63 {
-                    assert!(object[1].at(x, y) >= object[0].at(x, y) + LabellingOptions::OF_TESTS.object_bias, "({x}, {y})");
+                    assert!(
+                        object[1].at(x, y) >= object[0].at(x, y) + LabellingOptions::OF_TESTS.object_bias,
+                        "({x}, {y})"
+                    );
                     assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
                 }
             }

@@ -124,9 +124,13 @@ mod tests {
         let coloured =
             Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
         let borders = Borders::new(&bright, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT);
-        for borders in [&borders, &Borders::new(&coloured, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT)] {
+        for borders in [&borders, &Borders::new(&coloured, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT)]
+        {
             assert_eq!(borders.horizontal.at(10, 10), LabellingOptions::OF_TESTS.smoothness);
-            assert!(borders.horizontal.at(31, 10) < (Model::DEFAULT.edge_share + 0.01) * LabellingOptions::OF_TESTS.smoothness);
+            assert!(
+                borders.horizontal.at(31, 10)
+                    < (Model::DEFAULT.edge_share + 0.01) * LabellingOptions::OF_TESTS.smoothness
+            );
         }
         // The costs locate the border only to within four pixels; the edge decides where exactly.
         let costs = [

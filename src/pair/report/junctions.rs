@@ -21,12 +21,12 @@ pub struct Junction {
 }
 
 /// The junctions of the motions in `order`, whose place there is their label in the report, by labels. Borders that are too short to
-/// decide on groups are left out. Each pixel of the labels is `reduction` pixels of the frame wide.
-pub(super) fn junctions(mut regions: Regions<'_>, reduction: f64, order: &[usize]) -> Vec<Junction> {
+/// decide on groups are left out. Each pixel of the labels is `step` pixels of the frame wide.
+pub(super) fn junctions(mut regions: Regions<'_>, step: usize, order: &[usize]) -> Vec<Junction> {
     let mut found = Vec::new();
     for (a, &i) in order.iter().enumerate() {
         for (b, &j) in order.iter().enumerate().skip(a + 1) {
-            let border = (regions.border([i, j]) as f64 * reduction) as usize;
+            let border = regions.border([i, j]) * step;
             let known = regions.likelihood([i, j]);
             found.extend(known.map(|likelihood| Junction { labels: [a as u8, b as u8], likelihood, border }));
         }
