@@ -5,7 +5,8 @@
 //! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
 //!    first one's cut.
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
-//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), parts that move together are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
+//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), what lasted a few frames is dropped,
+//!    and the others get their final numbers (`clip/numbering.rs`).
 //! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
 //! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
@@ -22,10 +23,10 @@ mod evidence;
 mod farther;
 mod frame_annotation;
 mod frame_state;
-mod grouping;
 mod identity;
 mod job;
 mod layer;
+mod numbering;
 mod options;
 mod overlay;
 mod parting;

@@ -364,7 +364,7 @@ model! {
     motion: f32 = 1.0;
     /// The same, as a share of the displacement.
     relative_motion: f32 = 0.2;
-    /// Distance within which parts of an object are looked for, and which parts it, in roots of its size.
+    /// Distance within which an object that was hidden is looked for, and which parts it, in roots of its size.
     search: f64 = 1.0;
     /// Share by which that distance grows in each frame in which the object is hidden.
     search_growth: f32 = 0.1;
@@ -409,15 +409,13 @@ model! {
     uncrossed: f32 = 0.2;
     /// Share of an object's full size that is left in a frame in which less is in sight: objects also become smaller by moving away.
     shrinking: f32 = 0.97;
-    /// Frames in a row in which two must move together to be one, or apart to be two. Generated.
-    together: usize = 5;
+    /// Frames in a row in which pieces of an object must move apart to be two. Generated.
+    apart: usize = 5;
     /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
     lasting: usize = 4;
 
-    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next two 1, and 0 where an ablation leaves it out.
+    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next one 1, and 0 where an ablation leaves it out.
     looks_farther: usize = 1;
-    /// Whether parts that move together are joined.
-    joins: usize = 1;
     /// Whether there are several objects, each with its number. Else all that is found is one.
     identities: usize = 1;
 }

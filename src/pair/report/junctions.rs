@@ -53,7 +53,7 @@ mod tests {
             })
             .collect();
         let motions = [0.0, 6.0, 5.0, -4.0].map(|u| AffineMotion::translation(u, 0.0));
-        junctions(Regions::new(&motions, &labels, WIDTH, &Model::DEFAULT), 2.0, order)
+        junctions(Regions::new(&motions, &labels, WIDTH, &Model::DEFAULT), 2, order)
     }
 
     #[test]
