@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import veronese
 from scenes import Pixels, frame, write_image
-from veronese import Correction, Mask, VeroneseError, relabel, segment_clip, segment_pair
+from veronese import Correction, Mask, VeroneseError, segment_clip, segment_pair
 
 FIRST, SECOND = frame(0), frame(1)
 
@@ -181,24 +181,6 @@ def test_errors_and_results_cross_processes() -> None:
     assert (error.code, str(error)) == ("invalid-input", "a sentence")
     found = pickle.loads(pickle.dumps(segment_pair(FIRST, SECOND, quality="fast")))
     assert found.motions[1].matrix.shape == (6,)
-
-
-def test_strokes_change_labels_and_can_be_taken_back() -> None:
-    found = segment_pair(FIRST, SECOND)
-    evidence = np.zeros((72, 96), dtype=np.uint16)
-    evidence[20:30, 30:40] = 0b01
-    stages = []
-    changed = relabel(FIRST, SECOND, found, evidence, progress=lambda stage, index, of: stages.append((stage, index, of)))
-    assert (changed.labels[20:30, 30:40] == 0).all()
-    assert changed.motions[1].pixels < found.motions[1].pixels
-    assert stages[0] == ("frames", 0, 3)
-    undone = relabel(FIRST, SECOND, found, np.zeros_like(evidence))
-    assert (undone.labels == found.labels).all()
-    wrong: Any
-    for wrong in (evidence[1:], evidence.astype(np.uint8)):
-        with pytest.raises(VeroneseError) as caught:
-            relabel(FIRST, SECOND, found, wrong)
-        assert caught.value.code == "invalid-input"
 
 
 def test_the_version_is_that_of_the_wheel() -> None:

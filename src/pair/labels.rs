@@ -16,7 +16,7 @@ use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sh
 use crate::labelling::shadows;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::{ColourPrices, add_colours};
-use crate::labelling::terms::data::{Compared, LabelCosts, compare, estimation_costs, label_costs};
+use crate::labelling::terms::data::{Compared, LabelCosts, compare, estimation_costs};
 use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
 use crate::labelling::{BACKGROUND, is_background, objects, thinned};
@@ -135,13 +135,6 @@ pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
     for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
         motions.remove(k);
     }
-}
-
-/// Label costs of motions on the draft level: no motion pays for pixels that are occluded in the second frame, as far as `labels` tell.
-pub(crate) fn visible_costs(pair: &Pair, motions: &[AffineMotion], labels: &[u8], settings: &Settings) -> Vec<Plane> {
-    let (level, coherence) = (&pair.levels[pair.draft], settings.coherence);
-    let costs = label_costs(level, motions, coherence);
-    with_visibility(level, motions, &costs, labels, coherence.object_bias)
 }
 
 /// Smoothness weights on a level.

@@ -10,7 +10,7 @@ mod statistics;
 mod unknown;
 
 pub use junctions::Junction;
-pub(crate) use statistics::describe;
+use statistics::describe;
 
 use super::figure;
 use super::groups::Regions;

@@ -11,15 +11,6 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cheapest, cost_where_seen};
 use crate::view::level::Level;
 
-/// Label cost of every motion at every pixel; the first is the dominant motion.
-///
-/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
-/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
-/// objects do not win pixels by moving them out of the frame.
-pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    LabelCosts::new(level, &compare(level, motions, Vec::new()), coherence).costs
-}
-
 /// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
 pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
 
@@ -48,7 +39,11 @@ pub(crate) fn estimation_costs(level: &Level, compared: &Compared) -> Vec<Plane>
 
 /// Label costs, and the intermediate results that sharpening uses again.
 pub(crate) struct LabelCosts {
-    /// See [`label_costs`].
+    /// Cost of every motion at every pixel; the first is the dominant motion.
+    ///
+    /// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
+    /// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
+    /// objects do not win pixels by moving them out of the frame.
     pub(crate) costs: Vec<Plane>,
     pub(crate) variance_inflation: Plane,
 }
@@ -116,6 +111,10 @@ mod tests {
     use crate::labelling::coherence::tests::COHERENCE;
     use crate::view::level::build;
 
+    fn label_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+        LabelCosts::new(level, &compare(level, motions, Vec::new()), COHERENCE).costs
+    }
+
     fn noise(seed: u64) -> Plane {
         let mut random = crate::random::Random::from_seed(seed);
         Plane::from_fn(64, 48, |_, _| random.uniform(0.0, 255.0) as f32)
@@ -127,8 +126,8 @@ mod tests {
         let same = &build(noise(1), noise(1), 24)[0];
         let other = &build(noise(1), noise(2), 24)[0];
         for level in [same, other] {
-            let object = label_costs(level, &[still, leaving], COHERENCE);
-            let dominant = label_costs(level, &[leaving, still], COHERENCE);
+            let object = label_costs(level, &[still, leaving]);
+            let dominant = label_costs(level, &[leaving, still]);
             for y in 1..47 {
                 for x in 45..63 {
                     assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.object_bias, "({x}, {y})");
@@ -137,7 +136,7 @@ mod tests {
             }
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
-        let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
+        let unseen = label_costs(same, &[nowhere, nowhere]);
         assert_eq!(unseen[0].at(30, 30), CostModel::labels(&Model::DEFAULT).outside());
         assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
     }

@@ -9,7 +9,7 @@ use crate::order::descending;
 use crate::pair::figure::GROUND;
 
 /// Pixels, residuals, boxes and group numbers of the motions.
-pub(crate) fn describe(
+pub(super) fn describe(
     motions: &[AffineMotion],
     grouping: &[usize],
     labels: &[u8],
