@@ -592,7 +592,10 @@ export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 /** {@link init} for the module of {@link fitMotions}, `veronese/veronese_points_bg.wasm`, which no other call needs. */
 export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
-/** Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. */
+/**
+ * Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. To correct masks, segment the two
+ * frames as a clip ({@link segmentClip}), which takes corrections.
+ */
 export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
 
 /**

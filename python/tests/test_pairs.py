@@ -183,6 +183,19 @@ def test_errors_and_results_cross_processes() -> None:
     assert found.motions[1].matrix.shape == (6,)
 
 
+def test_a_clip_of_two_frames_takes_strokes() -> None:
+    clip = segment_clip([FIRST, SECOND])
+    found = [frame.labels for frame in clip]
+    stroke = np.full_like(found[0], 255)
+    stroke[20:30, 30:40] = 0
+    assert clip.correct(Correction(0, stroke, object=1)) == [0, 1]
+    changed = [clip.frame(index).labels for index in (0, 1)]
+    assert (found[0][20:30, 30:40] == 1).any() and (changed[0][20:30, 30:40] == 0).all()
+    assert all((now == 1).sum() < (before == 1).sum() for now, before in zip(changed, found))
+    clip.correct(Correction(0, np.full_like(stroke, 255), object=1))
+    assert all((clip.frame(index).labels == found[index]).all() for index in (0, 1))
+
+
 def test_the_version_is_that_of_the_wheel() -> None:
     from importlib.metadata import version
 

@@ -102,6 +102,8 @@ def segment_pair(
 ) -> Segmentation:
     """Segments two frames: how many things move, how each one moves, and which pixels belong to it.
 
+    To correct masks, segment the two frames as a clip (:func:`segment_clip`), which takes corrections.
+
     :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
     :param quality: ``"best"`` for accuracy, ``"fast"`` for live use.
     :param mark_unknown: gives label 255 to a pixel that is hidden or outside in the second frame, has no texture around it, or whose label
