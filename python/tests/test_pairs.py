@@ -187,10 +187,10 @@ def test_a_clip_of_two_frames_takes_strokes() -> None:
     clip = segment_clip([FIRST, SECOND])
     found = [frame.labels for frame in clip]
     stroke = np.full_like(found[0], 255)
-    stroke[20:30, 30:40] = 0
+    stroke[:36] = 0
     assert clip.correct(Correction(0, stroke, object=1)) == [0, 1]
     changed = [clip.frame(index).labels for index in (0, 1)]
-    assert (found[0][20:30, 30:40] == 1).any() and (changed[0][20:30, 30:40] == 0).all()
+    assert (found[0][:36] == 1).any() and not (changed[0][:36] == 1).any()
     assert all((now == 1).sum() < (before == 1).sum() for now, before in zip(changed, found))
     clip.correct(Correction(0, np.full_like(stroke, 255), object=1))
     assert all((clip.frame(index).labels == found[index]).all() for index in (0, 1))
