@@ -22,10 +22,10 @@ await command(async (args) => {
   const out = outOf(args, 'out/annotator');
   const program = join(root, 'experiments', 'annotator', 'peers.py');
   await runPeers('annotator', rest, { out, old: ['baseline'], program, argumentsOf: (_, folder) => [folder, join(out, 'baseline')] });
-  for (const step of ['measure', 'harm', 'points', 'objects', 'pairs']) await measured('annotator', [step, ...rest]);
+  for (const step of ['measure', 'harm', 'points', 'objects']) await measured('annotator', [step, ...rest]);
   const rows = (step) => readFileSync(join(out, `${step}.jsonl`), 'utf8').split('\n').filter(Boolean).map(JSON.parse);
   const [real, objects] = [rows('measure'), rows('objects')];
   const { quality } = [...real, ...objects][0];
-  present('annotator', { command: 'npm run annotator', data: DATA }, { quality, real, harm: rows('harm').flat(), points: rows('points').flat(), objects, strokes: rows('pairs') }, writeDocs);
+  present('annotator', { command: 'npm run annotator', data: DATA }, { quality, real, harm: rows('harm').flat(), points: rows('points').flat(), objects }, writeDocs);
   return 0;
 });

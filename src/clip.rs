@@ -41,8 +41,6 @@ mod tracker;
 
 pub use annotation::{Accepted, Annotations, Click, Painted, Prompt, Spread};
 pub use changes::Changed;
-#[doc(hidden)]
-pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use description::{ClipFrame, ClipObject};
 pub use job::ClipJob;
 #[cfg(feature = "ablation")]

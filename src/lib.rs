@@ -72,27 +72,40 @@
 //! # }
 //! ```
 //!
-//! # Correcting labels
+//! # Correcting masks
 //!
-//! [`relabel`] decides the labels anew, given a person's strokes. A [`Correction`] holds a set of possible motions for each pixel:
+//! A [`clip`] takes corrections: a person says of some pixels of some frames which object is there, and masks change in all frames without
+//! solving a pair again. Two frames are a clip, too. Here a stroke takes the upper half of an object away from it:
 //!
 //! ```
-//! use veronese::{AffineMotion, Correction, SegmentOptions, relabel, segment_pair};
+//! use veronese::clip::{Annotations, ClipOptions, ClipSegmenter, Painted, Spread};
 //!
 //! # fn main() -> veronese::Result<()> {
-//! # let scene = scenes::generate(&scenes::SceneOptions { width: 96, height: 72, objects: 1, ..Default::default() })?;
-//! # let (first, second, options) = (scene.first(), scene.second(), SegmentOptions::default());
-//! let found = segment_pair(first, second, &options, &mut |_| {})?;
-//! let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
-//! let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
+//! # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+//! # let frames = [scene.first(), scene.second()];
+//! let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+//! for frame in frames {
+//!     segmenter.push(frame.clone())?;
+//! }
+//! let mut clip = segmenter.conclude();
+//! let found = [clip.frame(0, frames[0])?, clip.frame(1, frames[1])?];
+//! let object = &found[0].objects[0];
 //!
-//! let mut allowed = vec![0; found.labels.len()]; // no constraint anywhere
-//! let pixel = found.labels.iter().position(|&label| label == 1).unwrap();
-//! allowed[pixel] = 0b1; // motion 0 only
-//! let correction = Correction { motions: &motions, groups: &groups, labels: &found.labels, allowed: &allowed };
-//! let corrected = relabel(first, second, &correction, &options, &mut |_| {})?;
-//! assert_eq!(corrected.labels[pixel], 0);
-//! assert!(corrected.motions[1].pixels < found.motions[1].pixels);
+//! let mut labels = vec![255; 160 * 120]; // nothing is said
+//! let [x, y, width, height] = object.bbox;
+//! for row in y..y + height / 2 {
+//!     labels[160 * row + x..][..width].fill(0); // not the object
+//! }
+//! let stroke = Painted { frame: 0, object: Some(object.id), labels, spread: Spread::Both };
+//! let mut job = clip.annotate(Annotations { corrections: vec![stroke], ..Annotations::default() })?;
+//! while let Some(wanted) = job.wanted() {
+//!     job.take(&mut clip, frames[wanted])?;
+//! }
+//! for (index, before) in found.iter().enumerate() {
+//!     let now = clip.frame(index, frames[index])?;
+//!     assert_eq!(now.objects[0].id, object.id);
+//!     assert!(now.objects[0].pixels < before.objects[0].pixels); // in both frames
+//! }
 //! # Ok(())
 //! # }
 //! ```
@@ -153,7 +166,6 @@ pub mod stages;
 mod view;
 
 pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
-pub use clip::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};
 pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair};

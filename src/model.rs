@@ -397,8 +397,6 @@ model! {
     unannotated: f32 = 0.1;
     /// Share of `back_off` with which the colours of all places count.
     places: f32 = 0.1;
-    /// Odds from which motions contradict a label of a pair, nats.
-    contradiction: f32 = 0.2;
     /// Rim of a disc or a box that need not be its object, as a share of the radius.
     rim: f32 = 0.2;
     /// Share of the votes of a click's parts from which it changes a pixel. .2 and .4 cost .01 J after the first click. Real.

@@ -9,17 +9,17 @@
 //!
 //! [`frame_motions`] is the path of the pairs of clips, [`settings`] depend on options and size, and an [`observer`] may look on.
 
-pub(crate) mod dominant;
+mod dominant;
 pub(crate) mod figure;
 pub(crate) mod frame_motions;
 pub(crate) mod frames;
 mod groups;
 mod hypotheses;
-pub(crate) mod labels;
+mod labels;
 mod motions;
 pub(crate) mod observer;
 mod planar_flow;
-pub(crate) mod report;
+mod report;
 pub(crate) mod settings;
 
 pub use report::{Junction, PairEvidence, Segmentation, SegmentedMotion};

@@ -9,8 +9,7 @@ use serde_json::{Value, json};
 use veronese::clip::{Annotations, ClipFrame, ClipOptions, ClipSegmenter, Painted, Spread, StreamSegmenter};
 use veronese::codecs::decode_image;
 use veronese::{
-    AffineMotion, Correction, FitOptions, Frame, Measurements, Method, MotionCount, Quality, SegmentOptions,
-    fit_motions, relabel, segment_pair,
+    FitOptions, Frame, Measurements, Method, MotionCount, Quality, SegmentOptions, fit_motions, segment_pair,
 };
 
 /// The bytes of all numbers of an answer, entries in the order of their names.
@@ -63,28 +62,18 @@ fn pair_options(options: &Value) -> SegmentOptions {
         .with_subject(flag("subject"))
 }
 
-/// `inside` at the pixels of a box, `outside` elsewhere.
-fn filled<T: Copy>(frame: &Frame, rectangle: &Value, inside: T, outside: T) -> Vec<T> {
+/// A label at the pixels of a box, 255 elsewhere.
+fn filled(frame: &Frame, rectangle: &Value, label: u8) -> Vec<u8> {
     let [left, top, width, height]: [usize; 4] = serde_json::from_value(rectangle.clone()).unwrap();
     let is_inside = |p: usize| {
         (left..left + width).contains(&(p % frame.width())) && (top..top + height).contains(&(p / frame.width()))
     };
-    (0..frame.width() * frame.height()).map(|p| if is_inside(p) { inside } else { outside }).collect()
+    (0..frame.width() * frame.height()).map(|p| if is_inside(p) { label } else { 255 }).collect()
 }
 
 fn pair(frames: &[Frame], options: &SegmentOptions) -> Answer {
     let found = segment_pair(&frames[0], &frames[1], options, &mut |_| {}).unwrap();
     ([&found.labels[..], found.confidence.as_deref().unwrap_or_default()].concat(), json!(found))
-}
-
-fn relabelled(frames: &[Frame], options: &SegmentOptions, stroke: &Value) -> Answer {
-    let found = segment_pair(&frames[0], &frames[1], options, &mut |_| {}).unwrap();
-    let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
-    let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
-    let allowed = filled(&frames[0], &stroke["box"], stroke["motions"].as_u64().unwrap() as u16, 0);
-    let correction = Correction { motions: &motions, groups: &groups, labels: &found.labels, allowed: &allowed };
-    let found = relabel(&frames[0], &frames[1], &correction, options, &mut |_| {}).unwrap();
-    (found.labels, json!({ "motions": found.motions, "unlabelled": found.unlabelled }))
 }
 
 fn clip(frames: &[Frame], asked: &Value) -> Answer {
@@ -102,7 +91,7 @@ fn clip(frames: &[Frame], asked: &Value) -> Answer {
         let painted = |said: &Value| Painted {
             frame: said["frame"].as_u64().unwrap() as usize,
             object: None,
-            labels: filled(&frames[0], &said["box"], said["label"].as_u64().unwrap() as u8, 255),
+            labels: filled(&frames[0], &said["box"], said["label"].as_u64().unwrap() as u8),
             spread: Spread::Both,
         };
         let corrections = asked["corrections"].as_array().into_iter().flatten().map(painted).collect();
@@ -133,7 +122,6 @@ fn answers_have_the_bits_of_the_golden_hashes() {
         let (of, options) = (&asked["of"], &asked["options"]);
         let (bytes, others) = match asked["call"].as_str().unwrap() {
             "segmentPair" => pair(&frames(&golden, of), &pair_options(options)),
-            "relabel" => relabelled(&frames(&golden, of), &pair_options(options), &asked["stroke"]),
             "segmentClip" => clip(&frames(&golden, of), asked),
             "fitMotions" => fit(&measurements(&golden["measurements"][of.as_str().unwrap()]), options),
             call => panic!("there is no call {call}"),

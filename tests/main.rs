@@ -1,7 +1,6 @@
 //! The crate's tests through its public interface. One program: it is linked once, and what its parts have in common is compiled once.
 
 mod clip;
-mod correction;
 mod corrections;
 mod estimator;
 mod examples;

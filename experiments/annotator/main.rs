@@ -10,7 +10,6 @@ mod harm;
 mod measure;
 mod objects;
 mod overlap;
-mod pairs;
 #[path = "../parallel.rs"]
 mod parallel;
 mod points;
@@ -39,7 +38,6 @@ Measures what an annotator gets for what he says of a clip, in steps:
   harm           what a true mask of one frame, and rounds of strokes, do to the other frames: the same; writes harm.jsonl
   points         frames of the real clips with a box or clicks: the same; writes points.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
-  pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
   --data DIR         folder of the real clips; default ../shared/data/clips
@@ -92,7 +90,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "harm" | "points" | "objects" | "pairs" | "fit" => options.step = name,
+            "frames" | "measure" | "harm" | "points" | "objects" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -111,7 +109,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, harm, points, objects, pairs or fit.".into()),
+        true => Err("Say which step: frames, measure, harm, points, objects or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -143,7 +141,6 @@ fn run(options: &Options) -> Result<(), Failure> {
             harm::print_summary(&rows.concat());
             Ok(())
         }
-        "pairs" => options.on_all(&options.real()?, |case| pairs::measure(case, options)).map(drop),
         _ => options.on_all(&options.real()?, |case| measure::measure(case, options)).map(drop),
     }
 }

@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { fitMotions, relabel, segmentClip, segmentPair } from 'veronese';
+import { fitMotions, segmentClip, segmentPair } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 const root = new URL('../../', import.meta.url);
@@ -56,11 +56,11 @@ function measurementsOf({ count, noise, motions }) {
   return { positions, derivatives };
 }
 
-/** `inside` at the pixels of a box, `outside` elsewhere. */
-function filled(array, { width, height }, [left, top, across, down], inside, outside) {
-  return array.from({ length: width * height }, (_, p) => {
+/** A label at the pixels of a box, 255 elsewhere. */
+function filled({ width, height }, [left, top, across, down], label) {
+  return Uint8Array.from({ length: width * height }, (_, p) => {
     const [x, y] = [p % width, Math.floor(p / width)];
-    return x >= left && x < left + across && y >= top && y < top + down ? inside : outside;
+    return x >= left && x < left + across && y >= top && y < top + down ? label : 255;
   });
 }
 
@@ -71,15 +71,9 @@ function answered({ labels, confidence, version, milliseconds, settings, ...rest
 
 const CALLS = {
   segmentPair: async ({ of, options }) => answered(await segmentPair(...(await framesOf(of)), options)),
-  relabel: async ({ of, options, stroke }) => {
-    const frames = await framesOf(of);
-    const found = await segmentPair(...frames, options);
-    const { motions, unlabelled, labels } = await relabel(...frames, found, filled(Uint16Array, found, stroke.box, stroke.motions, 0));
-    return answered({ motions, unlabelled, labels });
-  },
   segmentClip: async ({ of, options, corrections: said = [] }) => {
     const frames = await framesOf(of);
-    const corrections = said.map(({ frame, box, label }) => ({ frame, labels: filled(Uint8Array, frames[0], box, label, 255) }));
+    const corrections = said.map(({ frame, box, label }) => ({ frame, labels: filled(frames[0], box, label) }));
     // A stream cannot be corrected.
     const asked = corrections.length > 0 ? { ...options, corrections } : options;
     const source = options.lookAhead === 'all' ? { length: frames.length, read: (index) => frames[index] } : frames;

@@ -23,14 +23,6 @@ function segment([first, second], options) {
   return glue.segmentPair(first, second, options, () => {});
 }
 
-/** Labels solved again where every pixel may have every label. */
-function relabel([first, second], { motions, labels }, quality) {
-  const matrices = Float64Array.from(motions.flatMap(({ matrix }) => matrix));
-  const groups = Uint8Array.from(motions, ({ group }) => group);
-  const evidence = new Uint16Array(labels.length).fill(2 ** motions.length - 1);
-  return glue.relabel(first, second, matrices, groups, labels, evidence, { quality }, () => {});
-}
-
 describe('after some calls, further ones take no more memory', () => {
   const small = pair();
   const larger = pair({ width: 160, height: 120 });
@@ -39,7 +31,6 @@ describe('after some calls, further ones take no more memory', () => {
     'with everything that can be asked for': () => {
       segment(small, { quality: 'best', confidence: true, markUnknown: true });
     },
-    'labels again': () => relabel(small, segment(small, { quality: 'fast' }), 'fast'),
     'calls that are refused': () => {
       assert.throws(() => segment(larger, { quality: 'good' }), { code: 'invalid-option' });
       assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
@@ -94,7 +85,6 @@ describe('the most that is in use', () => {
     const [first, second] = [0, 1].map((t) => tiled(frame(t, { width: 512, height: 512 }), 8));
     const result = segment([first, second], { quality: 'best', confidence: true, markUnknown: true });
     assert.equal(result.labels.length, 4096 * 4096);
-    relabel([first, second], result, 'best');
     assert.ok(size() <= 1024, `${size()} MiB`);
     const error = { code: 'frame-size-unsupported', message: /4097×4096.*between \d+ and 4096/ };
     const tooWide = { data: new Uint8Array(4 * 4097 * 4096), width: 4097, height: 4096 };

@@ -7,7 +7,7 @@ import { setFlagsFromString } from 'node:v8';
 import { runInNewContext } from 'node:vm';
 import { Worker } from 'node:worker_threads';
 import { decode } from 'fast-png';
-import { fitMotions, paintLabels, relabel, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
+import { fitMotions, paintLabels, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
 import { encodeCoco, encodeVeronese, decodeVeronese } from 'veronese/formats';
 import { Api } from '../build/calls/api.js';
@@ -35,7 +35,7 @@ function pool(t) {
 
 const HOSTS = {
   'direct, the module not loaded': unloaded,
-  'direct, the module loaded': () => ({ segmentPair, relabel, fitMotions }),
+  'direct, the module loaded': () => ({ segmentPair, fitMotions }),
   'in a worker that is busy': (t) => {
     const busy = pool(t);
     void busy.segmentPair(...pair());
@@ -56,18 +56,6 @@ const CALLS = {
     const frames = [own(first), own(second)];
     return { args: frames, arrays: frames.map(({ data }) => data), spoil: () => frames.forEach((frame) => (frame.width = 3)) };
   },
-  relabel: () => {
-    const [frames, given, evidence] = [[own(first), own(second)], structuredClone(found), new Uint16Array(found.labels.length).fill(0b01, 1000, 1200)];
-    const spoil = () => {
-      scribble([given.labels, ...given.motions.map(({ matrix }) => matrix), ...given.junctions.map(({ labels }) => labels)]);
-      for (const motion of given.motions) motion.group = 9;
-      for (const junction of given.junctions) junction.likelihood = 7;
-      given.evidence.candidates.length = 0;
-      given.settings.quality = 'fast';
-      given.width = 5;
-    };
-    return { args: [...frames, given, evidence], arrays: [...frames.map(({ data }) => data), evidence], spoil };
-  },
   fitMotions: () => {
     const measurements = points(80, 1, 2);
     return { args: [measurements], arrays: Object.values(measurements), spoil: () => {} };
@@ -75,7 +63,6 @@ const CALLS = {
 };
 const WANTED = {
   segmentPair: timeless(found),
-  relabel: timeless(await relabel(...CALLS.relabel().args)),
   fitMotions: timeless(await fitMotions(points(80, 1, 2))),
 };
 
@@ -92,7 +79,6 @@ describe('arguments that are written to after the call, or given away, change no
         const given = prepare();
         const again = make(t)[name](...given.args, { transfer: true });
         assert.deepEqual(given.arrays.map(({ length }) => length), given.arrays.map(() => 0), 'at once');
-        if (name === 'relabel') assert.deepEqual(given.args[2], found, 'the segmentation stays whole');
         assert.deepEqual(timeless(await again), WANTED[name]);
       });
     }
@@ -195,17 +181,12 @@ describe('what goes to a worker', () => {
   test('is what the views show, not the whole buffer', async (t) => {
     const { segmenter, posted } = watched(t);
     await segmenter.segmentPair(...views());
-    const room = new ArrayBuffer(2 ** 20);
-    const evidence = new Uint16Array(room, 1024, found.labels.length);
-    const labels = new Uint8Array(room, 2 ** 18, found.labels.length).fill(0);
-    await segmenter.relabel(first, second, { ...found, confidence: new Uint8Array(room), labels }, evidence);
     const { positions, derivatives } = points(80, 1, 2);
     const wide = new Float64Array(2 ** 16);
     wide.set(positions, 5);
     wide.set(derivatives, 1000);
     await segmenter.fitMotions({ positions: wide.subarray(5, 165), derivatives: wide.subarray(1000, 1240) });
-    const matrices = found.count * (6 * 8 + 1);
-    assert.deepEqual(posted.map(({ bytes }) => bytes), [2 * size, 2 * size + 3 * found.labels.length + matrices, 8 * (160 + 240)]);
+    assert.deepEqual(posted.map(({ bytes }) => bytes), [2 * size, 8 * (160 + 240)]);
   });
 
   test('may be shared or resizable memory', async (t) => {

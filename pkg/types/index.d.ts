@@ -71,8 +71,6 @@ export interface SegmentOptions extends CallOptions {
   maxSize?: number | undefined;
 }
 
-export type RelabelOptions = CallOptions;
-
 export interface FitOptions extends CallOptions {
   /** Number of motions, 1 to 10; `'auto'` (the default) estimates it. */
   motions?: 'auto' | number | undefined;
@@ -151,9 +149,7 @@ export interface Segmentation {
   count: number;
   /** By decreasing number of pixels: `motions[i].label === i`. */
   motions: SegmentedMotion[];
-  /**
-   * Neighbouring motions, by labels. Borders of a few pixels are left out. `relabel` keeps them as they were.
-   */
+  /** Neighbouring motions, by labels. Borders of a few pixels are left out. */
   junctions: Junction[];
   /**
    * Description lengths of both frames in nats, from one motion to one more than were found, each with its own labels. The number
@@ -596,7 +592,10 @@ export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 /** {@link init} for the module of {@link fitMotions}, `veronese/veronese_points_bg.wasm`, which no other call needs. */
 export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
-/** Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. */
+/**
+ * Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. To correct masks, segment the two
+ * frames as a clip ({@link segmentClip}), which takes corrections.
+ */
 export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
 
 /**
@@ -614,25 +613,6 @@ export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFil
  * its clip.
  */
 export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
-
-/**
- * Decides the labels of a segmentation anew, given a person's evidence about single pixels. The motions do not change.
- *
- * `evidence` holds a set of possible labels for each pixel, row by row: bit k is set if label k is possible; 0 means no evidence. "This is
- * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. Evidence is binding on
- * its own pixels and spreads from there to parts of the image that look and move alike. Pixels change only between labels that the
- * evidence tells apart, and where that is connected with it. Numbering and groups do not change, so a label may have no pixels left. The
- * result has no `confidence`. The same arguments give the same result: to undo, call again without the evidence.
- *
- * All arguments are copied before the call returns, and the result shares no memory with the segmentation passed in.
- */
-export function relabel(
-  first: Pixels,
-  second: Pixels,
-  segmentation: Segmentation,
-  evidence: Uint16Array,
-  options?: RelabelOptions,
-): Promise<Segmentation>;
 
 /** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
@@ -704,13 +684,6 @@ export class Segmenter {
   /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
-  relabel(
-    first: Pixels,
-    second: Pixels,
-    segmentation: Segmentation,
-    evidence: Uint16Array,
-    options?: RelabelOptions,
-  ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /**
    * As {@link segmentClip}. The worker keeps the clip from the first frame to the last; a second clip waits for that, other calls run

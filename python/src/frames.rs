@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyMemoryView;
 use veronese::codecs::decode_image;
@@ -116,23 +116,19 @@ fn pixels(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Failure> {
 }
 
 /// A copy of the values of an array, row by row.
-pub(crate) fn values<T: Element + Copy>(which: &str, array: &Bound<'_, PyArrayDyn<T>>) -> Result<Vec<T>, Failure> {
+fn values(which: &str, array: &Bound<'_, PyArrayDyn<u8>>) -> Result<Vec<u8>, Failure> {
     let array = array.try_readonly().map_err(|_| Failure::input(format!("{which} is being written to")))?;
     let view = array.as_array();
     // The array's own slice may be one of columns.
-    Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[T]>::to_vec))
+    Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[u8]>::to_vec))
 }
 
-/// The values of an image with one value per pixel, row by row, with its width and height.
-pub(crate) fn image<T: Element + Copy>(
-    what: &str,
-    kind: &str,
-    given: &Bound<'_, PyAny>,
-) -> Result<(Vec<T>, [usize; 2]), Failure> {
-    let shape = || Failure::input(format!("{what} must be an array of {kind} of shape (height, width)"));
-    let array = given.cast::<PyArrayDyn<T>>().map_err(|_| shape())?;
+/// The labels of an image, row by row, with its width and height.
+pub(crate) fn label_image(given: &Bound<'_, PyAny>) -> Result<(Vec<u8>, [usize; 2]), Failure> {
+    let shape = || Failure::input("the labels must be an array of uint8 of shape (height, width)".into());
+    let array = given.cast::<PyArrayDyn<u8>>().map_err(|_| shape())?;
     let [height, width] = *array.shape() else { return Err(shape()) };
-    Ok((values(what, array)?, [width, height]))
+    Ok((values("the labels", array)?, [width, height]))
 }
 
 impl Given {

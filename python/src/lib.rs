@@ -19,7 +19,6 @@ mod worker;
 fn _veronese(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(pair::segment_pair, module)?)?;
-    module.add_function(wrap_pyfunction!(pair::relabel, module)?)?;
     module.add_function(wrap_pyfunction!(points::fit_points, module)?)?;
     module.add_function(wrap_pyfunction!(clip::segment_clip, module)?)?;
     module.add_class::<clip::Clip>()

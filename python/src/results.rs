@@ -72,7 +72,7 @@ pub(crate) fn segmentation(py: Python<'_>, segmentation: Segmentation, quality: 
     ))
 }
 
-pub(crate) fn segmented_motion<'py>(py: Python<'py>, motion: &SegmentedMotion) -> PyResult<Value<'py>> {
+fn segmented_motion<'py>(py: Python<'py>, motion: &SegmentedMotion) -> PyResult<Value<'py>> {
     let SegmentedMotion { label, matrix: entries, pixels, share, residual, bbox: sides, group, .. } = motion;
     let arguments = (*label, matrix(py, entries), *pixels, *share, *residual, bbox(*sides), *group);
     class(py, "SegmentedMotion")?.call1(arguments)

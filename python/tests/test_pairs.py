@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import veronese
 from scenes import Pixels, frame, write_image
-from veronese import Correction, Mask, VeroneseError, relabel, segment_clip, segment_pair
+from veronese import Correction, Mask, VeroneseError, segment_clip, segment_pair
 
 FIRST, SECOND = frame(0), frame(1)
 
@@ -183,22 +183,17 @@ def test_errors_and_results_cross_processes() -> None:
     assert found.motions[1].matrix.shape == (6,)
 
 
-def test_strokes_change_labels_and_can_be_taken_back() -> None:
-    found = segment_pair(FIRST, SECOND)
-    evidence = np.zeros((72, 96), dtype=np.uint16)
-    evidence[20:30, 30:40] = 0b01
-    stages = []
-    changed = relabel(FIRST, SECOND, found, evidence, progress=lambda stage, index, of: stages.append((stage, index, of)))
-    assert (changed.labels[20:30, 30:40] == 0).all()
-    assert changed.motions[1].pixels < found.motions[1].pixels
-    assert stages[0] == ("frames", 0, 3)
-    undone = relabel(FIRST, SECOND, found, np.zeros_like(evidence))
-    assert (undone.labels == found.labels).all()
-    wrong: Any
-    for wrong in (evidence[1:], evidence.astype(np.uint8)):
-        with pytest.raises(VeroneseError) as caught:
-            relabel(FIRST, SECOND, found, wrong)
-        assert caught.value.code == "invalid-input"
+def test_a_clip_of_two_frames_takes_strokes() -> None:
+    clip = segment_clip([FIRST, SECOND])
+    found = [frame.labels for frame in clip]
+    stroke = np.full_like(found[0], 255)
+    stroke[:36] = 0
+    assert clip.correct(Correction(0, stroke, object=1)) == [0, 1]
+    changed = [clip.frame(index).labels for index in (0, 1)]
+    assert (found[0][:36] == 1).any() and not (changed[0][:36] == 1).any()
+    assert all((now == 1).sum() < (before == 1).sum() for now, before in zip(changed, found))
+    clip.correct(Correction(0, np.full_like(stroke, 255), object=1))
+    assert all((clip.frame(index).labels == found[index]).all() for index in (0, 1))
 
 
 def test_the_version_is_that_of_the_wheel() -> None:

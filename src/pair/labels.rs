@@ -111,13 +111,6 @@ pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
     remove_small_components(labels, motions, pair.finest());
 }
 
-/// Label costs of motions: no motion pays for pixels that are occluded in the second frame, as far as `labels` tell.
-pub(crate) fn visible_costs(pair: &Pair, motions: &[AffineMotion], labels: &[u8], settings: &Settings) -> Vec<Plane> {
-    let (level, coherence) = (pair.finest(), settings.labelling);
-    let costs = label_costs(level, &compare(level, motions, Vec::new()), coherence);
-    with_visibility(level, motions, &costs, labels, coherence.object_bias)
-}
-
 /// Smoothness weights on a level.
 pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders {
     let level = &pair.levels[index];

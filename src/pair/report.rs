@@ -10,7 +10,8 @@ mod statistics;
 mod unknown;
 
 pub use junctions::Junction;
-pub(crate) use statistics::describe;
+pub use statistics::SegmentedMotion;
+use statistics::describe;
 
 use super::figure;
 use super::groups::Regions;
@@ -56,28 +57,6 @@ pub struct Segmentation {
     /// scenes: of the pixels with probability P, about the share P is right. It is low where no motion fits.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,
-}
-
-/// One motion of a [`Segmentation`].
-#[non_exhaustive]
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct SegmentedMotion {
-    /// Its label.
-    pub label: u8,
-    /// Its six entries, pixels of the full-size frame.
-    pub matrix: AffineMotion,
-    /// Number of its pixels.
-    pub pixels: usize,
-    /// Their share of all pixels, 0…1.
-    pub share: f64,
-    /// Root mean square of the motion-compensated intensity difference over its pixels, grey levels (0 where none of them lands
-    /// inside the second frame).
-    pub residual: f64,
-    /// Bounding box of its pixels: x, y, width, height.
-    pub bbox: [usize; 4],
-    /// Group: motions that are parts of one thing share a number; 0 is the ground, the others are numbered like labels.
-    pub group: u8,
 }
 
 /// Evidence for the number of motions of a pair.

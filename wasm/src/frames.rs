@@ -1,16 +1,15 @@
-//! Calls on frames: segmentation, correction, painting labels on a canvas.
+//! Calls on frames: segmentation, painting labels on a canvas.
 
 use js_sys::{Function, Reflect, Uint8Array, Uint8ClampedArray};
 use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
-use crate::plain::{Record, candidate, list};
+use crate::plain::{Record, candidate};
 use crate::{
     Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown, written,
 };
 use veronese::{
-    AffineMotion, Correction, Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions,
-    Segmentation, SegmentedMotion,
+    Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions, Segmentation, SegmentedMotion,
 };
 
 /// Segments two frames. A frame is `{ data, width, height }` with RGBA bytes,
@@ -52,43 +51,6 @@ pub(super) fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptio
         None => report,
     }
     .into_value()
-}
-
-/// Solves the labels of a segmentation again under a correction (see [`veronese::Correction`]). `matrices` holds six entries per motion,
-/// `groups` one group per motion, `labels` and `evidence` one entry per pixel; `options` has the `quality` of the labels.
-///
-/// Returns `{ motions, unlabelled, labels: Uint8Array }` with entries as in [`segment_pair`].
-///
-/// # Errors
-/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a malformed frame or a number of matrix entries that is not a
-/// multiple of six.
-#[wasm_bindgen]
-#[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
-pub fn relabel(
-    first: &JsValue,
-    second: &JsValue,
-    matrices: &[f64],
-    groups: &[u8],
-    labels: &[u8],
-    evidence: &[u16],
-    options: &JsValue,
-    on_stage: Option<Function>,
-) -> Result<JsValue, JsValue> {
-    let options = segment_options(options)?;
-    let (first, second) = frames(first, second)?;
-    let (entries, rest) = matrices.as_chunks::<6>();
-    if !rest.is_empty() {
-        return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
-    }
-    let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
-    let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
-    let progress = &mut listener(on_stage);
-    let relabelled = veronese::relabel(&first, &second, &correction, &options, progress).map_err(Failure::from)?;
-    let report = Record::new()
-        .set("motions", &segmented_motions(&relabelled.motions))
-        .count("unlabelled", relabelled.unlabelled)
-        .bytes("labels", &relabelled.labels);
-    Ok(report.into_value())
 }
 
 /// Replaces the top-left width × height pixels of a canvas by the colours of the labels, for an overlay on the frame. `palette` holds RGBA
@@ -235,11 +197,6 @@ fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
         .list("junctions", junctions, junction)
         .set("evidence", &Record::new().list("candidates", candidates, candidate).into_value())
         .count("unlabelled", *unlabelled)
-}
-
-/// The motions of a pair as a list of plain objects.
-fn segmented_motions(motions: &[SegmentedMotion]) -> JsValue {
-    list(motions, segmented_motion)
 }
 
 fn segmented_motion(motion: &SegmentedMotion) -> JsValue {

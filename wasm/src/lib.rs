@@ -37,7 +37,7 @@ pub use clip::{
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};
 #[cfg(feature = "frames")]
-pub use frames::{paint_labels, paint_labels_offscreen, relabel, segment_pair};
+pub use frames::{paint_labels, paint_labels_offscreen, segment_pair};
 #[cfg(feature = "points")]
 pub use points::fit_motions;
 #[cfg(feature = "stages")]

@@ -8,9 +8,9 @@ import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
+import type { CallTask, ClipTask, Result } from './messages.js';
 import { taken } from './taking.js';
-import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
+import { fitCall, segmentCall, start } from './tasks.js';
 
 export class Api {
   readonly #frames: Core<FramesGlue>;
@@ -27,8 +27,6 @@ export class Api {
   readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
   readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> => start(() => segmentCall(...given), this.perform);
-
-  readonly relabel: typeof calls.relabel = (...given) => start(() => relabelCall(...given), this.perform);
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
@@ -55,14 +53,8 @@ export class Api {
     }
     if (!('frames' in task)) return step(this.#frames, call, task);
     const [first, second] = task.frames;
-    if (task.call === 'segmentPair') {
-      return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
-        glue.segmentPair(first, second, task.settings, onStage),
-      );
-    }
-    const { matrices, groups, labels, sets, settings } = task.correction;
-    return run<Corrected, FramesGlue>(this.#frames, call, (glue, onStage) =>
-      glue.relabel(first, second, matrices, groups, labels, sets, settings, onStage),
+    return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
+      glue.segmentPair(first, second, task.settings, onStage),
     );
   };
 

@@ -9,20 +9,9 @@ export type Settings = Record<string, unknown>;
 
 export type Frames = readonly [first: Pixels, second: Pixels];
 
-/** The parts of a segmentation that `relabel` needs, and the evidence for its pixels. */
-export interface Correction {
-  /** Six entries of each motion. */
-  matrices: Float64Array;
-  groups: Uint8Array;
-  labels: Uint8Array;
-  sets: Uint16Array;
-  settings: Settings;
-}
-
 /** A call with arrays of its own and with what can be copied of its options: a signal stays behind, as does a listener. */
 export type CallTask =
   | { call: 'segmentPair'; frames: Frames; settings: Settings }
-  | { call: 'relabel'; frames: Frames; correction: Correction }
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
@@ -40,9 +29,6 @@ export type ClipTask = { clip: number } & (ClipStep | { call: 'beginClip'; whole
 
 /** A warm-up gives way to any other task. */
 export type Task = CallTask | { call: 'warmUp' };
-
-/** The parts of a segmentation that `relabel` changes. */
-export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
 
 /** A frame as the module gives it, which does not say the size again. */
 export type LabelledFrame = Omit<ClipFrame, 'width' | 'height'>;
@@ -102,7 +88,7 @@ export interface Annotating {
 }
 
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | Corrected | MotionFit | LabelledFrame | ClipEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
+export type Result = Segmentation | MotionFit | LabelledFrame | ClipEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
@@ -122,7 +108,5 @@ export function buffersOfTask(task: Task): ArrayBuffer[] {
     const { masks = [], corrections = [], accepted = [] } = annotations ?? {};
     return buffersOf([frame?.data, known, state, ...[...masks, ...corrections, ...accepted].map(({ labels }) => labels)]);
   }
-  if (!('frames' in task)) return [];
-  const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];
-  return buffersOf([...task.frames.map(({ data }) => data), ...said]);
+  return 'frames' in task ? buffersOf(task.frames.map(({ data }) => data)) : [];
 }

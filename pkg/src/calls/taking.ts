@@ -10,8 +10,7 @@ export function taken(arrays: readonly TypedArray[], transfer: boolean): TypedAr
   const views = arrays.map((array) => ({ array, buffer: array.buffer, start: array.byteOffset, length: array.length }));
   const moved = new Map(transfer ? [...new Set(views.map(({ buffer }) => buffer))].map((buffer) => [buffer, given(buffer)] as const) : []);
   return views.map(({ array, buffer, start, length }) => {
-    const name = array[Symbol.toStringTag];
-    const Kind = name === 'Float64Array' ? Float64Array : name === 'Uint16Array' ? Uint16Array : Uint8Array;
+    const Kind = array[Symbol.toStringTag] === 'Float64Array' ? Float64Array : Uint8Array;
     const now = moved.get(buffer);
     return now ? new Kind(now, start, length) : new Kind(array as never);
   });

@@ -3,13 +3,10 @@
 import type {
   CallOptions,
   FitOptions,
-  Junction,
   MotionFit,
   Pixels,
   PointMeasurements,
-  RelabelOptions,
   Segmentation,
-  SegmentedMotion,
   SegmentOptions,
 } from '../../types/index.js';
 import {
@@ -18,18 +15,14 @@ import {
   invalidInput,
   invalidOption,
   isArrayOf,
-  isListOf,
-  isNumber,
-  isObject,
   isWhole,
   LONGEST_SIDE,
   reading,
   type TypedArray,
-  UNLABELLED,
 } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import { scaled, scaledSize } from '../common/scaling.js';
-import type { CallTask, Corrected, Frames, Result, Settings } from './messages.js';
+import type { CallTask, Frames, Result, Settings } from './messages.js';
 import { taken } from './taking.js';
 
 /** Shortest side of a frame, pixels: what the core segments. */
@@ -67,23 +60,6 @@ export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOpti
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames, maxSize), settings: asked.settings };
   return { task, options: asked.call, finish: (result) => result as Segmentation };
-}
-
-export function relabelCall(
-  first: Pixels,
-  second: Pixels,
-  segmentation: Segmentation,
-  evidence: Uint16Array,
-  options?: RelabelOptions,
-): Call<Segmentation> {
-  const asked = parted(options, []);
-  const frames = checkedFrames(first, second);
-  const { kept, labels, ...correction } = checkedSegmentation(segmentation);
-  const sets = checkedArray('the evidence', evidence, 'Uint16Array', 'of one set of labels for each pixel');
-  const own = takenFor(asked, [...dataOf(frames), sets]);
-  const rest = { labels: taken([labels], false)[0] as Uint8Array, sets: own.pop() as Uint16Array };
-  const task: CallTask = { call: 'relabel', frames: framesWith(own, frames), correction: { ...correction, ...rest } };
-  return { task, options: asked.call, finish: (result) => ({ ...kept, ...(result as Corrected) }) };
 }
 
 export function fitCall(measurements: PointMeasurements, options?: FitOptions): Call<MotionFit> {
@@ -177,36 +153,4 @@ function checkedArray(which: string, array: unknown, kind: string, of: string): 
   if (!isArrayOf(array, kind)) throw invalidInput(`${which} must be a ${kind} ${of}`);
   checkAttached(which, array);
   return array;
-}
-
-/** A segmentation as the flat arrays of the core, and the rest of it. Whether labels and motions fit is the core's question. */
-function checkedSegmentation(segmentation: unknown) {
-  // The confidence was that of the labels before.
-  const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
-  const { motions, labels, junctions, settings, evidence } = whole;
-  const quality = isObject(settings) ? settings.quality : undefined;
-  if (!isListOf(motions, isMotion) || !isListOf(junctions, isJunction) || !isArrayOf(labels, 'Uint8Array') || typeof quality !== 'string') {
-    throw invalidInput('the segmentation must be one that segmentPair or relabel gave');
-  }
-  checkAttached('the labels', labels);
-  const candidates = isListOf(evidence?.candidates, isObject) ? evidence.candidates.map((candidate) => ({ ...candidate })) : [];
-  const known = { junctions: junctions.map((one) => ({ ...one, labels: [...one.labels] })) };
-  return {
-    // New values keep their place.
-    kept: { ...whole, motions: [], labels: [], ...known, evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,
-    labels,
-    matrices: Float64Array.from(motions.flatMap(({ matrix }) => matrix)),
-    groups: Uint8Array.from(motions, ({ group }) => group),
-    settings: { quality },
-  };
-}
-
-function isJunction(value: unknown): value is Junction {
-  return isObject(value) && isListOf(value.labels, isNumber);
-}
-
-function isMotion(value: unknown): value is SegmentedMotion {
-  if (!isObject(value)) return false;
-  const { matrix, group } = value;
-  return isListOf(matrix, isNumber) && matrix.length === 6 && isWhole(group, 0, UNLABELLED - 1);
 }

@@ -108,7 +108,7 @@ export function isArrayOf(value: unknown, ...names: string[]): value is TypedArr
   return name !== undefined && names.includes(name);
 }
 
-export type TypedArray = Uint8Array | Uint8ClampedArray | Uint16Array | Float64Array;
+export type TypedArray = Uint8Array | Uint8ClampedArray | Float64Array;
 
 /** Throws where the array shows nothing because its buffer was given away, or shrank away under it. */
 export function checkAttached(which: string, array: TypedArray): void {

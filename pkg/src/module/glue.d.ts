@@ -9,17 +9,6 @@ type PaintArguments = [labels: Uint8Array, width: number, height: number, palett
 export interface FramesGlue extends Glue {
   segmentPair(first: unknown, second: unknown, options: unknown, onStage: OnStage): unknown;
 
-  relabel(
-    first: unknown,
-    second: unknown,
-    matrices: Float64Array,
-    groups: Uint8Array,
-    labels: Uint8Array,
-    evidence: Uint16Array,
-    options: unknown,
-    onStage: OnStage,
-  ): unknown;
-
   beginClip(clip: number, whole: boolean, options: unknown): void;
   pushClip(clip: number, frame: unknown, known?: Uint8Array): unknown;
   previewClip(clip: number): unknown;

@@ -23,7 +23,7 @@ import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
 import type { PairCall, Places } from '../calls/places.js';
-import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
+import { fitCall, parted, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
@@ -64,10 +64,6 @@ export function segmenters(host: Host) {
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
       const call: PairCall<Pixels, SegmentOptions, Segmentation> = (...pair) => start(() => segmentCall(...pair), this.#perform);
       return (host.places?.pair(call) ?? (call as typeof calls.segmentPair))(...given);
-    }
-
-    relabel(...given: Parameters<typeof calls.relabel>): Promise<Segmentation> {
-      return start(() => relabelCall(...given), this.#perform);
     }
 
     fitMotions(...given: Parameters<typeof calls.fitMotions>): Promise<MotionFit> {

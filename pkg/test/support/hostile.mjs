@@ -86,10 +86,7 @@ export const FINITE = named(Number.isFinite);
 const size = { width: 16, height: 16 };
 export const [first, second] = pair(size);
 export const found = await index.segmentPair(first, second, { confidence: true });
-const [motion] = found.motions;
-export const evidence = new Uint16Array(256);
 export const measurements = points(40, 1, 2);
-const withMotion = (change) => ({ ...found, motions: [{ ...motion, ...change }, ...found.motions.slice(1)] });
 
 /**
  * The calls that a Segmenter has too: arguments with the value in one place, and the names of the values that may stand there. A
@@ -112,23 +109,6 @@ export const CALLS = {
   'segmentPair: transfer': ['segmentPair', (v) => [structuredClone(first), structuredClone(second), { transfer: v }], ['undefined', 'true', 'false']],
   'segmentPair: an option that does not exist': ['segmentPair', (v) => [first, second, { nonsense: v }], ['undefined']],
   'segmentPair: an option of fitMotions': ['segmentPair', (v) => [first, second, { method: v }], ['undefined']],
-  'relabel: first': ['relabel', (v) => [v, second, found, evidence], []],
-  'relabel: second': ['relabel', (v) => [first, v, found, evidence], []],
-  'relabel: segmentation': ['relabel', (v) => [first, second, v, evidence], []],
-  'relabel: evidence': ['relabel', (v) => [first, second, found, v], []],
-  'relabel: options': ['relabel', (v) => [first, second, found, evidence, v], OPTIONS],
-  'relabel: an option that does not exist': ['relabel', (v) => [first, second, found, evidence, { nonsense: v }], ['undefined']],
-  'relabel: an option of segmentPair': ['relabel', (v) => [first, second, found, evidence, { motions: v }], ['undefined']],
-  'relabel: motions': ['relabel', (v) => [first, second, { ...found, motions: v }, evidence], []],
-  'relabel: a motion': ['relabel', (v) => [first, second, { ...found, motions: [v] }, evidence], []],
-  'relabel: matrix': ['relabel', (v) => [first, second, withMotion({ matrix: v }), evidence], []],
-  'relabel: an entry of a matrix': ['relabel', (v) => [first, second, withMotion({ matrix: [0, 0, 1, 0, v, 0] }), evidence], FINITE],
-  'relabel: group': ['relabel', (v) => [first, second, withMotion({ group: v }), evidence], ['zero', 'one']],
-  'relabel: labels': ['relabel', (v) => [first, second, { ...found, labels: v }, evidence], []],
-  'relabel: settings': ['relabel', (v) => [first, second, { ...found, settings: v }, evidence], []],
-  'relabel: quality': ['relabel', (v) => [first, second, { ...found, settings: { ...found.settings, quality: v } }, evidence], []],
-  'relabel: confidence': ['relabel', (v) => [first, second, { ...found, confidence: v }, evidence], Object.keys(VALUES)],
-  'relabel: what the segmentation has besides': ['relabel', (v) => [first, second, { ...found, name: v }, evidence], Object.keys(VALUES)],
   'fitMotions: measurements': ['fitMotions', (v) => [v], []],
   'fitMotions: positions': ['fitMotions', (v) => [{ ...measurements, positions: v }], []],
   'fitMotions: derivatives': ['fitMotions', (v) => [{ ...measurements, derivatives: v }], []],

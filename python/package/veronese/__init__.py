@@ -12,9 +12,8 @@ is a :class:`VeroneseError` with a stable ``code``, the same as on the command l
 
 from __future__ import annotations
 
-import dataclasses
 import os
-from typing import Any, Callable, Iterable, Literal, Optional, Sequence, Union
+from typing import Callable, Iterable, Literal, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -75,7 +74,6 @@ __all__ = [
     "VeroneseError",
     "__version__",
     "fit_points",
-    "relabel",
     "segment_clip",
     "segment_pair",
 ]
@@ -104,6 +102,8 @@ def segment_pair(
 ) -> Segmentation:
     """Segments two frames: how many things move, how each one moves, and which pixels belong to it.
 
+    To correct masks, segment the two frames as a clip (:func:`segment_clip`), which takes corrections.
+
     :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
     :param quality: ``"best"`` for accuracy, ``"fast"`` for live use.
     :param mark_unknown: gives label 255 to a pixel that is hidden or outside in the second frame, has no texture around it, or whose label
@@ -113,29 +113,6 @@ def segment_pair(
         from it. The group of its motions is 1.
     """
     return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, subject, progress)
-
-
-def relabel(
-    first: Frame,
-    second: Frame,
-    segmentation: Segmentation,
-    evidence: NDArray[np.uint16],
-    *,
-    progress: Optional[Progress] = None,
-) -> Segmentation:
-    """Decides the labels of a segmentation anew, given a person's evidence about single pixels. The motions do not change.
-
-    ``evidence`` has a set of possible labels for each pixel: bit k is set if label k is possible, and 0 means no evidence. "This is label
-    2" is ``0b100``; "this is not label 0" of four is ``0b1110``. Evidence is binding on its own pixels and spreads from there to parts of
-    the image that look and move alike. The same arguments give the same result: to undo, call again without the evidence. The result has
-    no ``confidence``.
-    """
-    matrices = np.array([motion.matrix for motion in segmentation.motions], dtype=np.float64).reshape(-1, 6)
-    groups = [motion.group for motion in segmentation.motions]
-    labels, quality = segmentation.labels, segmentation.quality
-    now = _veronese.relabel(first, second, matrices, groups, labels, evidence, quality, progress)
-    changed: dict[str, Any] = dict(zip(("motions", "labels", "unlabelled"), now))
-    return dataclasses.replace(segmentation, confidence=None, **changed)
 
 
 def segment_clip(

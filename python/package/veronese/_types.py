@@ -105,7 +105,7 @@ class Segmentation:
     labels: Labels
     """255 is unlabelled."""
     junctions: List[Junction]
-    """Neighbouring motions, by labels. Borders of a few pixels are left out. ``relabel`` keeps them as they were."""
+    """Neighbouring motions, by labels. Borders of a few pixels are left out."""
     candidates: List[Candidate]
     """Description lengths of both frames in nats, from one motion to one more than were found."""
     unlabelled: int

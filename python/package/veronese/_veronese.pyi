@@ -1,11 +1,10 @@
-from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union, final
+from typing import Any, Iterator, List, Optional, Sequence, Union, final
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ._types import Accepted, ClipChange, ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation, SegmentedMotion
+from ._types import Accepted, ClipChange, ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation
 
-__all__ = ["Clip", "__version__", "fit_points", "relabel", "segment_clip", "segment_pair"]
+__all__ = ["Clip", "__version__", "fit_points", "segment_clip", "segment_pair"]
 
 __version__: str
 
@@ -19,16 +18,6 @@ def segment_pair(
     subject: bool,
     progress: Optional[Any],
 ) -> Segmentation: ...
-def relabel(
-    first: object,
-    second: object,
-    matrices: NDArray[np.float64],
-    groups: Sequence[int],
-    labels: NDArray[np.uint8],
-    evidence: NDArray[np.uint16],
-    quality: object,
-    progress: Optional[Any],
-) -> Tuple[List[SegmentedMotion], NDArray[np.uint8], int]: ...
 def fit_points(
     positions: ArrayLike,
     derivatives: ArrayLike,

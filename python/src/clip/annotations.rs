@@ -7,7 +7,7 @@ use veronese::MAX_SIDE;
 use veronese::clip::{Accepted, Annotations, Click, Painted, Prompt, Spread};
 
 use crate::errors::Failure;
-use crate::frames::image;
+use crate::frames::label_image;
 use crate::options::{invalid, whole};
 use crate::results::class;
 
@@ -184,7 +184,7 @@ impl Reader {
         frame: usize,
         entry: &Bound<'_, PyAny>,
     ) -> PyResult<Vec<u8>> {
-        let (labels, size) = image::<u8>("the labels", "uint8", &entry.getattr("labels")?)
+        let (labels, size) = label_image(&entry.getattr("labels")?)
             .map_err(|failure| Failure::option(option, &format!("{place}has other labels: {}", failure.message)))?;
         self.images.push((option, frame, size));
         Ok(labels)

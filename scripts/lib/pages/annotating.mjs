@@ -7,7 +7,6 @@ export const PARTS = {
   harm: ['annotator', harm],
   points: ['annotator', points],
   objects: ['annotator', objects],
-  strokes: ['annotator', strokes],
   page: ['annotator-page', page],
 };
 
@@ -95,17 +94,6 @@ function objects({ objects }) {
     return [`${name} (${own.length})`, all.length, ...scores, whole(changed), amount(mean(own.map((row) => row.frameMilliseconds)))];
   });
   return table(['clips', 'objects', 'assigned', 'last quarter', 'after strokes', 'pixels of others changed', 'ms a frame'], rows);
-}
-
-function strokes({ strokes }) {
-  if (strokes.length === 0) return '';
-  const rounds = Math.min(...strokes.flatMap(({ pairs }) => pairs.map((figures) => figures.length)));
-  const rows = groups(strokes).map(([name, own]) => {
-    const pairs = own.flatMap((row) => row.pairs);
-    const figures = Array.from({ length: rounds }, (_, k) => score(mean(pairs.map((pair) => pair[k]))));
-    return [`${name} (${pairs.length})`, ...figures, amount(mean(own.map(({ milliseconds }) => milliseconds)))];
-  });
-  return table(['pairs', 'found', ...Array.from({ length: rounds - 1 }, (_, k) => `round ${k + 1}`), 'ms'], rows);
 }
 
 function page({ rows, ...figures }) {

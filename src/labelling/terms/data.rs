@@ -99,6 +99,10 @@ mod tests {
     use crate::labelling::options::LabellingOptions;
     use crate::view::level::build;
 
+    fn costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+        label_costs(level, &compare(level, motions, Vec::new()), LabellingOptions::OF_TESTS)
+    }
+
     fn noise(seed: u64) -> Plane {
         let mut random = crate::random::Random::from_seed(seed);
         Plane::from_fn(64, 48, |_, _| random.uniform(0.0, 255.0) as f32)
@@ -110,10 +114,7 @@ mod tests {
         let same = &build(noise(1), noise(1), 24)[0];
         let other = &build(noise(1), noise(2), 24)[0];
         for level in [same, other] {
-            let costs = |motions: [AffineMotion; 2]| {
-                label_costs(level, &compare(level, &motions, Vec::new()), LabellingOptions::OF_TESTS)
-            };
-            let (object, dominant) = (costs([still, leaving]), costs([leaving, still]));
+            let (object, dominant) = (costs(level, &[still, leaving]), costs(level, &[leaving, still]));
             for y in 1..47 {
                 for x in 45..63 {
                     assert!(
@@ -125,7 +126,7 @@ mod tests {
             }
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
-        let unseen = label_costs(same, &compare(same, &[nowhere, nowhere], Vec::new()), LabellingOptions::OF_TESTS);
+        let unseen = costs(same, &[nowhere, nowhere]);
         assert_eq!(unseen[0].at(30, 30), CostModel::labels(&Model::DEFAULT).outside());
         assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - LabellingOptions::OF_TESTS.object_bias).abs() < 1e-6);
     }

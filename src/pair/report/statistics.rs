@@ -1,6 +1,7 @@
 //! Statistics of every motion, and the numbers of the groups.
 
-use super::SegmentedMotion;
+use serde::Serialize;
+
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::lanes::{each_with, lane_sum};
@@ -8,8 +9,30 @@ use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::pair::figure::GROUND;
 
+/// One motion of a [`Segmentation`](crate::Segmentation).
+#[non_exhaustive]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct SegmentedMotion {
+    /// Its label.
+    pub label: u8,
+    /// Its six entries, pixels of the full-size frame.
+    pub matrix: AffineMotion,
+    /// Number of its pixels.
+    pub pixels: usize,
+    /// Their share of all pixels, 0…1.
+    pub share: f64,
+    /// Root mean square of the motion-compensated intensity difference over its pixels, grey levels (0 where none of them lands
+    /// inside the second frame).
+    pub residual: f64,
+    /// Bounding box of its pixels: x, y, width, height.
+    pub bbox: [usize; 4],
+    /// Group: motions that are parts of one thing share a number; 0 is the ground, the others are numbered like labels.
+    pub group: u8,
+}
+
 /// Pixels, residuals, boxes and group numbers of the motions.
-pub(crate) fn describe(
+pub(super) fn describe(
     motions: &[AffineMotion],
     grouping: &[usize],
     labels: &[u8],
