@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::evidence::odds;
 use super::options::model;
-use super::record::Newest;
+use super::record::PendingFrame;
 use crate::frame::Plane;
 use crate::frame::pyramid::FramePyramid;
 use crate::pair::frame_motions::Expected;
@@ -29,7 +29,7 @@ pub(super) struct Farther {
 }
 
 /// What an earlier frame tells.
-pub(super) struct Told {
+pub(super) struct FartherPair {
     /// Of object against background, nats.
     pub(super) odds: Plane,
     /// How many frames earlier it is.
@@ -42,7 +42,12 @@ impl Farther {
     }
 
     /// What the newest frame and an earlier one tell, if they have something to tell that the newest frame and the last one have not.
-    pub(super) fn look(&mut self, last: &Newest, newest: &Newest, settings: &Settings) -> Option<Told> {
+    pub(super) fn look(
+        &mut self,
+        last: &PendingFrame,
+        newest: &PendingFrame,
+        settings: &Settings,
+    ) -> Option<FartherPair> {
         if model().looks_farther == 0 || newest.back.as_ref().is_none_or(|(near, _)| shows_object(near)) {
             *self = Farther::new();
             return None;
@@ -57,9 +62,9 @@ impl Farther {
         }
         let earlier = &self.earlier[self.earlier.len().checked_sub(self.reach)?];
         let view = newest.motions_to(earlier, settings, Expected::Nothing);
-        let told = Told { odds: odds(&view), reach: self.reach };
-        if !view.is_cut() && shows_object(&told.odds) {
-            return Some(told);
+        let pair = FartherPair { odds: odds(&view), reach: self.reach };
+        if !view.is_cut() && shows_object(&pair.odds) {
+            return Some(pair);
         }
         // Where nothing moves, few frames look so far.
         if self.reach == FARTHEST {

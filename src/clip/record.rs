@@ -3,6 +3,8 @@
 use std::rc::Rc;
 
 use super::evidence::Flow;
+use super::farther::shows_object;
+use super::options::model;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
@@ -12,23 +14,79 @@ use crate::pair::frame_motions::{Expected, FrameMotions, frame_motions};
 use crate::pair::settings::Settings;
 use crate::view::cost::SMALLEST_NOISE;
 
-/// The newest frame of a clip.
+/// A frame of a clip that waits for its pair with the next one.
 #[derive(Clone, Debug)]
-pub(crate) struct Newest {
+pub(crate) struct PendingFrame {
+    /// Position in the clip, from 0.
+    pub(crate) index: usize,
     pub(crate) frame: Rc<Frame>,
     pub(crate) pyramid: Rc<FramePyramid>,
     /// Whether it shows the frame before again.
     pub(crate) repeats: bool,
-    /// Odds and flow of the pair with the frame before.
+    /// Log-odds and flow of the pair with the frame before.
     pub(crate) back: Option<(Plane, Flow)>,
-    /// Whether the odds are those of the pair with an earlier frame.
+    /// Whether the log-odds are those of the pair with an earlier frame.
     pub(crate) looked_farther: bool,
 }
 
-impl Newest {
+impl PendingFrame {
+    /// The frame after `last`.
+    pub(crate) fn new(frame: Frame, last: Option<&PendingFrame>, settings: &Settings) -> PendingFrame {
+        PendingFrame {
+            index: last.map_or(0, |last| last.index + 1),
+            pyramid: Rc::new(settings.pyramid(&frame)),
+            repeats: last.is_some_and(|last| last.frame.colours() == frame.colours()),
+            frame: Rc::new(frame),
+            back: None,
+            looked_farther: false,
+        }
+    }
+
     /// The motions of its pixels to another frame.
     pub(crate) fn motions_to(&self, other: &FramePyramid, settings: &Settings, expected: Expected<'_>) -> FrameMotions {
         frame_motions(&self.frame, &self.pyramid, other, settings, expected)
+    }
+
+    /// The record of the frame, and its log-odds by its own pairs: that with the next frame, as far as there is one, and that with the
+    /// frame before. Of the second view of a lone pair the log-odds are zero: it makes the mistakes of the first.
+    pub(crate) fn recorded(
+        self,
+        (onward_odds, onward): (Option<Plane>, Option<Flow>),
+        is_second_of_two: bool,
+        keeps_frame: bool,
+    ) -> (Record, Plane) {
+        let (mut back_odds, back) = self.back.unzip();
+        let onward_odds = onward_odds.filter(|odds| !self.looked_farther || shows_object(odds));
+        if is_second_of_two {
+            back_odds.iter_mut().for_each(|odds| odds.values_mut().fill(0.0));
+        }
+        let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
+        // Of both pairs, or of the one in which something moves; zero where there is no pair.
+        let odds = match (onward_odds, back_odds) {
+            (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
+            (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
+            (Some(mut odds), Some(other)) => {
+                let share = model().backward;
+                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
+                odds
+            }
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => {
+                let [width, height] = self.pyramid.scaling.small;
+                Plane::filled(width, height, 0.0)
+            }
+        };
+        let appearance = self.pyramid.appearance(&self.frame);
+        let record = Record {
+            index: self.index,
+            frame: Some(self.frame.clone()).filter(|_| keeps_frame),
+            repeats: self.repeats,
+            palette: appearance.palette.clone(),
+            unit_borders: unit_borders(appearance),
+            onward,
+            back,
+        };
+        (record, odds)
     }
 }
 
@@ -69,6 +127,6 @@ impl Record {
 }
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
-pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
+fn unit_borders(appearance: &Appearance) -> Borders {
     Borders::new(&appearance.pictures[0], SMALLEST_NOISE, 1.0, &Model::DEFAULT)
 }

@@ -42,8 +42,6 @@ struct Waiting {
 /// A frame that leaves a round.
 pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
-    /// The odds that it came with.
-    pub(crate) own: Plane,
     /// Odds of object against background with the evidence of other frames, nats.
     pub(crate) odds: Plane,
     /// 1 where the frame shows an object, else 0.
@@ -74,7 +72,7 @@ impl Round {
     /// The frame that has waited longest leaves.
     pub(crate) fn next(&mut self) -> Option<Foreground> {
         let (odds, own_colours, mut colours) = self.with_future()?;
-        let Waiting { record, odds: own, .. } = self.waiting.pop_front()?;
+        let Waiting { record, .. } = self.waiting.pop_front()?;
         if record.back.is_none() {
             self.colours.clear();
         }
@@ -91,7 +89,7 @@ impl Round {
         let [width, height] = record.size();
         let ground = Plane::from_vec(width, height, odds.values().iter().enumerate().map(price).collect());
         let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
-        Some(Foreground { record, own, odds, mask })
+        Some(Foreground { record, odds, mask })
     }
 
     /// The evidence of the frame that has waited longest with that of all others, its colours by that evidence, and those of the waiting

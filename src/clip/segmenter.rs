@@ -10,7 +10,7 @@ use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
 use super::segmented_clip::SegmentedClip;
-use super::tracker::{Latest, Tracker};
+use super::tracker::{PreviewSource, Tracker};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::hash::hash;
@@ -116,7 +116,7 @@ impl ClipSegmenter {
     /// that need not be those of the segmented clip. There is none before there are such pairs, and none twice. Asked after each frame,
     /// previews are those of all frames but the last, and objects keep their number from one to the next.
     pub fn preview(&mut self) -> Option<ClipFrame> {
-        let Latest { record, frame, odds } = self.tracker.latest()?;
+        let PreviewSource { record, frame, odds } = self.tracker.preview()?;
         let SegmentOptions { subject, mark_unknown, .. } = self.tracker.options().pair;
         let (objects, last) = &mut self.previews;
         if last.replace(record.index) != record.index.checked_sub(1) {

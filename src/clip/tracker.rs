@@ -1,24 +1,20 @@
-//! Frames in, objects of the working size out.
+//! Frames in, objects of the working size out: each frame is paired with its neighbours, held back, cut in a round and handed to objects.
 
-use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::carry::continued_labels;
-use super::evidence::{Flow, Pairs, flow, odds};
-use super::farther::{FARTHEST, Farther, Told, shows_object};
+use super::evidence::{Flow, Pairs};
+use super::farther::{FARTHEST, Farther, FartherPair, shows_object};
+use super::held::HeldFrames;
 use super::identity::{Identities, Parting};
-use super::options::{ClipOptions, MAX_LOOK_AHEAD, model};
-use super::record::{Newest, Record, unit_borders};
+use super::options::{ClipOptions, MAX_LOOK_AHEAD};
+use super::pairing;
+use super::record::{PendingFrame, Record};
 use super::round::{Foreground, Round};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::options::Quality;
-use crate::pair::frame_motions::{Expected, Prior};
+use crate::pair::frame_motions::Prior;
 use crate::pair::settings::Settings;
-
-/// A frame in which nothing moves is no evidence of ground if something moves in one so near to it: frames may be shown several times, as
-/// where the rate was raised, or what moves stops for a moment. From 12 to 60 frames a second the third of five is this far from the others.
-const REACH: usize = 2;
 
 /// Follows objects through a clip.
 #[derive(Debug)]
@@ -28,32 +24,28 @@ pub(crate) struct Tracker {
     keeps_frames: bool,
     /// Width and height of the frames, once there is one.
     size: Option<[usize; 2]>,
-    /// Frames so far.
-    count: usize,
-    last: Option<Newest>,
     /// The first frame of a whole clip, until there are three.
-    first: Option<Newest>,
-    /// Whether the newest frame waits for its pair with the next one.
-    waits: bool,
+    first: Option<PendingFrame>,
+    /// The newest frame.
+    last: Option<PendingFrame>,
+    /// Frames that have their pairs. The newest frame waits for its pair with the next one if it is not among them.
+    paired: usize,
     /// The expectation of a fast stream for the next pair.
     prior: Option<Prior>,
-    /// The newest frames of a whole clip, which wait for what moves after them, and the odds of their own pairs.
-    held: VecDeque<(Rc<Record>, Plane)>,
     farther: Farther,
-    /// Frames since something moved.
-    still: usize,
-    rounds: [Round; 2],
+    held: HeldFrames,
+    round: Round,
     identities: Identities,
-    /// The frame that went to the rounds last.
-    latest: Option<Latest>,
+    /// The frame that got its pairs last.
+    preview: Option<PreviewSource>,
 }
 
 /// A frame with what its own pairs tell.
 #[derive(Debug)]
-pub(crate) struct Latest {
+pub(crate) struct PreviewSource {
     pub(crate) record: Rc<Record>,
     pub(crate) frame: Rc<Frame>,
-    /// Odds of object against background, nats.
+    /// Log-odds of object against background, nats.
     pub(crate) odds: Plane,
 }
 
@@ -77,27 +69,27 @@ impl Tracker {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
             return Err(Error::InvalidOption { name: "lookAhead", reason });
         }
-        // A stream has its frames' future in the first round alone.
-        let delays = options.look_ahead.map_or([MAX_LOOK_AHEAD; 2], |frames| [frames, 0]);
-        let solver = Settings::solver(options.pair.quality);
-        let rounds = [0, 1].map(|k| Round::new(delays[k], solver));
         let identities = Identities::new(options.pair.subject);
-        Ok(Tracker {
+        Ok(Tracker::empty(options, keeps_frames, identities))
+    }
+
+    fn empty(options: ClipOptions, keeps_frames: bool, identities: Identities) -> Tracker {
+        let solver = Settings::solver(options.pair.quality);
+        Tracker {
             options,
             keeps_frames,
             size: None,
-            count: 0,
-            last: None,
             first: None,
-            waits: false,
+            last: None,
+            paired: 0,
             prior: None,
-            held: VecDeque::new(),
             farther: Farther::new(),
-            still: REACH,
-            rounds,
+            // A stream knows no frame after the newest one that has its pairs.
+            held: HeldFrames::new(if options.look_ahead.is_none() { FARTHEST } else { 0 }),
+            round: Round::new(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD), solver),
             identities,
-            latest: None,
-        })
+            preview: None,
+        }
     }
 
     pub(crate) fn options(&self) -> &ClipOptions {
@@ -120,63 +112,42 @@ impl Tracker {
         }
         self.size = Some(size);
         let settings = self.options.settings(size);
-        let pyramid = Rc::new(settings.pyramid(&frame));
-        let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None, looked_farther: false };
-        let Some(last) = self.last.take() else {
-            self.waits = self.options.look_ahead != Some(0);
-            self.last = Some(newest.clone());
+        let last = self.last.take();
+        let newest = PendingFrame::new(frame, last.as_ref(), &settings);
+        let Some(last) = last else {
             self.first = Some(newest.clone()).filter(|_| self.options.look_ahead.is_none());
-            let tracked = if self.waits { None } else { self.advance(newest, None, None) };
+            self.last = Some(newest.clone());
+            let waits = self.options.look_ahead != Some(0);
+            let tracked = if waits { None } else { self.go_on(newest, (None, None)) };
             return Ok((tracked, Pairs::default()));
         };
-        if self.count > 0 {
+        if newest.index > 1 {
             self.first = None;
         }
-        newest.repeats = last.frame.colours() == newest.frame.colours();
+        let (prior, waits) = (self.prior.as_ref(), last.index == self.paired);
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
-            _ if newest.repeats => self.repeated(&newest),
-            None => both_ways(&last, &newest, &settings),
-            Some(_) => self.backward(&last, &newest, &settings),
+            _ if newest.repeats => pairing::of_repeated(&newest, prior, waits),
+            None => pairing::of_whole_clip(&last, &newest, &settings),
+            Some(_) => pairing::of_stream(&last, &newest, prior, waits, &settings),
         });
         Ok((self.take(last, newest, pairs.clone(), &settings), pairs))
     }
 
-    /// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
-    /// next pair is expected to be like the last one.
-    fn repeated(&self, newest: &Newest) -> Pairs {
-        let size @ [width, height] = newest.pyramid.scaling.small;
-        let told = || (Plane::filled(width, height, 0.0), Flow { measured: true, ..Flow::still(size) });
-        let onward = (self.options.look_ahead.is_none() || self.waits).then(told);
-        Pairs { onward, back: Some(told()), prior: self.prior.clone() }
-    }
-
-    /// In a stream a frame has its pair with the frame before; a fast one follows what was found there. Only the first frame may wait for the
-    /// next.
-    fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-        let labels = last.back.as_ref().map(|(_, flow)| continued_labels(flow));
-        let expected = match (&self.prior, labels) {
-            (Some(prior), Some(labels)) => Expected::Labels(prior, labels),
-            _ => Expected::Nothing,
-        };
-        let back = newest.motions_to(&last.pyramid, settings, expected);
-        if back.is_cut() {
-            return Pairs::default();
-        }
-        let onward = self.waits.then(|| last.motions_to(&newest.pyramid, settings, Expected::Nothing));
-        let prior = back.prior();
-        let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
-        Pairs { onward, back, prior }
-    }
-
     /// Goes on with what the pairs of the last frame and the newest one have told.
-    fn take(&mut self, mut last: Newest, newest: Newest, pairs: Pairs, settings: &Settings) -> Option<Tracked> {
+    fn take(
+        &mut self,
+        mut last: PendingFrame,
+        mut newest: PendingFrame,
+        pairs: Pairs,
+        settings: &Settings,
+    ) -> Option<Tracked> {
         let Pairs { mut onward, back, prior } = pairs;
         self.prior = prior;
-        let mut newest = Newest { back, ..newest };
-        if let Some(Told { odds, reach }) = self.farther.look(&last, &newest, settings) {
+        newest.back = back;
+        if let Some(FartherPair { odds, reach }) = self.farther.look(&last, &newest, settings) {
             // Frames between in which nothing was seen are no evidence of ground.
             let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(odds, _)| odds);
-            let between = self.held.iter_mut().rev().take(reach - 1).map(|(_, odds)| odds).chain(of_last);
+            let between = self.held.newest_odds(reach - 1).chain(of_last);
             between.filter(|odds| !shows_object(odds)).for_each(|odds| odds.values_mut().fill(0.0));
             if let Some((near, _)) = &mut newest.back {
                 *near = odds;
@@ -184,56 +155,45 @@ impl Tracker {
             newest.looked_farther = true;
         }
         self.last = Some(newest.clone());
+        let tracked = if last.index == self.paired { self.go_on(last, onward.unzip()) } else { None };
         if self.options.look_ahead.is_none() {
-            let (odds, onward) = onward.unzip();
-            return self.advance(last, odds, onward);
+            return tracked;
         }
-        if std::mem::take(&mut self.waits) {
-            // With a look-ahead it does not come out yet.
-            let (odds, onward) = onward.unzip();
-            self.advance(last, odds, onward);
-        }
-        // The newest frame is expected to go on as it came.
+        // In a stream the newest frame is expected to go on as it came.
         let expected = newest.back.as_ref().map(|(_, back)| back.continued());
-        self.advance(newest, None, expected)
+        self.go_on(newest, (None, expected))
     }
 
     /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
     pub(crate) fn finish(&mut self) -> Vec<Tracked> {
         let Some(mut last) = self.last.take() else { return Vec::new() };
-        // Two frames alone are looked at more closely, as those of a pair are; with quality fast neither are.
+        // With quality fast, two frames alone are not looked at more closely either.
         let closely = self.options.pair.quality == Quality::Best && last.back.is_some() && !last.repeats;
         if let Some(first) = self.first.take().filter(|_| closely) {
-            let settings = Settings::of_lone_pair(&self.options.pair, [last.frame.width(), last.frame.height()]);
-            let Pairs { onward, back, .. } = both_ways(&first, &last, &settings);
+            let Pairs { onward, back, .. } = pairing::of_lone_pair(&first, &last, &self.options.pair);
             last.back = back;
-            self.held.clear();
-            self.count = 0;
-            let (odds, onward) = onward.unzip();
-            self.advance(first, odds, onward);
+            self.held = HeldFrames::new(FARTHEST);
+            self.paired = 0;
+            self.go_on(first, onward.unzip());
         }
         let mut frames = Vec::new();
-        if self.waits {
-            frames.extend(self.advance(last, None, None));
+        if last.index == self.paired {
+            frames.extend(self.go_on(last, (None, None)));
         }
-        while !self.held.is_empty() {
-            frames.extend(self.release());
+        while let Some((record, odds)) = self.held.next() {
+            frames.extend(self.cut(record, odds));
         }
-        while let Some(foreground) = self.rounds[0].next() {
-            frames.extend(self.second_round(foreground));
-        }
-        while let Some(foreground) = self.rounds[1].next() {
+        while let Some(foreground) = self.round.next() {
             frames.push(self.tracked(foreground));
         }
-        self.latest = None;
-        (self.count, self.size, self.waits, self.prior, self.still) = (0, None, false, None, REACH);
-        self.farther = Farther::new();
+        let identities = std::mem::replace(&mut self.identities, Identities::new(self.options.pair.subject));
+        *self = Tracker::empty(self.options, self.keeps_frames, identities);
         frames
     }
 
-    /// The frame that went to the rounds last, once.
-    pub(crate) fn latest(&mut self) -> Option<Latest> {
-        self.latest.take()
+    /// What is known of the frame that got its pairs last, once.
+    pub(crate) fn preview(&mut self) -> Option<PreviewSource> {
+        self.preview.take()
     }
 
     /// Number of objects that were seen when all numbers had been given, and count as background.
@@ -246,103 +206,34 @@ impl Tracker {
         &self.identities.parted
     }
 
-    /// Hands a frame to the rounds, with what is known of its way to the next one.
-    fn advance(
-        &mut self,
-        Newest { frame, pyramid, repeats, back, looked_farther }: Newest,
-        onward_odds: Option<Plane>,
-        onward: Option<Flow>,
-    ) -> Option<Tracked> {
-        let (mut back_odds, back) = back.unzip();
-        let onward_odds = onward_odds.filter(|odds| !looked_farther || shows_object(odds));
-        // Both views of a lone pair make the same mistakes: the second one tells nothing new.
-        if onward.is_none() && self.held.back().is_some_and(|(record, _)| record.back.is_none()) {
-            back_odds.iter_mut().for_each(|odds| odds.values_mut().fill(0.0));
-        }
-        let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
-        // Of object against background from the frame's pairs, or from the one in which something moves; zero where there is no pair.
-        let odds = match (onward_odds, back_odds) {
-            (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
-            (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
-            (Some(mut odds), Some(other)) => {
-                let share = model().backward;
-                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
-                odds
-            }
-            (Some(only), None) | (None, Some(only)) => only,
-            (None, None) => {
-                let finest = &pyramid.levels[0].luminance;
-                Plane::filled(finest.width(), finest.height(), 0.0)
-            }
-        };
-        // The pyramid's levels have told all they can.
-        let appearance = pyramid.appearance(&frame);
-        let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
-        let kept = Some(frame.clone()).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame: kept, repeats, palette, unit_borders, onward, back });
-        self.count += 1;
-        self.latest = Some(Latest { record: record.clone(), frame, odds: odds.clone() });
-        self.held.push_back((record, odds));
-        let holds = if self.options.look_ahead.is_none() { FARTHEST } else { 0 };
-        if self.held.len() > holds { self.release() } else { None }
+    /// Goes on with a frame that has its pairs, or as much as there will be of them.
+    fn go_on(&mut self, pending: PendingFrame, onward: (Option<Plane>, Option<Flow>)) -> Option<Tracked> {
+        let is_second_of_two = onward.1.is_none() && self.held.newest().is_some_and(|record| record.back.is_none());
+        let frame = pending.frame.clone();
+        let (record, odds) = pending.recorded(onward, is_second_of_two, self.keeps_frames);
+        let record = Rc::new(record);
+        self.paired += 1;
+        self.preview = Some(PreviewSource { record: record.clone(), frame, odds: odds.clone() });
+        let (record, odds) = self.held.push(record, odds)?;
+        self.cut(record, odds)
     }
 
-    /// The frame that is held longest goes to the rounds.
-    fn release(&mut self) -> Option<Tracked> {
-        let (record, mut odds) = self.held.pop_front()?;
-        // A scene begins as if nothing had moved for long.
-        let before = if record.back.is_none() { REACH } else { self.still };
-        self.still = if record.is_still() { before.saturating_add(1) } else { 0 };
-        let mut after = self.held.iter().take(REACH).take_while(|(record, _)| record.back.is_some());
-        let is_near =
-            (1..=REACH).contains(&self.still) || self.still > 0 && after.any(|(record, _)| !record.is_still());
-        if is_near && !shows_object(&odds) {
-            odds.values_mut().fill(0.0);
-        }
-        let foreground = self.rounds[0].push(record, odds)?;
-        self.second_round(foreground)
-    }
-
-    /// The second round starts from the pairs' odds and the first round's cut.
-    fn second_round(&mut self, first: Foreground) -> Option<Tracked> {
-        // Without frames to wait for, a second look tells little that the first does not: .0015 J on ten real clips.
-        let live = self.options.pair.quality == Quality::Fast && self.options.look_ahead == Some(0);
-        if live || model().rounds < 2 {
-            return Some(self.tracked(first));
-        }
-        let Foreground { record, own: mut odds, mask, .. } = first;
-        for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
-            let cut = if object > 0 { model().first_cut } else { -model().first_cut };
-            *odds = model().trust * *odds + cut;
-        }
-        let foreground = self.rounds[1].push(record, odds)?;
+    fn cut(&mut self, record: Rc<Record>, odds: Plane) -> Option<Tracked> {
+        let foreground = self.round.push(record, odds)?;
         Some(self.tracked(foreground))
     }
 
-    fn tracked(&mut self, Foreground { record, odds, mask, .. }: Foreground) -> Tracked {
+    fn tracked(&mut self, Foreground { record, odds, mask }: Foreground) -> Tracked {
         let labels = self.identities.assign(&record, &mask);
         let goes_on = match &record.onward {
             None => false,
             Some(onward) if onward.measured => true,
             // A stream knows the frames that it has looked ahead to.
-            Some(_) => match self.rounds[0].oldest() {
+            Some(_) => match self.round.oldest() {
                 Some(next) => next.back.is_some(),
                 None => self.last.is_some() && self.options.look_ahead == Some(0),
             },
         };
         Tracked { record, labels, odds, goes_on }
     }
-}
-
-/// In a whole clip a frame has a pair with each of its neighbours.
-fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-    let onward = last.motions_to(&newest.pyramid, settings, Expected::Nothing);
-    let inverse = flow(onward.clone()).continued();
-    let labels = continued_labels(&inverse);
-    let back = newest.motions_to(&last.pyramid, settings, Expected::Inverse { motions: &inverse.motions, labels });
-    if onward.is_cut() && back.is_cut() {
-        return Pairs::default();
-    }
-    let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
-    Pairs { onward, back, prior: None }
 }

@@ -1,0 +1,59 @@
+//! Frames that are held back until it is known what moves after them.
+
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use super::farther::shows_object;
+use super::record::Record;
+use crate::frame::Plane;
+
+/// A frame in which nothing moves is no evidence of ground if something moves in one so near to it: frames may be shown several times, as
+/// where the rate was raised, or what moves stops for a moment. From 12 to 60 frames a second the third of five is this far from the others.
+const REACH: usize = 2;
+
+/// The newest frames, with the log-odds of their own pairs.
+#[derive(Debug)]
+pub(super) struct HeldFrames {
+    /// How many are held back.
+    delay: usize,
+    frames: VecDeque<(Rc<Record>, Plane)>,
+    /// Frames since something moved.
+    frames_at_rest: usize,
+}
+
+impl HeldFrames {
+    pub(super) fn new(delay: usize) -> HeldFrames {
+        HeldFrames { delay, frames: VecDeque::new(), frames_at_rest: REACH }
+    }
+
+    /// Takes the next frame. Returns one that has been held long enough.
+    pub(super) fn push(&mut self, record: Rc<Record>, odds: Plane) -> Option<(Rc<Record>, Plane)> {
+        self.frames.push_back((record, odds));
+        if self.frames.len() > self.delay { self.next() } else { None }
+    }
+
+    /// The frame that is held longest. Its log-odds are zero where they would be those of a pause.
+    pub(super) fn next(&mut self) -> Option<(Rc<Record>, Plane)> {
+        let (record, mut odds) = self.frames.pop_front()?;
+        // A scene begins as if nothing had moved for long.
+        let before = if record.back.is_none() { REACH } else { self.frames_at_rest };
+        self.frames_at_rest = if record.is_still() { before.saturating_add(1) } else { 0 };
+        let mut after = self.frames.iter().take(REACH).take_while(|(record, _)| record.back.is_some());
+        let is_near = (1..=REACH).contains(&self.frames_at_rest)
+            || self.frames_at_rest > 0 && after.any(|(record, _)| !record.is_still());
+        if is_near && !shows_object(&odds) {
+            odds.values_mut().fill(0.0);
+        }
+        Some((record, odds))
+    }
+
+    /// The newest frame that is held.
+    pub(super) fn newest(&self) -> Option<&Record> {
+        self.frames.back().map(|(record, _)| &**record)
+    }
+
+    /// The log-odds of the newest frames, as many as these.
+    pub(super) fn newest_odds(&mut self, count: usize) -> impl Iterator<Item = &mut Plane> {
+        self.frames.iter_mut().rev().take(count).map(|(_, odds)| odds)
+    }
+}

@@ -1,0 +1,61 @@
+//! The ways to pair a frame of a clip with the one before.
+
+use super::carry::continued_labels;
+use super::evidence::{Flow, Pairs, flow, odds};
+use super::record::PendingFrame;
+use crate::frame::Plane;
+use crate::options::SegmentOptions;
+use crate::pair::frame_motions::{Expected, FrameMotions, Prior};
+use crate::pair::settings::Settings;
+
+/// In a whole clip a frame has a pair with each of its neighbours.
+pub(super) fn of_whole_clip(last: &PendingFrame, newest: &PendingFrame, settings: &Settings) -> Pairs {
+    let onward = last.motions_to(&newest.pyramid, settings, Expected::Nothing);
+    let inverse = flow(onward.clone()).continued();
+    let labels = continued_labels(&inverse);
+    let back = newest.motions_to(&last.pyramid, settings, Expected::Inverse { motions: &inverse.motions, labels });
+    if onward.is_cut() && back.is_cut() {
+        return Pairs::default();
+    }
+    Pairs { onward: Some(evidence(onward)), back: Some(evidence(back)), prior: None }
+}
+
+/// The two frames of a clip that has no others are looked at more closely, as those of a pair are.
+pub(super) fn of_lone_pair(first: &PendingFrame, last: &PendingFrame, options: &SegmentOptions) -> Pairs {
+    of_whole_clip(first, last, &Settings::of_lone_pair(options, first.pyramid.scaling.full))
+}
+
+/// In a stream a frame has its pair with the frame before; a fast one follows what was found there. The first frame may wait for its pair
+/// with the next one.
+pub(super) fn of_stream(
+    last: &PendingFrame,
+    newest: &PendingFrame,
+    prior: Option<&Prior>,
+    waits: bool,
+    settings: &Settings,
+) -> Pairs {
+    let labels = last.back.as_ref().map(|(_, flow)| continued_labels(flow));
+    let expected = match (prior, labels) {
+        (Some(prior), Some(labels)) => Expected::Labels(prior, labels),
+        _ => Expected::Nothing,
+    };
+    let back = newest.motions_to(&last.pyramid, settings, expected);
+    if back.is_cut() {
+        return Pairs::default();
+    }
+    let onward = waits.then(|| evidence(last.motions_to(&newest.pyramid, settings, Expected::Nothing)));
+    let prior = back.prior();
+    Pairs { onward, back: Some(evidence(back)), prior }
+}
+
+/// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
+/// next pair is expected to be like the last one.
+pub(super) fn of_repeated(newest: &PendingFrame, prior: Option<&Prior>, waits: bool) -> Pairs {
+    let size @ [width, height] = newest.pyramid.scaling.small;
+    let still = || (Plane::filled(width, height, 0.0), Flow { measured: true, ..Flow::still(size) });
+    Pairs { onward: waits.then(still), back: Some(still()), prior: prior.cloned() }
+}
+
+fn evidence(solution: FrameMotions) -> (Plane, Flow) {
+    (odds(&solution), flow(solution))
+}
