@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 use crate::support::hash::fnv;
-use crate::support::protocol::{Protocol, SPECIAL};
+use scenes::protocol::{Protocol, SPECIAL};
 use veronese::{
     AffineMotion, Error, FitOptions, Measurements, MotionCount, MotionFit, Random, UNLABELLED, fit_motions,
 };

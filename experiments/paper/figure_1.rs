@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use veronese::stages::{Figure1Trial, TrialError, figure_1_trial};
+use veronese_site::{Figure1Trial, TrialError, figure_1_trial};
 
 use crate::Failure;
 use crate::parallel::in_parallel;

@@ -9,5 +9,3 @@
 
 pub mod hash;
 pub mod moving;
-#[path = "../../src/stages/protocol.rs"]
-pub mod protocol;

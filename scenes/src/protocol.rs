@@ -3,7 +3,6 @@
 //! Positions are uniform in [−1, 1]², the six entries of each motion uniform in [−1, 1]. Labels alternate. `y` is uniform on the unit
 //! circle orthogonal to `A x`, plus noise uniform in [−p, p] on every component. The `y` of an outlier is uniform on the unit sphere.
 
-// By the name of the crate: tests, benchmarks and experiments include this file.
 use veronese::{AffineMotion, Measurements, Random, Result};
 
 /// Parameters of a problem.
