@@ -1,15 +1,15 @@
 //! Strokes on pairs of frames: a robot corrects the object in the first frame.
-
 use std::time::Instant;
 
+use experiments::Failure;
+use experiments::annotator::overlap::{iou, mean};
+use experiments::annotator::robot::stroke;
+use experiments::clips::cases::Case;
 use serde::Serialize;
 use veronese::{AffineMotion, Correction, Frame, SegmentOptions, Segmentation, relabel, segment_pair};
 
-use crate::cases::Case;
+use crate::Options;
 use crate::measure::is_old;
-use crate::overlap::{iou, mean};
-use crate::robot::stroke;
-use crate::{Failure, Options};
 
 /// First frames of the pairs of a clip.
 const FIRST: [usize; 4] = [0, 8, 16, 24];

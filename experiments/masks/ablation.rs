@@ -1,12 +1,10 @@
 //! The ablation: the same cases with one part of the pipeline left out.
-
+use experiments::Failure;
+use experiments::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
+use experiments::masks::cases::{Case, Set, a_third};
+use experiments::masks::outcome::{Method, Outcome, grouped, outcome, segmented};
+use experiments::parallel::in_parallel;
 use veronese::Model;
-
-use crate::Failure;
-use crate::cases::{Case, Set, a_third};
-use crate::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
-use crate::outcome::{Method, Outcome, grouped, outcome, segmented};
-use crate::parallel::in_parallel;
 
 /// The rows of the table, in its order.
 const LEFT_OUT: [Row; 18] = [
