@@ -7,5 +7,4 @@
     reason = "every test file uses a part of it"
 )]
 
-pub mod hash;
 pub mod moving;
