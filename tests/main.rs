@@ -18,4 +18,3 @@ mod pipeline;
 mod promises;
 mod properties;
 mod support;
-mod synthetic;
