@@ -1,13 +1,9 @@
 //! The estimator with a given and with an unknown number of motions: protocol B1, 600 measurements, 5 % noise, eight problems in turn.
 
-#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
-#[path = "../src/stages/protocol.rs"]
-mod protocol;
-
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use protocol::Protocol;
+use scenes::protocol::Protocol;
 use veronese::{FitOptions, Measurements, MotionCount, fit_motions};
 
 fn bench(

@@ -4,9 +4,9 @@
 const TOLERANCE: f64 = 0.008;
 
 /// The pixel grid, and where the truth is known.
-pub(crate) struct Grid<'a> {
-    pub(crate) width: usize,
-    pub(crate) known: &'a [bool],
+pub struct Grid<'a> {
+    pub width: usize,
+    pub known: &'a [bool],
 }
 
 impl Grid<'_> {
@@ -15,7 +15,7 @@ impl Grid<'_> {
     }
 
     /// F measure of borders, those next to unknown pixels left out; none where that leaves too little of the true borders.
-    pub(crate) fn boundary(&self, truth: &[i16], found: &[i16]) -> Option<f64> {
+    pub fn boundary(&self, truth: &[i16], found: &[i16]) -> Option<f64> {
         let all_known = self.known.iter().all(|&k| k);
         let (all_true, mut found) = (self.borders(truth), self.borders(found));
         let mut truth = all_true.clone();

@@ -7,27 +7,27 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::statistics::{Estimate, estimate};
+use crate::score::statistics::{Estimate, estimate};
 
 /// What is left out, and the constants that leave it out. The first row of an ablation leaves nothing out.
-pub(crate) type Row = (&'static str, &'static [(&'static str, f64)]);
+pub type Row = (&'static str, &'static [(&'static str, f64)]);
 
 /// The figures that a case has, by name.
-pub(crate) type Figures = BTreeMap<&'static str, f64>;
+pub type Figures = BTreeMap<&'static str, f64>;
 
 /// What a case gives.
-pub(crate) struct Measured {
+pub struct Measured {
     /// The table that it counts in.
-    pub(crate) table: &'static str,
+    pub table: &'static str,
     /// Cases of one sequence are alike; they stand together.
-    pub(crate) sequence: String,
+    pub sequence: String,
     /// Figures and milliseconds of each row.
-    pub(crate) rows: Vec<(Figures, f64)>,
+    pub rows: Vec<(Figures, f64)>,
 }
 
 /// A row of the tables.
 #[derive(Serialize)]
-pub(crate) struct Worth {
+pub struct Worth {
     without: &'static str,
     tables: BTreeMap<&'static str, Change>,
 }
@@ -45,7 +45,7 @@ struct Change {
 }
 
 /// A model with the constants of a row.
-pub(crate) fn with<M>(mut model: M, (_, values): &Row, set: fn(&mut M, &str, f64) -> bool) -> M {
+pub fn with<M>(mut model: M, (_, values): &Row, set: fn(&mut M, &str, f64) -> bool) -> M {
     for (name, value) in *values {
         assert!(set(&mut model, name, *value), "there is no constant {name}");
     }
@@ -54,7 +54,7 @@ pub(crate) fn with<M>(mut model: M, (_, values): &Row, set: fn(&mut M, &str, f64
 
 /// What `work` returns, and how long this thread had a processor for it, milliseconds: other programs do not count. Where the system does
 /// not tell, the time that passed.
-pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     // Nanoseconds come first.
     let on_processor = || fs::read_to_string("/proc/thread-self/schedstat").ok()?.split(' ').next()?.parse().ok();
@@ -65,7 +65,7 @@ pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 /// The tables of an ablation.
-pub(crate) fn worth(rows: &[Row], measured: &[Measured]) -> Vec<Worth> {
+pub fn worth(rows: &[Row], measured: &[Measured]) -> Vec<Worth> {
     let mut tables: BTreeMap<&'static str, Vec<&Measured>> = BTreeMap::new();
     measured.iter().for_each(|one| tables.entry(one.table).or_default().push(one));
     let of = |(k, (without, _)): (usize, &Row)| Worth {
@@ -93,7 +93,7 @@ fn change(row: usize, cases: &[&Measured]) -> Change {
 }
 
 /// An error for rows that change no figure of any case: they measure nothing.
-pub(crate) fn all_change(rows: &[Worth]) -> Result<(), String> {
+pub fn all_change(rows: &[Worth]) -> Result<(), String> {
     let is_void = |row: &&Worth| row.tables.values().all(|table| table.changed == 0);
     let void: Vec<&str> = rows.iter().skip(1).filter(is_void).map(|row| row.without).collect();
     match void.is_empty() {

@@ -25,19 +25,19 @@ const DARK: usize = COLOURS.len() + 1;
 const WHITE: u8 = STEPS as u8 - 1;
 
 /// What pictures are made of: an indexed image.
-pub(crate) struct Sheet {
+pub struct Sheet {
     width: usize,
     height: usize,
     indices: Vec<u8>,
 }
 
 impl Sheet {
-    pub(crate) fn new(width: usize, height: usize) -> Sheet {
+    pub fn new(width: usize, height: usize) -> Sheet {
         Sheet { width, height, indices: vec![WHITE; width * height] }
     }
 
     /// A frame, or a labelling of it, reduced by `step`, with its top left corner at `corner`. What does not fit is cut off.
-    pub(crate) fn place(&mut self, corner: [usize; 2], luminance: &Plane, labels: Option<&[u8]>, step: usize) {
+    pub fn place(&mut self, corner: [usize; 2], luminance: &Plane, labels: Option<&[u8]>, step: usize) {
         let [left, top] = corner;
         for y in 0..(luminance.height() / step).min(self.height - top) {
             for x in 0..(luminance.width() / step).min(self.width - left) {
@@ -55,7 +55,7 @@ impl Sheet {
     }
 
     /// As an indexed PNG file.
-    pub(crate) fn png(&self) -> Result<Vec<u8>> {
+    pub fn png(&self) -> Result<Vec<u8>> {
         encode_indexed_png(self.width, self.height, &self.indices, &palette())
     }
 }

@@ -1,18 +1,17 @@
 //! Cases measured side by side, each on a thread of its own.
 
-use std::error::Error;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
+use crate::Result;
 
 /// `work` on every case, on all cores; the results in the order of the cases, or the first error.
-pub(crate) fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Result<T> + Sync) -> Result<Vec<T>> {
+pub fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Result<T> + Sync) -> Result<Vec<T>> {
     on_threads(std::thread::available_parallelism().map_or(1, usize::from), cases, work)
 }
 
 /// [`in_parallel`] on this number of threads.
-pub(crate) fn on_threads<C: Sync, T: Send>(
+pub fn on_threads<C: Sync, T: Send>(
     threads: usize,
     cases: &[C],
     work: impl Fn(&C) -> Result<T> + Sync,

@@ -3,11 +3,7 @@
 use std::fmt::Display;
 
 /// Runs a program with its options; `None` shows the help. Ends with 1 after a failure, with 2 for wrong options.
-pub(crate) fn start<O, E: Display>(
-    help: &str,
-    options: Result<Option<O>, String>,
-    run: impl FnOnce(&O) -> Result<(), E>,
-) {
+pub fn start<O, E: Display>(help: &str, options: Result<Option<O>, String>, run: impl FnOnce(&O) -> Result<(), E>) {
     let (message, code) = match options.map(|options| options.map(|options| run(&options))) {
         Ok(None) => return print!("{help}"),
         Ok(Some(Ok(()))) => return,

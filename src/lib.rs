@@ -121,17 +121,13 @@
 //! # Stability
 //!
 //! From 1.0 on the crate follows semantic versioning. Options are made with `default()` and `with_…`, and results may get further
-//! fields, so neither can be written as literals. Three parts may change in any version: what is hidden from this documentation; the
-//! modules [`embedding`], [`factorisation`], [`linear`], [`paper`] and [`refinement`], which are the method in parts, for study, and have
-//! types of nalgebra in their signatures; and the module `stages` of the feature of that name, which shows what lies between the steps.
+//! fields, so neither can be written as literals. Two parts may change in any version: what is hidden from this documentation; and
+//! the modules [`embedding`], [`factorisation`], [`linear`], [`paper`] and [`refinement`], which are the method in parts, for study, and
+//! have types of nalgebra in their signatures.
 //!
 //! # Reproducibility
 //!
 //! The same input gives the same bits in native code and in WebAssembly. "Reproducible bits" in ARCHITECTURE.md explains how.
-
-// Generated problems are shared with integration tests, benchmarks and experiments, which refer to the crate by name.
-#[cfg(any(test, feature = "stages"))]
-extern crate self as veronese;
 
 mod answer;
 mod best;
@@ -162,6 +158,7 @@ mod progress;
 mod random;
 pub mod refinement;
 #[cfg(feature = "stages")]
+#[doc(hidden)]
 pub mod stages;
 mod view;
 

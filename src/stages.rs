@@ -1,70 +1,131 @@
-//! The steps of the method one by one, for figures and for study. Feature `stages`.
-//!
-//! **Stability.** This module may change in any version: it shows the inside of the others and changes with them.
-//!
-//! The functions compute nothing of their own: they run the parts of this crate and hand out what those give each other.
-//!
-//! * [`veronese_map`]: points embedded by the Veronese map, and the polynomial that vanishes on them;
-//! * [`multibody_flow`]: several translations from one polynomial in the derivatives (eq. 13 and 14);
-//! * [`grey_derivatives`]: image derivatives in grey levels;
-//! * [`paper_stages`]: the paper's algorithm step by step, with the ambiguity of its fifth step, and differentiation beside it;
-//! * [`motions_at_pixel`]: differentiation at one pixel; [`embedded_spectra`]: the singular values behind the rank rule;
-//! * [`segment_pair_stages`]: the image pipeline with what its stages find, and where and why it leaves the paper ([`pair`]);
-//! * [`motion_measurements`] and [`figure_1_trial`]: generated measurements and one trial of the paper's Figure 1, by [`protocol`].
-//!
-//! ```
-//! use veronese::stages::{multibody_flow, veronese_map};
-//!
-//! # fn main() -> veronese::Result<()> {
-//! // Points on the lines x = y and x = −2y: x² + xy − 2y² vanishes on both.
-//! let points = [1.0, 1.0, -2.0, -2.0, 2.0, -1.0, -1.0, 0.5, 0.5, 0.5];
-//! let map = veronese_map(&points, 2, 2)?;
-//! assert_eq!(map.exponents, [[2, 0, 0], [1, 1, 0], [0, 2, 0]]);
-//! assert_eq!((map.rank, map.lines.len(), map.complex), (2, 2, 0));
-//!
-//! // Derivatives of pixels that move by (1, 0), and of others that move by (0, -2).
-//! let derivatives = [[1.0, 0.5, -1.0], [2.0, -1.0, -2.0], [1.0, 1.0, 2.0], [0.5, 2.0, 4.0], [1.0, 3.0, -1.0]];
-//! let flow = multibody_flow(&derivatives, 2)?;
-//! assert_eq!(flow.factors.len(), 2);
-//! # Ok(())
-//! # }
-//! ```
+//! What the stages of a pair find, noted by an observer of the pipeline for the figures of the site.
 
-mod figure_1;
-mod fit;
-mod flow;
-mod grey;
-mod map;
-mod measured;
-pub mod pair;
-mod pixel;
-pub mod protocol;
 mod recorder;
-mod spectra;
 
-pub use figure_1::{Figure1Trial, TrialError, figure_1_trial};
-pub use fit::{FitStages, paper_stages};
-pub use flow::{MultibodyFlow, multibody_flow};
-pub use grey::grey_derivatives;
-pub use map::{VeroneseMap, veronese_map};
-pub use measured::motion_measurements;
-pub use pair::PairStages;
-pub use pixel::{PixelStages, motions_at_pixel};
 pub use recorder::segment_pair_stages;
-pub use spectra::{Spectrum, embedded_spectra};
 
-use crate::error::{Error, Result};
+use crate::frame::{Derivatives, Plane};
+use crate::measurements::Measurements;
+use crate::motion::AffineMotion;
+use crate::pair::Segmentation;
 
-/// Largest number of points or measurements.
-const MOST: usize = 100_000;
-
-/// Checks that a number lies in a range.
-fn within<T: PartialOrd + std::fmt::Display>(name: &'static str, value: T, [least, most]: [T; 2]) -> Result<()> {
-    if least <= value && value <= most {
-        return Ok(());
-    }
-    Err(Error::InvalidOption { name, reason: format!("must be from {least} to {most}, not {value}") })
+/// The result of [`segment_pair_stages`].
+#[derive(Clone, Debug)]
+pub struct PairStages {
+    /// The hypotheses about the background that were solved, one or two.
+    pub hypotheses: Vec<Background>,
+    /// The index of the one that describes the frames in fewer nats.
+    pub chosen: usize,
+    /// Large frames with quality [`Best`](crate::Quality::Best): the labels carried on at a finer working size.
+    pub detail: Option<Labelling>,
+    /// The labels at the final working size, after shadows are given back to the background.
+    pub working: Labelling,
+    /// Labels of the result by groups.
+    pub groups: Vec<Vec<u8>>,
+    /// The result of [`segment_pair`](crate::segment_pair).
+    pub result: Segmentation,
 }
 
-#[cfg(test)]
-mod tests;
+/// A grid of pixels: its pixel (x, y) lies at `scale` (x, y) of the full frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Grid {
+    /// Width in its own pixels.
+    pub width: usize,
+    /// Height in its own pixels.
+    pub height: usize,
+    /// Pixels of the full frame for one of its own.
+    pub scale: f64,
+}
+
+/// A hypothesis about the background, solved to the end. Motions are in pixels of the full frame.
+#[derive(Clone, Debug)]
+pub struct Background {
+    /// The motion of the background: the one that explains most pixels, or rest.
+    pub dominant: AffineMotion,
+    /// The level on which derivatives and measurements are taken.
+    pub base: Grid,
+    /// Standard deviation of the intensity difference along a correct motion in flat areas, grey levels.
+    pub noise: f64,
+    /// The second frame along the dominant motion minus the first, grey levels, on `base`.
+    pub residual: Plane,
+    /// Derivatives on `base`, grey levels per pixel of `base`, where the local flow lands, recentred: `I_x u + I_y v + I_t = 0` for the flow
+    /// (u, v) relative to the dominant motion, in pixels of `base`.
+    pub derivatives: Derivatives,
+    /// The local flow (u, v) relative to the dominant motion, pixels of the full frame, on `base`.
+    pub local_flow: [Plane; 2],
+    /// The measurements of the multibody constraint; none where they are too few.
+    pub measured: Option<MeasuredPixels>,
+    /// The candidates, in the order in which they were proposed.
+    pub candidates: Vec<CandidateMotion>,
+    /// The gain that a motion needs to be selected.
+    pub price: f64,
+    /// The motions after greedy selection; the first is the dominant one.
+    pub selected: Vec<SelectedMotion>,
+    /// The selected motion that explains each pixel best, before any pixel asks its neighbours.
+    pub selection: Labelling,
+    /// The motions after refinement on the intensities.
+    pub refined: Vec<SelectedMotion>,
+    /// The refined motion that explains each pixel best, before any pixel asks its neighbours.
+    pub refinement: Labelling,
+    /// The labels of the draft level.
+    pub draft: Labelling,
+    /// The labels of the working size.
+    pub labelling: Labelling,
+}
+
+/// Measurements on pixels that the dominant motion does not explain.
+#[derive(Clone, Debug)]
+pub struct MeasuredPixels {
+    /// The pixels, in pixels of the full frame.
+    pub places: Vec<[f64; 2]>,
+    /// As the constraint has them: positions normalised by the half width, derivatives of about unit length.
+    pub measurements: Measurements,
+    /// How badly the dominant motion explains each, 0…1.
+    pub weights: Vec<f64>,
+    /// Pixels of the full frame for a unit of the flow of the measurements, which is relative to the dominant motion.
+    pub unit: f64,
+}
+
+/// Where a candidate comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CandidateSource {
+    /// The multibody constraint of this degree.
+    Constraint(usize),
+    /// The local flow of a window.
+    Window,
+    /// The other hypothesis about the background.
+    Hypothesis,
+}
+
+/// A candidate motion.
+#[derive(Clone, Copy, Debug)]
+pub struct CandidateMotion {
+    /// The motion.
+    pub matrix: AffineMotion,
+    /// Where it comes from.
+    pub source: CandidateSource,
+    /// How much it would save beside the dominant motion alone before it is refined, in the unit of [`Background::price`].
+    pub gain: f64,
+    /// Share of the pixels, 0…1, that it explains better than the dominant motion does.
+    pub support: f64,
+}
+
+/// A motion that was selected.
+#[derive(Clone, Copy, Debug)]
+pub struct SelectedMotion {
+    /// The motion.
+    pub matrix: AffineMotion,
+    /// Share of the pixels, 0…1, that it explains best.
+    pub support: f64,
+}
+
+/// Labels with their motions. The first motion is the background's; numbers are not yet those of the report.
+#[derive(Clone, Debug, Default)]
+pub struct Labelling {
+    /// The pixels of the labels.
+    pub grid: Grid,
+    /// The motions, pixels of the full frame.
+    pub motions: Vec<AffineMotion>,
+    /// The label of every pixel of `grid`, row by row.
+    pub labels: Vec<u8>,
+}

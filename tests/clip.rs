@@ -443,25 +443,3 @@ fn undecided_pixels_are_marked_when_asked() {
     }
     assert!(unknown > 0 && unknown < all / 10, "{unknown} of {all}");
 }
-
-#[test]
-fn the_same_bits_on_every_target() {
-    let things = [
-        thing(2, [36.0, 30.0], |t| [10.0 + 5.3 * t as f32, 40.0]),
-        thing(3, [30.0, 34.0], |t| [115.0 - 4.6 * t as f32, 62.0]),
-    ];
-    let (frames, _) = scene(1, &things, 5);
-    let hash = |look_ahead| {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut add = |value: u64| hash = (hash ^ value).wrapping_mul(0x0000_0100_0000_01b3);
-        for frame in segment(&frames, options(Quality::Fast, look_ahead)) {
-            frame.labels.iter().for_each(|&label| add(u64::from(label)));
-            for object in &frame.objects {
-                add(object.confidence.to_bits());
-                object.matrix.iter().flat_map(|motion| motion.matrix).for_each(|entry| add(entry.to_bits()));
-            }
-        }
-        hash
-    };
-    assert_eq!([hash(None), hash(Some(1))], [15_117_585_835_816_162_580, 7_501_189_127_811_530_688]);
-}

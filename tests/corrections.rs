@@ -4,8 +4,8 @@
 use std::sync::LazyLock;
 
 use crate::support::moving::{
-    SIZE, Thing, annotate, carrier, correct, correct_some, frames_of, mask, moving_and_resting,
-    moving_and_resting_clip, one_number, options, renumber, scene_of, thing, whole,
+    Thing, annotate, carrier, correct, correct_some, frames_of, mask, moving_and_resting, moving_and_resting_clip,
+    one_number, options, renumber, scene_of, thing, whole,
 };
 use veronese::clip::{Annotations, Click, Painted, Prompt, SegmentedClip, Spread};
 use veronese::{Error, Frame, Quality, Random};
@@ -914,37 +914,6 @@ fn a_corrected_mask_holds_and_spreads_both_ways() {
     for (restored, before) in frames_of(&clip, &frames).iter().zip(&before) {
         assert_eq!(restored.labels, before.labels);
     }
-}
-
-#[test]
-fn a_stroke_takes_the_region_around_it_along() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = moving_and_resting_clip();
-    let stroke = |p: usize| (95..125).contains(&(p % SIZE[0])) && (88..96).contains(&(p / SIZE[0]));
-    let ground = |p: usize| p / SIZE[0] == 116 || p / SIZE[0] == 72 || p % SIZE[0] == 84 || p % SIZE[0] == 138;
-    let said = |p: usize| {
-        if stroke(p) {
-            7
-        } else if ground(p) {
-            0
-        } else {
-            255
-        }
-    };
-    correct(&mut clip, &frames, 6, &(0..SIZE[0] * SIZE[1]).map(said).collect::<Vec<u8>>());
-    let done = frames_of(&clip, &frames);
-    for t in [3, 6, 9] {
-        let (label, iou) = carrier(&done[t].labels, &truths[t], 2).unwrap();
-        assert!(label == 7 && iou > 0.6, "frame {t}: {label}, {iou}");
-    }
-}
-
-#[test]
-fn a_new_number_of_an_object_lasts() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = moving_and_resting_clip();
-    correct(&mut clip, &frames, 2, &mask(&truths[2], &[(1, 40)]));
-    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
 }
 
 #[test]

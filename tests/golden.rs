@@ -4,13 +4,17 @@
 
 use std::fs;
 
-use crate::support::hash::fnv;
 use serde_json::{Value, json};
 use veronese::clip::{Annotations, ClipFrame, ClipOptions, ClipSegmenter, Painted, Spread, StreamSegmenter};
 use veronese::codecs::decode_image;
 use veronese::{
     FitOptions, Frame, Measurements, Method, MotionCount, Quality, SegmentOptions, fit_motions, segment_pair,
 };
+
+/// FNV-1a, 64 bits.
+fn fnv(bytes: impl IntoIterator<Item = u8>) -> u64 {
+    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
 
 /// The bytes of all numbers of an answer, entries in the order of their names.
 fn numbers(answer: &Value) -> Vec<u8> {

@@ -17,4 +17,3 @@ mod pipeline;
 mod promises;
 mod properties;
 mod support;
-mod synthetic;

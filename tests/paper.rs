@@ -2,12 +2,11 @@
 //! that differentiation solves.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-use crate::support::hash::fnv_of;
-use crate::synthetic::{CONFIGURATIONS, measurements, random_motions, worst_error};
+use scenes::protocol::{Problem, Protocol, Relation, SPECIAL};
 use veronese::embedding::monomials::{count, kept_pairs, structural_zeros, unknowns};
 use veronese::embedding::rank::{KAPPA, number_of_motions, numerical_rank};
 use veronese::embedding::{EmbeddedData, MultibodyMotion, embedded_matrix, taubin_motion};
-use veronese::factorisation::differentiation::{POINTS, algebraic_start, motions_from_points};
+use veronese::factorisation::differentiation::{POINTS, motions_from_points};
 use veronese::factorisation::five_steps;
 use veronese::refinement::{Termination, product};
 use veronese::{
@@ -18,22 +17,35 @@ fn fit(data: &Measurements, method: Method, motions: MotionCount) -> Result<Moti
     fit_motions(data, &FitOptions::default().with_motions(motions).with_method(method).with_seed(1), &mut |_| {})
 }
 
-/// Measurements of a 320×240 frame: positions in pixels, motions of a few pixels, grey-level derivatives.
-fn pixel_data(n: usize, random: &mut Random) -> (Vec<AffineMotion>, Measurements) {
+/// `count` measurements of n general motions.
+fn problem(n: usize, count: usize, noise: f64, seed: u64) -> Problem {
+    Protocol { count, ..Protocol::new(n, noise) }.problem(seed)
+}
+
+fn motions(n: usize, seed: u64) -> Vec<AffineMotion> {
+    problem(n, 1, 0.0, seed).motions
+}
+
+/// The largest relative error (eq. 20).
+fn worst_error(truth: &Problem, found: &[AffineMotion]) -> f64 {
+    truth.errors(found).1
+}
+
+/// A problem in a 320×240 frame: positions in pixels, motions of a few pixels, grey-level derivatives.
+fn in_pixels(n: usize, seed: u64) -> Problem {
     let (centre, scale) = ([160.0, 120.0], 160.0);
-    let truth = random_motions(n, random);
-    let data = measurements(&truth, 200 * n.max(3), 0.0, random);
+    let Problem { measurements: data, motions, labels } = problem(n, 200 * n.max(3), 0.0, seed);
     let positions = data.positions().iter().map(|p| [centre[0] + scale * p[0], centre[1] + scale * p[1]]).collect();
     let derivatives = data.derivatives().iter().map(|y| y.map(|d| 40.0 * d)).collect();
-    let truth = truth.iter().map(|a| a.from_normalised(centre, scale)).collect();
-    (truth, Measurements::new(positions, derivatives).unwrap())
+    let motions = motions.iter().map(|a| a.from_normalised(centre, scale)).collect();
+    Problem { measurements: Measurements::new(positions, derivatives).unwrap(), motions, labels }
 }
 
 #[test]
 fn lemma_1_the_constraint_is_bilinear_in_the_embedded_data() {
     let mut random = Random::from_seed(1);
     for n in 1..=6 {
-        let motions = random_motions(n, &mut random);
+        let motions = motions(n, n as u64);
         let multibody = MultibodyMotion::from_motions(&motions);
         for _ in 0..20 {
             // The identity also holds for z ≠ 1.
@@ -53,8 +65,7 @@ fn lemma_1_the_constraint_is_bilinear_in_the_embedded_data() {
 
 #[test]
 fn example_1_all_36_entries_of_the_two_body_motion() {
-    let mut random = Random::from_seed(2);
-    let motions = random_motions(2, &mut random);
+    let motions = motions(2, 2);
     let [b11, b12, b13, b21, b22, b23] = motions[0].matrix;
     let [c11, c12, c13, c21, c22, c23] = motions[1].matrix;
     let a12 = b11 * c12 + b12 * c11;
@@ -97,9 +108,8 @@ fn appendix_a_the_numbers_of_monomials_zeros_and_unknowns() {
 
 #[test]
 fn appendix_a_all_other_entries_vanish_and_no_kept_one_does() {
-    let mut random = Random::from_seed(3);
     for n in 1..=5 {
-        let multibody = MultibodyMotion::from_motions(&random_motions(n, &mut random));
+        let multibody = MultibodyMotion::from_motions(&motions(n, 3));
         let kept = kept_pairs(n);
         for row in 0..count(n) {
             for column in 0..count(n) {
@@ -114,12 +124,10 @@ fn appendix_a_all_other_entries_vanish_and_no_kept_one_does() {
 
 #[test]
 fn equation_9_the_motions_are_in_the_null_space_of_the_embedded_data() {
-    let mut random = Random::from_seed(4);
     for n in 1..=3 {
-        let truth = random_motions(n, &mut random);
-        let data = measurements(&truth, 100, 0.0, &mut random);
-        let coefficients = MultibodyMotion::from_motions(&truth).coefficients();
-        let product = embedded_matrix(&data, n) * nalgebra::DVector::from_vec(coefficients);
+        let truth = problem(n, 100, 0.0, 4);
+        let coefficients = MultibodyMotion::from_motions(&truth.motions).coefficients();
+        let product = embedded_matrix(&truth.measurements, n) * nalgebra::DVector::from_vec(coefficients);
         assert_eq!(product.len(), 100);
         assert!(product.amax() < 1e-13);
     }
@@ -127,9 +135,7 @@ fn equation_9_the_motions_are_in_the_null_space_of_the_embedded_data() {
 
 #[test]
 fn the_triangle_has_the_singular_values_of_the_embedded_matrix() {
-    let mut random = Random::from_seed(5);
-    let truth = random_motions(2, &mut random);
-    let data = measurements(&truth, 301, 0.02, &mut random);
+    let data = problem(2, 301, 0.02, 5).measurements;
     let found = EmbeddedData::new(&data, 3).singular_values().unwrap();
     let expected = embedded_matrix(&data, 3).singular_values();
     assert_eq!(found.len(), 65);
@@ -142,10 +148,8 @@ fn the_triangle_has_the_singular_values_of_the_embedded_matrix() {
 fn theorem_1_the_ranks_below_at_and_above_the_number_of_motions() {
     // For exact data the tolerance is rounding, not κ.
     const ROUNDING: f64 = 1e-11;
-    let mut random = Random::from_seed(6);
     for n in 1..=3 {
-        let truth = random_motions(n, &mut random);
-        let data = measurements(&truth, 600, 0.0, &mut random);
+        let data = problem(n, 600, 0.0, 6).measurements;
         for i in 1..=4 {
             let values = EmbeddedData::new(&data, i).scaled_singular_values().unwrap();
             let rank = numerical_rank(&values, ROUNDING);
@@ -158,9 +162,7 @@ fn theorem_1_the_ranks_below_at_and_above_the_number_of_motions() {
 fn equation_12_the_rank_rule_finds_one_and_two_motions() {
     for (n, noise) in [(1, 0.0), (1, 0.005), (2, 0.0), (2, 0.01)] {
         for seed in 0..10 {
-            let mut random = Random::from_seed(seed);
-            let truth = random_motions(n, &mut random);
-            let data = measurements(&truth, 600, noise, &mut random);
+            let data = problem(n, 600, noise, seed).measurements;
             let rule = number_of_motions(&data, 4).unwrap();
             assert_eq!((rule.motions, rule.fired), (n, true), "noise {noise}, seed {seed}");
             let last = rule.candidates.last().unwrap();
@@ -173,9 +175,7 @@ fn equation_12_the_rank_rule_finds_one_and_two_motions() {
 #[test]
 fn the_rank_rule_says_when_it_did_not_fire() {
     // 30 % noise: no null vector at one motion, and too few measurements for two.
-    let mut random = Random::from_seed(7);
-    let truth = random_motions(2, &mut random);
-    let data = measurements(&truth, 20, 0.3, &mut random);
+    let data = problem(2, 20, 0.3, 7).measurements;
     let rule = number_of_motions(&data, 6).unwrap();
     assert_eq!((rule.motions, rule.fired, rule.candidates.len()), (1, false, 1));
     let stages = fit(&data, Method::Paper, MotionCount::Auto).unwrap().stages.unwrap();
@@ -186,13 +186,12 @@ fn the_rank_rule_says_when_it_did_not_fire() {
 fn generic_motions_are_recovered_without_noise() {
     for n in 1..=4 {
         for seed in 0..5 {
-            let mut random = Random::from_seed(100 * n as u64 + seed);
-            let truth = random_motions(n, &mut random);
-            let data = measurements(&truth, 600, 0.0, &mut random);
-            let multibody = MultibodyMotion::estimate(&data, n).unwrap();
-            let expected = MultibodyMotion::from_motions(&truth);
+            let truth = problem(n, 600, 0.0, 100 * n as u64 + seed);
+            let (data, random) = (&truth.measurements, &mut Random::from_seed(seed));
+            let multibody = MultibodyMotion::estimate(data, n).unwrap();
+            let expected = MultibodyMotion::from_motions(&truth.motions);
             assert!((multibody.matrix() - expected.matrix()).amax() < 1e-10 * expected.matrix().amax());
-            let motions = motions_from_points(&multibody, &data, POINTS, &mut random);
+            let motions = motions_from_points(&multibody, data, POINTS, random);
             assert!(worst_error(&truth, &motions) < 1e-9, "n = {n}, seed {seed}");
             assert!(worst_error(&truth, &five_steps(&multibody)) < 1e-6, "n = {n}, seed {seed}");
         }
@@ -202,10 +201,10 @@ fn generic_motions_are_recovered_without_noise() {
 #[test]
 fn the_whole_paper_recovers_motions_and_segmentation_in_pixels() {
     for n in 1..=4 {
-        let mut random = Random::from_seed(20 + n as u64);
-        let (truth, data) = pixel_data(n, &mut random);
+        let truth = in_pixels(n, 20 + n as u64);
+        let data = &truth.measurements;
         for method in [Method::Paper, Method::Best] {
-            let found = fit(&data, method, MotionCount::Given(n)).unwrap();
+            let found = fit(data, method, MotionCount::Given(n)).unwrap();
             let motions: Vec<AffineMotion> = found.motions.iter().map(|m| m.matrix).collect();
             assert_eq!((found.count, motions.len(), found.labels.len()), (n, n, data.len()));
             assert!(worst_error(&truth, &motions) < 1e-8, "n = {n}, {method:?}: {:e}", worst_error(&truth, &motions));
@@ -213,7 +212,7 @@ fn the_whole_paper_recovers_motions_and_segmentation_in_pixels() {
                 .labels
                 .iter()
                 .enumerate()
-                .filter(|&(j, &label)| truth[j % n].relative_error(&motions[usize::from(label)]) > 1e-6);
+                .filter(|&(j, &label)| truth.motions[j % n].relative_error(&motions[usize::from(label)]) > 1e-6);
             // A measurement may satisfy the constraints of two motions: their planes intersect in a line.
             assert!(wrong.count() <= data.len() / 100);
             assert!(found.motions.iter().all(|m| m.determined == 6));
@@ -223,11 +222,10 @@ fn the_whole_paper_recovers_motions_and_segmentation_in_pixels() {
 
 #[test]
 fn the_stages_of_the_paper_are_reported() {
-    let mut random = Random::from_seed(9);
-    let (truth, data) = pixel_data(2, &mut random);
+    let truth = in_pixels(2, 9);
     let mut begun = Vec::new();
     let options = FitOptions::default().with_method(Method::Paper);
-    let found = fit_motions(&data, &options, &mut |stage| begun.push(stage.name)).unwrap();
+    let found = fit_motions(&truth.measurements, &options, &mut |stage| begun.push(stage.name)).unwrap();
     assert_eq!(begun, ["embedding", "factorisation", "refinement", "labels"]);
     let stages = found.stages.unwrap();
     assert_eq!(stages.rank_rule_fired, Some(true));
@@ -244,11 +242,10 @@ fn the_stages_of_the_paper_are_reported() {
 
 #[test]
 fn labels_are_numbered_by_decreasing_count() {
-    let mut random = Random::from_seed(10);
-    let truth = random_motions(3, &mut random);
+    let truth = motions(3, 10);
     // Motion 2 three times as often as motion 0, motion 1 twice.
-    let chances = [truth[0], truth[1], truth[1], truth[2], truth[2], truth[2]];
-    let data = measurements(&chances, 600, 0.0, &mut random);
+    let labels: Vec<usize> = (0..600).map(|j| [0, 1, 1, 2, 2, 2][j % 6]).collect();
+    let data = Problem::measured(truth.clone(), &labels, 0.0, 0.0, &mut Random::from_seed(10)).unwrap().measurements;
     for method in [Method::Paper, Method::Best] {
         let found = fit(&data, method, MotionCount::Given(3)).unwrap();
         for (k, expected) in [truth[2], truth[1], truth[0]].iter().enumerate() {
@@ -261,13 +258,10 @@ fn labels_are_numbered_by_decreasing_count() {
 }
 
 /// Number of 20 trials in which a motion is wrong by more than `limit`.
-fn failures(special: fn(&mut [AffineMotion]), n: usize, noise: f64, limit: f64, by: Solver) -> usize {
+fn failures(relation: Relation, n: usize, noise: f64, limit: f64, by: Solver) -> usize {
     let failed = |seed: u64| {
-        let mut random = Random::from_seed(7000 + seed);
-        let mut truth = random_motions(n, &mut random);
-        special(&mut truth);
-        let data = measurements(&truth, 600, noise, &mut random);
-        worst_error(&truth, &by(&data, n, &mut random)) > limit
+        let truth = Protocol { relation, ..Protocol::new(n, noise) }.problem(7000 + seed);
+        worst_error(&truth, &by(&truth.measurements, n, &mut Random::from_seed(seed))) > limit
     };
     (0..20).filter(|&seed| failed(seed)).count()
 }
@@ -288,20 +282,20 @@ fn by_the_five_steps(data: &Measurements, n: usize, _: &mut Random) -> Vec<Affin
 
 #[test]
 fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
-    for (name, special) in CONFIGURATIONS {
+    for relation in SPECIAL {
         for n in [2, 3] {
-            assert_eq!(failures(special, n, 0.0, 1e-6, by_differentiation), 0, "{name}, n = {n}");
+            assert_eq!(failures(relation, n, 0.0, 1e-6, by_differentiation), 0, "{relation:?}, n = {n}");
         }
     }
 }
 
 #[test]
 fn every_special_configuration_is_recovered_with_noise() {
-    for (name, special) in CONFIGURATIONS {
+    for relation in SPECIAL.into_iter().chain([Relation::General]) {
         for n in [2, 3] {
             for by in [by_differentiation as Solver, by_taubin] {
-                let failed = failures(special, n, 0.02, 0.2, by);
-                assert!(failed == 0, "{name}, n = {n}: {failed} of 20");
+                let failed = failures(relation, n, 0.02, 0.2, by);
+                assert!(failed == 0, "{relation:?}, n = {n}: {failed} of 20");
             }
         }
     }
@@ -311,13 +305,11 @@ fn every_special_configuration_is_recovered_with_noise() {
 #[test]
 fn the_true_motions_are_among_those_of_a_number_that_is_too_large() {
     for seed in 0..10 {
-        let mut random = Random::from_seed(8000 + seed);
-        let truth = random_motions(2, &mut random);
-        let data = measurements(&truth, 600, 0.0, &mut random);
+        let truth = problem(2, 600, 0.0, 8000 + seed);
         for by in [by_differentiation as Solver, by_taubin] {
-            let found = by(&data, 3, &mut random);
-            for motion in &truth {
-                assert!(found.iter().any(|a| motion.relative_error(a) < 1e-6), "seed {seed}: {truth:?} {found:?}");
+            let found = by(&truth.measurements, 3, &mut Random::from_seed(seed));
+            for motion in &truth.motions {
+                assert!(found.iter().any(|a| motion.relative_error(a) < 1e-6), "seed {seed}: {motion:?} {found:?}");
             }
         }
     }
@@ -325,36 +317,32 @@ fn the_true_motions_are_among_those_of_a_number_that_is_too_large() {
 
 #[test]
 fn taubins_motion_is_exact_without_noise() {
-    for (name, special) in CONFIGURATIONS {
-        assert_eq!(failures(special, 2, 0.0, 1e-6, by_taubin), 0, "{name}");
+    for relation in SPECIAL {
+        assert_eq!(failures(relation, 2, 0.0, 1e-6, by_taubin), 0, "{relation:?}");
     }
-    assert_eq!(failures(|_| {}, 4, 0.0, 1e-6, by_taubin), 0);
+    assert_eq!(failures(Relation::General, 4, 0.0, 1e-6, by_taubin), 0);
 }
 
 #[test]
 fn the_five_steps_have_their_documented_limits() {
-    let mut table = Vec::new();
-    for (name, special) in CONFIGURATIONS {
-        table.push((name, [2, 3].map(|n| 20 - failures(special, n, 0.0, 1e-4, by_the_five_steps))));
+    let recovered = |relation| [2, 3].map(|n| 20 - failures(relation, n, 0.0, 1e-4, by_the_five_steps));
+    for relation in [Relation::General, Relation::ProportionalRows, Relation::Similarities] {
+        assert_eq!(recovered(relation), [20, 20], "{relation:?}");
     }
-    let recovered = |name: &str| table.iter().find(|row| row.0 == name).unwrap().1;
-    assert_eq!(recovered("generic"), [20, 20]);
-    assert_eq!(recovered("rank 2"), [20, 20]);
-    assert_eq!(recovered("all similarities"), [20, 20]);
     // Step 5 is ambiguous, so it is right in some of the trials.
-    assert!(recovered("equal (1,3)").iter().all(|&r| (1..20).contains(&r)));
-    assert!(recovered("equal (2,3)").iter().all(|&r| (1..20).contains(&r)));
+    for relation in [Relation::EqualA13, Relation::EqualA23] {
+        assert!(recovered(relation).iter().all(|&r| (1..20).contains(&r)), "{relation:?}: {:?}", recovered(relation));
+    }
     // Zero rows.
-    assert_eq!(recovered("static background"), [0, 0]);
-    assert_eq!(recovered("one zero row"), [0, 0]);
+    for relation in [Relation::Static, Relation::RankTwo] {
+        assert_eq!(recovered(relation), [0, 0], "{relation:?}");
+    }
 }
 
 #[test]
 fn equation_19_the_refinement_lowers_the_error_and_says_how_it_ended() {
     for n in 1..=4 {
-        let mut random = Random::from_seed(40 + n as u64);
-        let truth = random_motions(n, &mut random);
-        let data = measurements(&truth, 600, 0.01, &mut random);
+        let Problem { motions: truth, measurements: data, .. } = problem(n, 600, 0.01, 40 + n as u64);
         let (refined, report) = product::refine(&truth, &data);
         assert_eq!(report.initial_cost, product::cost(&truth, &data));
         assert_eq!(report.final_cost, product::cost(&refined, &data));
@@ -376,9 +364,7 @@ fn equation_19_the_refinement_lowers_the_error_and_says_how_it_ended() {
 
 #[test]
 fn equation_19_for_one_motion_is_linear_least_squares() {
-    let mut random = Random::from_seed(50);
-    let truth = random_motions(1, &mut random);
-    let data = measurements(&truth, 100, 0.05, &mut random);
+    let data = problem(1, 100, 0.05, 50).measurements;
     let features = nalgebra::DMatrix::from_fn(100, 6, |j, k| {
         let ([x, y], [ix, iy, _]) = (data.positions()[j], data.derivatives()[j]);
         [ix * x, ix * y, ix, iy * x, iy * y, iy][k]
@@ -394,10 +380,9 @@ fn equation_19_for_one_motion_is_linear_least_squares() {
 
 #[test]
 fn the_order_of_the_rows_and_the_intensity_scale_do_not_matter() {
-    let mut random = Random::from_seed(60);
-    let truth = random_motions(2, &mut random);
-    let data = measurements(&truth, 300, 0.01, &mut random);
-    let order = random.choose(300, 300);
+    // As many of both would be numbered by chance.
+    let data = Protocol { count: 300, first_share: Some(0.6), ..Protocol::new(2, 0.01) }.problem(60).measurements;
+    let order = Random::from_seed(60).choose(300, 300);
     let shuffled = data.subset(&order);
     let brighter = |factor: f64| {
         let derivatives = data.derivatives().iter().map(|y| y.map(|d| factor * d)).collect();
@@ -414,31 +399,10 @@ fn the_order_of_the_rows_and_the_intensity_scale_do_not_matter() {
     assert!(order.iter().enumerate().all(|(j, &old)| found.labels[j] == reference.labels[old]));
 }
 
-/// See CONTRIBUTING.md, "Golden hashes".
-#[test]
-fn the_results_have_the_same_bits_everywhere() {
-    let mut random = Random::from_seed(62);
-    let truth = random_motions(3, &mut random);
-    let data = measurements(&truth, 400, 0.02, &mut random);
-    let found = fit(&data, Method::Paper, MotionCount::Given(3)).unwrap();
-    let stages = found.stages.unwrap();
-    let start = algebraic_start(&data, 3, &mut random, POINTS).unwrap();
-    assert!(start.len() > 2 * POINTS);
-    let [factorised, refined, start] =
-        [stages.factorisation, stages.refined, start].map(|motions| fnv_of(motions.iter().flat_map(|a| a.matrix)));
-    assert_eq!(factorised, 0xd5b9_3d6c_57c4_315c, "factorisation: {factorised:#x}");
-    assert_eq!(refined, 0x6ab4_f96e_1af5_56e3, "refinement: {refined:#x}");
-    assert_eq!(start, 0xc4a5_c5ad_9905_19ad, "differentiation: {start:#x}");
-    let values = fnv_of(found.evidence.singular_values);
-    assert_eq!(values, 0x6bb8_c1cf_8944_92a1, "singular values: {values:#x}");
-}
-
 #[test]
 fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
-    let mut random = Random::from_seed(70);
-    let truth = random_motions(2, &mut random);
     for (n, needed) in [(1, 6), (2, 24), (3, 64), (10, 2430)] {
-        let data = measurements(&truth, needed - 1, 0.0, &mut random);
+        let data = problem(2, needed - 1, 0.0, 70).measurements;
         let expected = Error::TooFewMeasurements { motions: n, needed, found: needed - 1 };
         assert_eq!(fit(&data, Method::Paper, MotionCount::Given(n)).unwrap_err(), expected);
         assert_eq!(MultibodyMotion::estimate(&data, n).unwrap_err(), expected);
@@ -447,7 +411,7 @@ fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
     let empty = Measurements::new(Vec::new(), Vec::new()).unwrap();
     let expected = Error::TooFewMeasurements { motions: 1, needed: 6, found: 0 };
     assert_eq!(fit(&empty, Method::Paper, MotionCount::Auto).unwrap_err(), expected);
-    let exactly = measurements(&truth, 24, 0.0, &mut random);
+    let exactly = problem(2, 24, 0.0, 70).measurements;
     assert!(fit(&exactly, Method::Paper, MotionCount::Given(2)).is_ok());
 }
 

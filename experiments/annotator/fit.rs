@@ -1,14 +1,14 @@
 //! Fits the constants of the propagation on half of the clips and reports them on the other half, and the other way round.
-
+use experiments::Failure;
+use experiments::annotator::overlap::mean;
+use experiments::clips::cases::{Case, Data};
+use experiments::parallel::in_parallel;
 use veronese::ClipModel;
 use veronese::clip::vary;
 
-use crate::cases::{Case, Data};
+use crate::Options;
 use crate::measure;
-use crate::overlap::mean;
-use crate::parallel::in_parallel;
 use crate::session::Session;
-use crate::{Failure, Options};
 
 /// The constants of the propagation that are fitted.
 const FITTED: [&str; 9] = ["bias", "trust", "memory", "back_off", "decay", "cell", "smoothness", "shift", "automatic"];

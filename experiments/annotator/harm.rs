@@ -1,14 +1,14 @@
 //! What a correction of one frame does to the others: pixels that it makes right, and pixels that it makes wrong.
-
 use std::collections::BTreeMap;
 
+use experiments::Failure;
+use experiments::annotator::overlap::{iou, masks, mean};
+use experiments::annotator::robot::NOTHING_SAID;
+use experiments::clips::cases::Case;
 use serde::Serialize;
 
-use crate::cases::Case;
+use crate::Options;
 use crate::measure::{best_label, corrected, is_old, open, truths_of};
-use crate::overlap::{iou, masks, mean};
-use crate::robot::NOTHING_SAID;
-use crate::{Failure, Options};
 
 /// Loss of J of the other frames from which a correction has made them worse.
 const WORSE: f64 = 0.01;

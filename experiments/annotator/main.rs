@@ -1,32 +1,18 @@
 //! The annotator benchmark: what somebody gets for what he says of a clip. `npm run annotator` runs it.
 
-#[path = "../boundary.rs"]
-mod boundary;
-#[path = "../clips/cases.rs"]
-#[allow(dead_code, reason = "the clip benchmark uses the rest")]
-mod cases;
 mod fit;
 mod harm;
 mod measure;
 mod objects;
-mod overlap;
-#[path = "../parallel.rs"]
-mod parallel;
 mod points;
-#[path = "../program.rs"]
-mod program;
-mod robot;
-#[path = "../clips/scores.rs"]
-#[allow(dead_code, reason = "the clip benchmark uses the rest")]
-mod scores;
 mod session;
 
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-use cases::Case;
-use parallel::{in_parallel, on_threads};
+use experiments::clips::cases::{self, Case};
+use experiments::parallel::{in_parallel, on_threads};
+use experiments::{Failure, program};
 use veronese::clip::vary;
 use veronese::{ClipModel, Quality};
 
@@ -52,8 +38,6 @@ Measures what an annotator gets for what he says of a clip, in steps:
 
 npm run annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
 ";
-
-pub(crate) type Failure = Box<dyn Error + Send + Sync>;
 
 #[derive(Clone)]
 pub(crate) struct Options {

@@ -1,16 +1,16 @@
 //! What an annotator gets for what he does, on clips with masks of one object.
-
 use std::collections::BTreeMap;
 
+use experiments::Failure;
+use experiments::annotator::overlap::{between, each, masks, mean, of_label, worst};
+use experiments::annotator::robot::{NOTHING_SAID, View, depths};
+use experiments::clips::cases::{Case, Data, labels};
 use serde::Serialize;
 use veronese::clip::{Click, Prompt, Spread};
 
-use crate::cases::{Case, Data};
+use crate::Options;
 use crate::harm::Change;
-use crate::overlap::{between, each, masks, mean, of_label, worst};
-use crate::robot::{NOTHING_SAID, View, depths};
 use crate::session::{Effort, Session};
-use crate::{Failure, Options};
 
 /// Clips that had part in setting constants before the others came.
 const OLD: [&str; 10] =
@@ -266,7 +266,7 @@ fn pointed(automatic: &Session<'_>, prompt: Prompt, truths: &[Vec<bool>]) -> Res
 /// J in the first frame of what GrabCut makes of the box, if it ran.
 fn baseline_boxed(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
     let frame = Data { frames: data.frames[..1].to_vec(), truths: data.truths[..1].to_vec() };
-    let found = crate::cases::labels(&options.out.join("baseline").join(&case.name).join("box"), &frame)?;
+    let found = labels(&options.out.join("baseline").join(&case.name).join("box"), &frame)?;
     Ok(found.map(|labels| each(&masks(&labels, 1), &truths[..1])[0]))
 }
 
@@ -289,7 +289,7 @@ pub(crate) fn best_label(labels: &[Vec<u8>], truths: &[Vec<bool>]) -> Option<(u8
 
 /// J between the first and the last frame of what OpenCV made of the first mask, if it ran.
 fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
-    let found = crate::cases::labels(&options.out.join("baseline").join(&case.name), data)?;
+    let found = labels(&options.out.join("baseline").join(&case.name), data)?;
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
 }
 

@@ -1,13 +1,13 @@
 //! Several objects in one clip: generated clips whose truth is exact.
-
+use experiments::Failure;
+use experiments::annotator::overlap::{each, masks, mean, of_label, worst};
+use experiments::annotator::robot::{NOTHING_SAID, View};
+use experiments::clips::cases::Case;
 use scenes::{ClipSceneOptions, Event};
 use serde::Serialize;
 
-use crate::cases::Case;
-use crate::overlap::{each, masks, mean, of_label, worst};
-use crate::robot::{NOTHING_SAID, View};
+use crate::Options;
 use crate::session::Session;
-use crate::{Failure, Options};
 
 /// Seed of the first clip; no other program uses any of these.
 const SEED: u64 = 83_000;

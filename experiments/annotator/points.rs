@@ -1,12 +1,12 @@
 //! What pointing to an object gives in its frame.
-
+use experiments::Failure;
+use experiments::annotator::overlap::{each, of_label};
+use experiments::clips::cases::Case;
 use serde::Serialize;
 use veronese::clip::{Click, Prompt, Spread};
 
-use crate::cases::Case;
+use crate::Options;
 use crate::measure::{GIVEN, boxed, deepest, is_old, open, truths_of, width_of};
-use crate::overlap::{each, of_label};
-use crate::{Failure, Options};
 
 /// J of an object in the frame in which it is pointed to.
 #[derive(Clone, Debug, Serialize)]

@@ -4,20 +4,20 @@
 /// Least share of the frame of a region that gets a stroke.
 const SMALLEST: f64 = 0.0005;
 /// A label image says nothing of a pixel with this label.
-pub(crate) const NOTHING_SAID: u8 = 255;
+pub const NOTHING_SAID: u8 = 255;
 
 /// What the robot compares in a frame, for every pixel.
-pub(crate) struct View<'a> {
-    pub(crate) width: usize,
+pub struct View<'a> {
+    pub width: usize,
     /// Whether it is the object's: in truth, and as found.
-    pub(crate) truth: &'a [bool],
-    pub(crate) found: &'a [bool],
+    pub truth: &'a [bool],
+    pub found: &'a [bool],
 }
 
 impl View<'_> {
     /// Adds the strokes to what was said of the frame before: `label` where the object was missed, 0 where it is not. Only pixels that
     /// are `free` are judged and drawn on.
-    pub(crate) fn draw(&self, label: u8, free: impl Fn(usize) -> bool, said: &mut [u8]) {
+    pub fn draw(&self, label: u8, free: impl Fn(usize) -> bool, said: &mut [u8]) {
         for (object, value) in [(true, label), (false, 0)] {
             let wrong = |p: usize| self.truth[p] == object && self.found[p] != object && free(p);
             let region: Vec<bool> = (0..said.len()).map(wrong).collect();
@@ -27,7 +27,7 @@ impl View<'_> {
 }
 
 /// Pixels of the largest connected part of a region that are at least half as deep inside it as its deepest; none if it is tiny.
-pub(crate) fn stroke(region: &[bool], width: usize) -> Vec<usize> {
+pub fn stroke(region: &[bool], width: usize) -> Vec<usize> {
     let part = largest(region, width);
     if (part.iter().filter(|&&inside| inside).count() as f64) < SMALLEST * region.len() as f64 {
         return Vec::new();
@@ -38,7 +38,7 @@ pub(crate) fn stroke(region: &[bool], width: usize) -> Vec<usize> {
 }
 
 /// The largest part of a region whose pixels share sides, the first of equals in raster order.
-pub(crate) fn largest(region: &[bool], width: usize) -> Vec<bool> {
+pub fn largest(region: &[bool], width: usize) -> Vec<bool> {
     let mut left = region.to_vec();
     let mut best = Vec::new();
     for start in 0..region.len() {
@@ -73,7 +73,7 @@ pub(crate) fn largest(region: &[bool], width: usize) -> Vec<bool> {
 }
 
 /// Squared distance of every pixel from the nearest one outside the region, 0 there; beyond the border of the frame is outside.
-pub(crate) fn depths(region: &[bool], width: usize) -> Vec<usize> {
+pub fn depths(region: &[bool], width: usize) -> Vec<usize> {
     let height = region.len() / width;
     // Along columns, then the nearest of each row.
     let mut along = vec![0usize; region.len()];

@@ -1,15 +1,13 @@
 //! A clip that is corrected, and what that takes.
-
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use experiments::Failure;
 use veronese::clip::{
     Accepted, Annotations, ClipJob, ClipOptions, ClipSegmenter, FramePairs, Painted, Prompt, SegmentedClip, Spread,
 };
 use veronese::{Frame, Quality, Result, SegmentOptions};
-
-use crate::Failure;
 
 /// A segmented clip at hand, with the labels of every frame as they are now.
 #[derive(Clone)]

@@ -1,25 +1,21 @@
 //! The ablation: the same clips with one part of the way from pairs to objects left out. Parts that pairs are solved with are left out in
 //! the ablation of masks.
-
+use experiments::Failure;
+use experiments::clips::cases::{Case, Data, generated};
+use experiments::clips::scores::{Identities, Scores, scores};
+use experiments::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
+use experiments::parallel::in_parallel;
 use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, vary};
 use veronese::{ClipModel, Frame};
 
-use crate::Failure;
-use crate::cases::{Case, Data, generated};
-use crate::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
-use crate::parallel::in_parallel;
-use crate::scores::{Identities, Scores, scores};
-
 /// The rows of the table, in its order.
-const LEFT_OUT: [Row; 9] = [
+const LEFT_OUT: [Row; 7] = [
     ("nothing", &[]),
     ("evidence of other frames", &[("decay", 0.0)]),
-    ("second round", &[("rounds", 1.0)]),
     ("comparisons with earlier frames", &[("looks_farther", 0.0)]),
     ("identities", &[("identities", 0.0)]),
     ("recognition of what was hidden", &[("likeness", 2.0)]),
     ("parting", &[("fragment", 2.0)]),
-    ("joining of parts", &[("joins", 0.0)]),
     ("dropping of what lasts a few frames", &[("lasting", 0.0)]),
 ];
 

@@ -1,12 +1,13 @@
 //! What is measured: generated clips with fixed seeds, and real clips that lie beside the project.
 
-use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use scenes::{ClipSceneOptions, Event, generate_clip};
 use veronese::codecs::{Picture, decode_image, encode_colour_png, encode_grey_png};
 use veronese::{Frame, UNLABELLED};
+
+use crate::Result;
 
 /// Seed of the first generated clip.
 const SEED: u64 = 50_000;
@@ -53,21 +54,19 @@ enum Source {
 
 /// One clip.
 #[derive(Clone, Debug)]
-pub(crate) struct Case {
-    pub(crate) name: String,
+pub struct Case {
+    pub name: String,
     source: Source,
 }
 
 /// A clip's frames and their true labels.
-pub(crate) struct Data {
-    pub(crate) frames: Vec<Frame>,
-    pub(crate) truths: Vec<Vec<u8>>,
+pub struct Data {
+    pub frames: Vec<Frame>,
+    pub truths: Vec<Vec<u8>>,
 }
 
-type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
-
 /// All clips, those of `shared` only if it is there; with `quick` every fourth of the generated clips and none of the real ones.
-pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
+pub fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     let mut cases = generated(1.0);
     if quick {
         cases = cases.into_iter().skip(2).step_by(4).collect();
@@ -80,7 +79,7 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
 }
 
 /// The generated clips, at a share of the usual speed.
-pub(crate) fn generated(speed: f64) -> Vec<Case> {
+pub fn generated(speed: f64) -> Vec<Case> {
     let mut cases = Vec::new();
     for (k, (events, objects)) in GENERATED.into_iter().enumerate() {
         let seed = SEED + k as u64;
@@ -95,7 +94,7 @@ pub(crate) fn generated(speed: f64) -> Vec<Case> {
 }
 
 /// The real clips in the folders of `real`.
-pub(crate) fn of_folders(real: &Path) -> Result<Vec<Case>> {
+pub fn of_folders(real: &Path) -> Result<Vec<Case>> {
     let mut folders = files(real)?;
     folders.retain(|folder| folder.join("frames").is_dir() && folder.join("masks").is_dir());
     let case = |folder: PathBuf| {
@@ -106,7 +105,7 @@ pub(crate) fn of_folders(real: &Path) -> Result<Vec<Case>> {
 }
 
 /// An event in the name of a clip.
-pub(crate) fn word(event: Event) -> &'static str {
+pub fn word(event: Event) -> &'static str {
     match event {
         Event::Crossing => "crossing",
         Event::StopAndGo => "stop",
@@ -128,22 +127,22 @@ pub(crate) fn word(event: Event) -> &'static str {
 
 impl Case {
     /// A generated clip.
-    pub(crate) fn generated(name: String, options: ClipSceneOptions) -> Case {
+    pub fn generated(name: String, options: ClipSceneOptions) -> Case {
         Case { name, source: Source::Generated(options) }
     }
 
     /// Whether the clip is generated, so that its truth has all that moves, and pictures of it may be shown.
-    pub(crate) fn is_generated(&self) -> bool {
+    pub fn is_generated(&self) -> bool {
         matches!(self.source, Source::Generated(_))
     }
 
     /// Whether an event is part of the clip; of real clips nothing is known.
-    pub(crate) fn has(&self, event: Event) -> bool {
+    pub fn has(&self, event: Event) -> bool {
         matches!(&self.source, Source::Generated(options) if options.events.contains(&event))
     }
 
     /// Reads or renders the clip.
-    pub(crate) fn load(&self) -> Result<Data> {
+    pub fn load(&self) -> Result<Data> {
         match &self.source {
             Source::Generated(options) => {
                 let clip = generate_clip(options)?;
@@ -158,7 +157,7 @@ impl Case {
     }
 
     /// The folder that has `frames` and `masks`: that of a generated clip is written into `out`.
-    pub(crate) fn folder(&self, out: &Path) -> Result<PathBuf> {
+    pub fn folder(&self, out: &Path) -> Result<PathBuf> {
         let options = match &self.source {
             Source::Folder(folder) => return Ok(folder.clone()),
             Source::Generated(options) => options,
@@ -205,7 +204,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Labels that another program wrote, one grey image per frame; none if it did not run. A frame that is missing has no labels.
-pub(crate) fn labels(folder: &Path, data: &Data) -> Result<Option<Vec<Vec<u8>>>> {
+pub fn labels(folder: &Path, data: &Data) -> Result<Option<Vec<Vec<u8>>>> {
     if !folder.is_dir() {
         return Ok(None);
     }

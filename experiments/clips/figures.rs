@@ -1,13 +1,12 @@
 //! The figures as JSON: means over clips for the documentation, and those of every clip and method.
-
 use std::collections::BTreeMap;
 
+use experiments::clips::cases::word;
+use experiments::clips::methods::Method;
 use scenes::Event;
 use serde::Serialize;
 
-use crate::cases::word;
 use crate::measure::{Measured, Outcome};
-use crate::methods::Method;
 
 /// A figure of an outcome; none where the clip has no such figure.
 type Figure = fn(&Outcome) -> Option<f64>;

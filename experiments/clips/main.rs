@@ -2,33 +2,18 @@
 //! `npm run bench -- clips` runs it.
 
 mod ablation;
-#[path = "../boundary.rs"]
-mod boundary;
-mod cases;
 mod figures;
-#[path = "../left_out.rs"]
-mod left_out;
 mod measure;
-mod methods;
-#[path = "../panels.rs"]
-mod panels;
-#[path = "../parallel.rs"]
-mod parallel;
-#[path = "../program.rs"]
-mod program;
-mod scores;
-#[allow(dead_code, reason = "the score uses the rest")]
-#[path = "../score/statistics.rs"]
-mod statistics;
 mod strips;
 
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
+use experiments::clips::cases;
+use experiments::clips::methods::Method;
+use experiments::parallel::in_parallel;
+use experiments::{Failure, left_out, program};
 use figures::Figures;
-use methods::Method;
-use parallel::in_parallel;
 use serde_json::json;
 
 const HELP: &str = "\
@@ -61,8 +46,6 @@ struct Options {
     pairs: Option<PathBuf>,
     shared: PathBuf,
 }
-
-type Failure = Box<dyn Error + Send + Sync>;
 
 fn main() {
     program::start(HELP, options(std::env::args().skip(1)), run);

@@ -1,15 +1,14 @@
 //! One clip after another through every method, and what comes out as figures.
-
-use std::error::Error;
 use std::fs;
 use std::path::Path;
 
+use experiments::Result;
+use experiments::clips::cases::{Case, Data};
+use experiments::clips::methods::{Method, found};
+use experiments::clips::scores::{Scores, scores};
+use experiments::parallel::in_parallel;
 use veronese::codecs::encode_grey_png;
 
-use crate::cases::{Case, Data};
-use crate::methods::{Method, found};
-use crate::parallel::in_parallel;
-use crate::scores::{Scores, scores};
 use crate::strips::strip;
 
 /// What a method found in a clip, in figures.
@@ -41,8 +40,6 @@ impl Measured {
         self.outcomes.first()
     }
 }
-
-type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// Some methods on all clips. Labels are written to `labels/METHOD/CLIP/NNNNN.png` in `out`; what other programs found is read from
 /// there. What pairs of the real clips told is kept in `pairs`, where the annotator benchmark looks for it.

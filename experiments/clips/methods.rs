@@ -5,13 +5,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use veronese::clip::{ClipOptions, ClipSegmenter, StreamSegmenter};
-use veronese::{Frame, Quality, Result, SegmentOptions};
+use veronese::{Frame, Quality, SegmentOptions};
 
 use super::cases::{Data, labels};
+use crate::Result;
 
 /// In the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Method {
+pub enum Method {
     /// The clip segmenter.
     Clip,
     /// The same, for the main subject.
@@ -26,7 +27,7 @@ pub(crate) enum Method {
 }
 
 impl Method {
-    pub(crate) const ALL: [Method; 8] = [
+    pub const ALL: [Method; 8] = [
         Method::Clip,
         Method::Subject,
         Method::Stream(Quality::Best, 4),
@@ -37,7 +38,7 @@ impl Method {
         Method::Knn,
     ];
 
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Method::Clip => "clip",
             Method::Subject => "subject",
@@ -50,7 +51,7 @@ impl Method {
         }
     }
 
-    pub(crate) fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         match self {
             Method::Clip => "clip",
             Method::Subject => "clip, main subject",
@@ -65,20 +66,14 @@ impl Method {
 }
 
 /// The labels of a clip, and what they took.
-pub(crate) struct Found {
-    pub(crate) labels: Vec<Vec<u8>>,
+pub struct Found {
+    pub labels: Vec<Vec<u8>>,
     /// Of one frame; unknown of other programs.
-    pub(crate) milliseconds: Option<f64>,
+    pub milliseconds: Option<f64>,
 }
 
-type Failure = Box<dyn std::error::Error + Send + Sync>;
-
 /// The clip segmenter's labels of every frame, an object the same number in all. What the pairs told is kept in a folder, if there is one.
-pub(crate) fn clip_labels(
-    mut segmenter: ClipSegmenter,
-    frames: &[Frame],
-    kept: Option<&Path>,
-) -> std::result::Result<Vec<Vec<u8>>, Failure> {
+pub fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame], kept: Option<&Path>) -> Result<Vec<Vec<u8>>> {
     for (index, frame) in frames.iter().enumerate() {
         let told = segmenter.push(frame.clone())?;
         if let Some(folder) = kept {
@@ -104,13 +99,7 @@ fn stream_labels(quality: Quality, look_ahead: usize, frames: &[Frame]) -> Resul
 
 /// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip; `kept` is as
 /// of [`clip_labels`].
-pub(crate) fn found(
-    method: Method,
-    name: &str,
-    data: &Data,
-    peers: &Path,
-    kept: Option<&Path>,
-) -> std::result::Result<Option<Found>, Failure> {
+pub fn found(method: Method, name: &str, data: &Data, peers: &Path, kept: Option<&Path>) -> Result<Option<Found>> {
     let start = Instant::now();
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames, kept)?),

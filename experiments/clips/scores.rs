@@ -3,10 +3,10 @@
 //! In the truth 0 is the background, [`VOID`] is not known and left out everywhere, every other number is an object. In what was found
 //! every number is a label, and [`VOID`] is none. The background label is the label with most pixels of the whole clip.
 
-use super::boundary::Grid;
+use crate::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
-pub(crate) const VOID: u8 = 255;
+pub const VOID: u8 = 255;
 /// Least IoU of an object and the label that carries it in a frame.
 const CARRIES: f64 = 0.25;
 /// Least IoU of a detection with its object.
@@ -19,38 +19,38 @@ const SMALLEST_LABEL: f64 = 0.002;
 /// The figures of the labels of a clip. J is the mean over all frames of the IoU of the foreground (all objects as one), 1 where true
 /// and found foreground are empty; F is that of its border, within 0.8 % of the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Scores {
+pub struct Scores {
     /// J of everything but the background label: no truth is used.
-    pub(crate) j_auto: f64,
+    pub j_auto: f64,
     /// J of the one label that fits best over the whole clip: what one click gives.
-    pub(crate) j_track: f64,
+    pub j_track: f64,
     /// J of the union of labels that fits best, chosen once: what some clicks give.
-    pub(crate) j_tracks: f64,
+    pub j_tracks: f64,
     /// J of the best union in every frame: how good labels are if time does not matter.
-    pub(crate) j_oracle: f64,
+    pub j_oracle: f64,
     /// F of the foreground of `j_auto` and of `j_tracks`; none where the truth is unknown along all borders.
-    pub(crate) f_auto: Option<f64>,
-    pub(crate) f_tracks: Option<f64>,
+    pub f_auto: Option<f64>,
+    pub f_tracks: Option<f64>,
     /// The figures of single objects; none if the truth has no object.
-    pub(crate) identities: Option<Identities>,
+    pub identities: Option<Identities>,
     /// Number of labels that cover 0.2 % of some frame, the background label included.
-    pub(crate) label_count: usize,
+    pub label_count: usize,
     /// Number of true objects.
-    pub(crate) object_count: usize,
+    pub object_count: usize,
 }
 
 /// How objects and labels go together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Identities {
+pub struct Identities {
     /// Mean over the objects of the mean IoU with the label assigned to each, one to one for the whole clip (DAVIS 2017).
-    pub(crate) assigned: f64,
+    pub assigned: f64,
     /// How often the label that carries an object changes, per object and 30 frames. A label carries an object if its IoU is the
     /// largest and at least 0.25; the background label carries nothing.
-    pub(crate) switches: f64,
+    pub switches: f64,
     /// Share of the frames with an object in sight in which no label carries it.
-    pub(crate) lost: f64,
+    pub lost: f64,
     /// 2 IDTP / (2 IDTP + IDFP + IDFN) at an IoU of 0.5; labels under 0.05 % of the frame are no detections (Ristani et al. 2016).
-    pub(crate) idf1: f64,
+    pub idf1: f64,
 }
 
 /// Pixels of one frame by true object (row 0 is the background) and label (the last column is no label).
@@ -238,7 +238,7 @@ impl Contingency {
 }
 
 /// All figures of labels of frames `width` pixels wide. `truths` and `found` have the same frames, at least one.
-pub(crate) fn scores(truths: &[Vec<u8>], found: &[Vec<u8>], width: usize) -> Scores {
+pub fn scores(truths: &[Vec<u8>], found: &[Vec<u8>], width: usize) -> Scores {
     let all = Contingency::new(truths, found);
     let count = all.frames.len();
     let pixels = truths.first().map_or(0, Vec::len);

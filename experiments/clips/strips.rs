@@ -1,9 +1,7 @@
 //! A clip as a strip: every fourth frame from left to right; the frames above, then the labels found, then the true ones.
-
+use experiments::clips::cases::Data;
+use experiments::panels::Sheet;
 use veronese::Result;
-
-use crate::cases::Data;
-use crate::panels::Sheet;
 
 /// Every how many frames one is shown.
 const EVERY: usize = 4;

@@ -1,26 +1,18 @@
 //! The fit: constants of the pipeline tried, searched for on one half of the real sequences, and reported on the other. `npm run fit`
 //! runs it.
 
-#[path = "../boundary.rs"]
-mod boundary;
 mod change;
-#[allow(dead_code, reason = "the benchmark uses more of it")]
-mod masks;
 mod measure;
-#[path = "../parallel.rs"]
-mod parallel;
-#[path = "../program.rs"]
-mod program;
 mod report;
 mod search;
 
 use std::collections::BTreeMap;
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use masks::outcome::Method;
+use experiments::masks::outcome::Method;
+use experiments::{Failure, program};
 use measure::Part;
 
 const HELP: &str = "\
@@ -52,8 +44,6 @@ struct Options {
     out: PathBuf,
     shared: PathBuf,
 }
-
-pub(crate) type Failure = Box<dyn Error + Send + Sync>;
 
 fn main() {
     program::start(HELP, options(std::env::args().skip(1)), run);

@@ -1,13 +1,11 @@
 //! The scores of a model on the pairs of both folds and on generated scenes.
-
 use std::path::Path;
 
+use experiments::Failure;
+use experiments::masks::cases::{self, Case, Data, Set};
+use experiments::masks::outcome::{Method, grouped, outcome};
+use experiments::parallel::in_parallel;
 use veronese::{Frame, Model, Quality, SegmentOptions, segment_pair_with};
-
-use crate::Failure;
-use crate::masks::cases::{self, Case, Data, Set};
-use crate::masks::outcome::{Method, grouped, outcome};
-use crate::parallel::in_parallel;
 
 /// What a case belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! Tables of scores.
-
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use crate::Failure;
+use experiments::Failure;
+use experiments::masks::outcome::Method;
+
 use crate::change::mean;
-use crate::masks::outcome::Method;
 use crate::measure::{Loaded, Part, Scored, measure};
 use crate::search::{model, state};
 

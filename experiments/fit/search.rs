@@ -1,17 +1,16 @@
 //! The search: one constant after the other is made larger and smaller, and a change is kept where the objective rises by more than its
 //! standard error.
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use experiments::Failure;
+use experiments::masks::outcome::Method;
 use serde::{Deserialize, Serialize};
 use veronese::Model;
 
-use crate::Failure;
 use crate::change::change;
-use crate::masks::outcome::Method;
 use crate::measure::{Loaded, Part, Scored, measure};
 
 /// What a constant is multiplied by, first in the first round, then in the second.

@@ -1,21 +1,18 @@
 //! The ablation: the same cases with one part of the pipeline left out.
-
+use experiments::Failure;
+use experiments::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
+use experiments::masks::cases::{Case, Set, a_third};
+use experiments::masks::outcome::{Method, Outcome, grouped, outcome, segmented};
+use experiments::parallel::in_parallel;
 use veronese::Model;
 
-use crate::Failure;
-use crate::cases::{Case, Set, a_third};
-use crate::left_out::{Figures, Measured, Row, Worth, timed, with, worth};
-use crate::outcome::{Method, Outcome, grouped, outcome, segmented};
-use crate::parallel::in_parallel;
-
 /// The rows of the table, in its order.
-const LEFT_OUT: [Row; 18] = [
+const LEFT_OUT: [Row; 16] = [
     ("nothing", &[]),
     ("gain and bias", &[("largest_gain", 1.0)]),
     ("algebraic candidates", &[("degrees", 0.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
     ("second solution at rest", &[("solves_at_rest", 0.0)]),
-    ("trial of a static background", &[("tries_static", 0.0)]),
     ("detail pass", &[("adds_detail", 0.0)]),
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
     ("smoothness lower at edges", &[("noise_steps", 1e9)]),
@@ -26,7 +23,6 @@ const LEFT_OUT: [Row; 18] = [
     ("splitting", &[("splits", 0.0)]),
     ("merging", &[("merges", 0.0)]),
     ("colour", &[("colour_price", 0.0)]),
-    ("drafts and sharpening", &[("drafts", 0.0)]),
     ("guided upsampling", &[("flat_variance", f64::INFINITY)]),
 ];
 

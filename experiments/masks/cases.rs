@@ -1,6 +1,5 @@
 //! What is measured: generated scenes with fixed seeds, and what lies beside the project.
 
-use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +8,7 @@ use veronese::Frame;
 use veronese::codecs::{Picture, decode_image, encode_colour_png};
 
 use super::scores::VOID;
+use crate::Result;
 
 /// Seeds of the generated scenes, far from those that anything was tuned on.
 const SERIES_SEED: u64 = 40_000;
@@ -26,7 +26,7 @@ const CDNET_VOID: [u8; 3] = [50, 85, 170];
 
 /// What a case belongs to; the tables have a row for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Set {
+pub enum Set {
     /// One to four objects on static and moving backgrounds, three sizes, three speeds; grey.
     Generated,
     /// The same in colour.
@@ -50,7 +50,7 @@ pub(crate) enum Set {
 }
 
 impl Set {
-    pub(crate) const ALL: [Set; 10] = [
+    pub const ALL: [Set; 10] = [
         Set::Generated,
         Set::Colour,
         Set::Large,
@@ -63,7 +63,7 @@ impl Set {
         Set::Sequences,
     ];
 
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Set::Generated => "generated",
             Set::Colour => "colour",
@@ -78,7 +78,7 @@ impl Set {
         }
     }
 
-    pub(crate) fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         match self {
             Set::Generated => "generated, grey, 200 × 150 to 640 × 480",
             Set::Colour => "generated, colour, 200 × 150 and 320 × 240",
@@ -94,7 +94,7 @@ impl Set {
     }
 
     /// Whether the truth is one label for each thing that moves, rather than foreground and background.
-    pub(crate) fn is_scene(self) -> bool {
+    pub fn is_scene(self) -> bool {
         !matches!(self, Set::Pairs | Set::Sequences)
     }
 }
@@ -110,29 +110,27 @@ enum Source {
 
 /// One pair of frames to segment.
 #[derive(Clone, Debug)]
-pub(crate) struct Case {
-    pub(crate) name: String,
-    pub(crate) set: Set,
+pub struct Case {
+    pub name: String,
+    pub set: Set,
     /// Whether things move by less than a pixel and a half relative to the background.
-    pub(crate) sub_pixel: bool,
+    pub sub_pixel: bool,
     source: Source,
 }
 
 /// A case's frames and what is known of them.
-pub(crate) struct Data {
+pub struct Data {
     /// The two frames as RGBA bytes.
-    pub(crate) rgba: [Vec<u8>; 2],
-    pub(crate) first: Frame,
-    pub(crate) second: Frame,
-    pub(crate) truth: Option<Vec<u8>>,
+    pub rgba: [Vec<u8>; 2],
+    pub first: Frame,
+    pub second: Frame,
+    pub truth: Option<Vec<u8>>,
     /// Pixels that are hidden or outside in the second frame; known of generated scenes.
-    pub(crate) occluded: Option<Vec<bool>>,
+    pub occluded: Option<Vec<bool>>,
 }
 
-type Result<T> = std::result::Result<T, Box<dyn Error>>;
-
 /// All cases, those of `shared` only if it is there. `quick` takes a third of the generated ones and none of the large.
-pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
+pub fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     let mut cases = Vec::new();
     let sizes = [(200, 150), (320, 240), (640, 480)];
     series(&mut cases, Set::Generated, SERIES_SEED, if quick { &sizes[..1] } else { &sizes });
@@ -202,8 +200,7 @@ fn scene_case(set: Set, options: SceneOptions) -> Case {
 }
 
 /// Generated scenes of other seeds than those of [`all`], smaller ones: for programs that fit constants.
-#[allow(dead_code, reason = "not every program that shares this file fits")]
-pub(crate) fn for_fitting() -> Vec<Case> {
+pub fn for_fitting() -> Vec<Case> {
     let mut cases = Vec::new();
     series(&mut cases, Set::Generated, FIT_SEED, &[(200, 150), (320, 240)]);
     series(&mut cases, Set::Colour, FIT_SEED + 1_000, &[(200, 150), (320, 240)]);
@@ -214,7 +211,7 @@ pub(crate) fn for_fitting() -> Vec<Case> {
 }
 
 /// Of the pairs of every sequence every third, beginning with the second.
-pub(crate) fn a_third(pairs: impl Iterator<Item = Case>) -> Vec<Case> {
+pub fn a_third(pairs: impl Iterator<Item = Case>) -> Vec<Case> {
     let mut sequence = (String::new(), 0);
     let mut chosen = |case: &Case| {
         if sequence.0 != case.sequence() {
@@ -244,12 +241,12 @@ fn folders(path: &Path) -> Result<Vec<PathBuf>> {
 
 impl Case {
     /// The sequence of a pair that is named `SEQUENCE_FRAME`.
-    pub(crate) fn sequence(&self) -> &str {
+    pub fn sequence(&self) -> &str {
         self.name.rsplit_once('_').map_or(&self.name, |(sequence, _)| sequence)
     }
 
     /// Reads or generates the frames.
-    pub(crate) fn load(&self) -> Result<Data> {
+    pub fn load(&self) -> Result<Data> {
         match &self.source {
             Source::Scene(options) => Ok(of_scene(scenes::generate(options)?)),
             Source::Robots(seed) => Ok(of_scene(scenes::leader_follower(*seed)?)),
@@ -261,7 +258,7 @@ impl Case {
     }
 
     /// The folder that has `first.png` and `second.png`: those of a generated case are written into one in `out`.
-    pub(crate) fn folder(&self, out: &Path) -> Result<PathBuf> {
+    pub fn folder(&self, out: &Path) -> Result<PathBuf> {
         if let Source::Folder(folder) = &self.source {
             return Ok(folder.clone());
         }
@@ -312,13 +309,13 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
 }
 
 /// What the baseline found in a folder.
-pub(crate) struct Baseline {
-    pub(crate) labels: Vec<u8>,
-    pub(crate) milliseconds: f64,
+pub struct Baseline {
+    pub labels: Vec<u8>,
+    pub milliseconds: f64,
 }
 
 /// Reads what the baseline wrote; none where it did not run.
-pub(crate) fn baseline(folder: &Path) -> Result<Option<Baseline>> {
+pub fn baseline(folder: &Path) -> Result<Option<Baseline>> {
     let (labels, result) = (folder.join("labels.png"), folder.join("result.json"));
     if !labels.is_file() || !result.is_file() {
         return Ok(None);

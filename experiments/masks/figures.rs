@@ -1,10 +1,9 @@
 //! The figures as JSON: means over the cases that belong together for the documentation, and the outcomes of every case.
-
+use experiments::masks::cases::Set;
+use experiments::masks::outcome::{Method, Outcome};
 use serde::Serialize;
 
-use crate::cases::Set;
 use crate::measure::Measured;
-use crate::outcome::{Method, Outcome};
 use crate::summary::Summary;
 
 #[derive(Serialize)]

@@ -1,13 +1,11 @@
 //! Whether the pipeline knows what it does not know: how often labels of each confidence are right, and which pixels are marked as
 //! unknown.
-
+use experiments::Failure;
+use experiments::masks::cases::{Case, Data, Set, a_third};
+use experiments::masks::scores::VOID;
+use experiments::parallel::in_parallel;
 use serde_json::{Value, json};
 use veronese::{Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
-
-use crate::Failure;
-use crate::cases::{Case, Data, Set, a_third};
-use crate::parallel::in_parallel;
-use crate::scores::VOID;
 
 /// Lower edges of the ranges of confidence.
 const RANGES: [f64; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995];

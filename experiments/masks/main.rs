@@ -2,36 +2,20 @@
 //! `npm run bench -- masks` runs it.
 
 mod ablation;
-#[path = "../boundary.rs"]
-mod boundary;
-mod cases;
 mod figures;
 mod honesty;
-#[path = "../left_out.rs"]
-mod left_out;
 mod measure;
-mod outcome;
-#[path = "../panels.rs"]
-mod panels;
-#[path = "../parallel.rs"]
-mod parallel;
 mod pictures;
-#[path = "../program.rs"]
-mod program;
-mod scores;
-#[allow(dead_code, reason = "the score uses the rest")]
-#[path = "../score/statistics.rs"]
-mod statistics;
 mod summary;
 
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
-use cases::Case;
+use experiments::masks::cases::{self, Case};
+use experiments::masks::outcome::Method;
+use experiments::parallel::in_parallel;
+use experiments::{Failure, left_out, program};
 use figures::Figures;
-use outcome::Method;
-use parallel::in_parallel;
 use serde_json::{Value, json};
 
 const HELP: &str = "\
@@ -59,8 +43,6 @@ struct Options {
     out: PathBuf,
     shared: PathBuf,
 }
-
-type Failure = Box<dyn Error + Send + Sync>;
 
 fn main() {
     program::start(HELP, options(std::env::args().skip(1)), run);

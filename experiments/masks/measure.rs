@@ -1,14 +1,13 @@
 //! One case after another through every method, and what comes out as figures.
-
-use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
+use experiments::Result;
+use experiments::masks::cases::{Case, Set, baseline};
+use experiments::masks::outcome::{Method, Outcome, grouped, outcome};
+use experiments::parallel::in_parallel;
 use veronese::{Quality, SegmentOptions, segment_pair};
 
-use crate::cases::{Case, Set, baseline};
-use crate::outcome::{Method, Outcome, grouped, outcome};
-use crate::parallel::in_parallel;
 use crate::pictures;
 
 /// A case with all its outcomes.
@@ -25,8 +24,6 @@ impl Measured {
         self.outcomes.iter().find(|outcome| outcome.method == method)
     }
 }
-
-type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// All methods on all cases; what the baseline found is read from `baselines`.
 pub(crate) fn all(cases: &[Case], baselines: &Path) -> Result<Vec<Measured>> {

@@ -11,16 +11,16 @@ use super::scores::{Scores, scores};
 /// The methods compared, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) enum Method {
+pub enum Method {
     Best,
     Fast,
     Baseline,
 }
 
 impl Method {
-    pub(crate) const ALL: [Method; 3] = [Method::Best, Method::Fast, Method::Baseline];
+    pub const ALL: [Method; 3] = [Method::Best, Method::Fast, Method::Baseline];
 
-    pub(crate) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Method::Best => "best",
             Method::Fast => "fast",
@@ -32,36 +32,35 @@ impl Method {
 /// What a method found in a case, in figures.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) struct Outcome {
-    pub(crate) method: Method,
+pub struct Outcome {
+    pub method: Method,
     /// Figures of the single motions.
-    pub(crate) single: Option<Scores>,
+    pub single: Option<Scores>,
     /// Figures of the groups; of the baseline, which has none, the same as of its labels.
-    pub(crate) grouped: Option<Scores>,
-    pub(crate) milliseconds: f64,
+    pub grouped: Option<Scores>,
+    pub milliseconds: f64,
 }
 
-pub(crate) fn grouped(found: &Segmentation) -> Vec<u8> {
+pub fn grouped(found: &Segmentation) -> Vec<u8> {
     let group = |label: &u8| found.motions.get(usize::from(*label)).map_or(UNLABELLED, |motion| motion.group);
     found.labels.iter().map(group).collect()
 }
 
-pub(crate) fn outcome(method: Method, data: &Data, labels: &[u8], groups: &[u8], milliseconds: f64) -> Outcome {
+pub fn outcome(method: Method, data: &Data, labels: &[u8], groups: &[u8], milliseconds: f64) -> Outcome {
     let width = data.first.width();
     let against = |labels: &[u8]| data.truth.as_deref().map(|truth| scores(truth, labels, width));
     Outcome { method, single: against(labels), grouped: against(groups), milliseconds }
 }
 
 /// A case segmented with other constants, and with the quality of a method.
-pub(crate) fn segmented(model: &'static Model, method: Method, data: &Data) -> Result<Segmentation> {
+pub fn segmented(model: &'static Model, method: Method, data: &Data) -> Result<Segmentation> {
     let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
     let options = SegmentOptions::default().with_quality(quality);
     segment_pair_with(model, &data.first, &data.second, &options)
 }
 
 /// What that gives.
-#[allow(dead_code, reason = "not every program that shares this file measures one model at a time")]
-pub(crate) fn of_model(model: &'static Model, method: Method, data: &Data) -> Result<Outcome> {
+pub fn of_model(model: &'static Model, method: Method, data: &Data) -> Result<Outcome> {
     let start = Instant::now();
     let found = segmented(model, method, data)?;
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();

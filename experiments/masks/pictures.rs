@@ -1,9 +1,7 @@
 //! Panels side by side: the first frame, then labellings of it.
-
+use experiments::masks::cases::Data;
+use experiments::panels::Sheet;
 use veronese::Result;
-
-use crate::cases::Data;
-use crate::panels::Sheet;
 
 /// Panels are made no wider than this, pixels.
 const WIDEST: usize = 216;

@@ -5,33 +5,33 @@
 
 use serde::Serialize;
 
-use super::boundary::Grid;
+use crate::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
-pub(crate) const VOID: u8 = 255;
+pub const VOID: u8 = 255;
 /// A found label with a smaller share of the pixels than this is not counted.
 const SMALLEST_SHARE: f64 = 0.002;
 
 /// The figures of one labelling. Those of foreground and background exist where the truth has both.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(crate) struct Scores {
+pub struct Scores {
     /// Mean over the true labels of the intersection over union with the found label that is assigned to each, one to one, so
     /// that the sum is largest; 0 where there is none.
-    pub(crate) miou: f64,
+    pub miou: f64,
     /// Intersection over union of the foreground, where each found label is foreground if most of its pixels are: what a user
     /// gets who joins labels by hand.
-    pub(crate) j_oracle: Option<f64>,
+    pub j_oracle: Option<f64>,
     /// The same where everything is foreground but the label with most background pixels.
-    pub(crate) j_background: Option<f64>,
+    pub j_background: Option<f64>,
     /// F measure of the border of the foreground of `j_background`, within 0.8 % of the diagonal.
-    pub(crate) boundary: Option<f64>,
+    pub boundary: Option<f64>,
     /// Adjusted Rand index.
-    pub(crate) rand: f64,
+    pub rand: f64,
     /// Number of true labels.
-    pub(crate) truth_count: usize,
+    pub truth_count: usize,
     /// Number of found labels.
-    pub(crate) found_count: usize,
+    pub found_count: usize,
 }
 
 /// How many pixels of each true label have each found label.
@@ -104,7 +104,7 @@ impl Contingency {
 }
 
 /// All figures. `truth` has at most 16 labels.
-pub(crate) fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
+pub fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
     let table = Contingency::new(truth, found);
     let total = table.total();
     let least = SMALLEST_SHARE * total as f64;

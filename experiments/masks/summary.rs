@@ -1,9 +1,8 @@
 //! Means over cases.
-
+use experiments::masks::cases::Case;
+use experiments::masks::outcome::Outcome;
+use experiments::masks::scores::Scores;
 use serde::Serialize;
-
-use crate::cases::Case;
-use crate::outcome::Outcome;
 
 /// Means of the figures of some outcomes; NaN where no case has a figure.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -32,12 +31,10 @@ impl Summary {
             let values: Vec<f64> = all.iter().filter_map(|(case, outcome)| figure(case, outcome)).collect();
             values.iter().sum::<f64>() / values.len() as f64
         };
-        let single = |figure: fn(&crate::scores::Scores) -> Option<f64>| {
-            mean(&move |_, outcome| outcome.single.as_ref().and_then(figure))
-        };
-        let grouped = |figure: fn(&crate::scores::Scores) -> Option<f64>| {
-            mean(&move |_, outcome| outcome.grouped.as_ref().and_then(figure))
-        };
+        let single =
+            |figure: fn(&Scores) -> Option<f64>| mean(&move |_, outcome| outcome.single.as_ref().and_then(figure));
+        let grouped =
+            |figure: fn(&Scores) -> Option<f64>| mean(&move |_, outcome| outcome.grouped.as_ref().and_then(figure));
         Summary {
             cases: all.len(),
             miou: single(|s| Some(s.miou)),

@@ -1,12 +1,10 @@
 //! Figure 1: the error of the motions as a function of the noise, for two, three and four motions and 600 measurements.
-
 use std::time::Instant;
 
+use experiments::Failure;
+use experiments::parallel::in_parallel;
 use serde::Serialize;
-use veronese::stages::{Figure1Trial, TrialError, figure_1_trial};
-
-use crate::Failure;
-use crate::parallel::in_parallel;
+use veronese_site::{Figure1Trial, TrialError, figure_1_trial};
 
 /// The methods compared, in the order of [`Cell::methods`].
 pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear", "ours", "oracle"];

@@ -1,20 +1,13 @@
 //! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. Run it with `npm run paper`.
 
-#[path = "../panels.rs"]
-mod panels;
-#[path = "../parallel.rs"]
-mod parallel;
-#[path = "../program.rs"]
-mod program;
-
 mod figure_1;
 mod pictures;
 mod plot;
 
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 
+use experiments::{Failure, program};
 use figure_1::{Cell, METHODS};
 use pictures::OfPair;
 use serde::Serialize;
@@ -27,8 +20,6 @@ Repeats the paper's experiments with its method and with ours.
   --out DIR    output folder; default out/paper
   --write-docs also write the figures to docs/figures, the plot and the pictures to docs/images, and docs/experiments.md from them
 ";
-
-type Failure = Box<dyn Error + Send + Sync>;
 
 struct Options {
     trials: usize,

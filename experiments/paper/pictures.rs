@@ -2,16 +2,14 @@
 //!
 //! A picture is a grid of panels: the first frame, the paper's pipeline, ours, and the ground truth, if known. Moving objects have a colour,
 //! all other pixels are dark.
-
 use std::fs;
 
+use experiments::Failure;
+use experiments::panels::Sheet;
 use scenes::leader_follower;
 use serde::Serialize;
 use veronese::codecs::decode_image;
 use veronese::{Frame, KeptPixels, MotionCount, SegmentOptions, UNLABELLED, literal_pair, segment_pair};
-
-use crate::Failure;
-use crate::panels::Sheet;
 
 /// Share of the pixels that the paper keeps: 1995 of 150 × 200.
 const KEPT: KeptPixels = KeptPixels::Strongest(0.0665);

@@ -1,9 +1,8 @@
 //! Figure 1 as a plot: a panel for each number of motions, errors on a logarithmic scale.
-
+use experiments::Failure;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::Failure;
 use crate::figure_1::{Cell, METHODS};
 
 const SIZE: (u32, u32) = (1080, 440);

@@ -1,16 +1,14 @@
 //! The cases of the measurement, by name, so that the measurement stays the same and stays short.
-
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use experiments::Failure;
+use experiments::clips;
+use experiments::masks::cases::{Case, Set, a_third, all};
+use experiments::masks::outcome::{Method, of_model};
+use experiments::score::report::Entry;
 use veronese::clip::{ClipOptions, ClipSegmenter};
 use veronese::{Model, Quality, SegmentOptions};
-
-use crate::Failure;
-use crate::clips;
-use crate::masks::cases::{Case, Set, a_third, all};
-use crate::masks::outcome::{Method, of_model};
-use crate::report::Entry;
 
 /// Clips on which constants were set: every second one of the ten.
 const TUNED_ON: [&str; 5] = ["boat", "car-turn", "flamingo", "kite-walk", "soccerball"];

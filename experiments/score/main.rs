@@ -1,25 +1,15 @@
 //! The measurement by which changes are judged: a fixed choice of pairs, scenes and clips, scored in some minutes and compared with
 //! the figures that are kept. `npm run score` runs it, and the expectations after it.
 
-#[path = "../boundary.rs"]
-mod boundary;
 mod cases;
-mod clips;
-mod masks;
-#[path = "../parallel.rs"]
-mod parallel;
-#[path = "../program.rs"]
-mod program;
-mod report;
-mod statistics;
 
-use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use parallel::in_parallel;
-use report::Entry;
+use experiments::parallel::in_parallel;
+use experiments::score::report::{self, Entry};
+use experiments::{Failure, program};
 
 const HELP: &str = "\
 Scores a fixed choice of pairs, generated scenes and clips, writes out/score.json and says what changed since experiments/score.json.
@@ -31,8 +21,6 @@ Scores a fixed choice of pairs, generated scenes and clips, writes out/score.jso
 ";
 
 const KEPT: &str = "experiments/score.json";
-
-type Failure = Box<dyn Error + Send + Sync>;
 
 struct Options {
     save: bool,

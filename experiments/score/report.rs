@@ -14,18 +14,18 @@ const LISTED: usize = 5;
 /// The figures of one case with one quality.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
-pub(crate) struct Entry {
+pub struct Entry {
     /// The row of the table.
-    pub(crate) part: String,
-    pub(crate) case: String,
-    pub(crate) sequence: String,
-    pub(crate) quality: String,
+    pub part: String,
+    pub case: String,
+    pub sequence: String,
+    pub quality: String,
     /// J without help; of scenes the mean IoU.
-    pub(crate) j: Option<f64>,
-    pub(crate) by_hand: Option<f64>,
-    pub(crate) f: Option<f64>,
+    pub j: Option<f64>,
+    pub by_hand: Option<f64>,
+    pub f: Option<f64>,
     /// 1 or 0.
-    pub(crate) n_right: Option<f64>,
+    pub n_right: Option<f64>,
 }
 
 type Figure = fn(&Entry) -> Option<f64>;
@@ -35,7 +35,7 @@ const FIGURES: [(&str, Figure); 4] =
 
 impl Entry {
     /// Figures to four digits, as they stand in the file.
-    pub(crate) fn rounded(mut self) -> Entry {
+    pub fn rounded(mut self) -> Entry {
         for figure in [&mut self.j, &mut self.by_hand, &mut self.f, &mut self.n_right] {
             *figure = figure.map(to_four);
         }
@@ -53,7 +53,7 @@ fn to_four(value: f64) -> f64 {
 }
 
 /// A line for each case, so that differences of two files can be read.
-pub(crate) fn file(entries: &[Entry]) -> serde_json::Result<String> {
+pub fn file(entries: &[Entry]) -> serde_json::Result<String> {
     let lines = entries.iter().map(serde_json::to_string).collect::<serde_json::Result<Vec<String>>>()?;
     Ok(format!("[\n{}\n]\n", lines.join(",\n")))
 }
@@ -71,7 +71,7 @@ fn rows(entries: &[Entry]) -> Vec<(&str, &str, Vec<&Entry>)> {
 }
 
 /// The figures with their intervals.
-pub(crate) fn table(entries: &[Entry]) -> String {
+pub fn table(entries: &[Entry]) -> String {
     let mut text = format!("{:32}{:>5}", "", "cases");
     FIGURES.iter().for_each(|(title, _)| _ = write!(text, "  {title:21}"));
     for (part, quality, list) in rows(entries) {
@@ -96,7 +96,7 @@ fn cell(found: &Estimate, signed: bool) -> String {
 }
 
 /// The changes since `before`, of the cases of both.
-pub(crate) fn changes(before: &[Entry], now: &[Entry]) -> String {
+pub fn changes(before: &[Entry], now: &[Entry]) -> String {
     let mut text = String::new();
     let old = |entry: &Entry| before.iter().find(|other| other.key() == entry.key());
     for (part, quality, list) in rows(now) {

@@ -13,14 +13,14 @@ const LEAST_SEQUENCES: usize = 5;
 
 /// A mean, and where it lies in 95 % of the draws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(crate) struct Estimate {
-    pub(crate) cases: usize,
-    pub(crate) mean: f64,
-    pub(crate) interval: Option<[f64; 2]>,
+pub struct Estimate {
+    pub cases: usize,
+    pub mean: f64,
+    pub interval: Option<[f64; 2]>,
 }
 
 /// The mean of values, each with its sequence; those of one sequence stand together. None of no values.
-pub(crate) fn estimate(values: &[(&str, f64)]) -> Option<Estimate> {
+pub fn estimate(values: &[(&str, f64)]) -> Option<Estimate> {
     let sequences: Vec<(f64, usize)> = values
         .chunk_by(|(one, _), (other, _)| one == other)
         .map(|list| (list.iter().map(|(_, value)| value).sum(), list.len()))
@@ -45,7 +45,7 @@ pub(crate) fn estimate(values: &[(&str, f64)]) -> Option<Estimate> {
 
 /// How a figure has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Verdict {
+pub enum Verdict {
     /// It is the same in every case.
     Same,
     Rose,
@@ -55,7 +55,7 @@ pub(crate) enum Verdict {
 }
 
 /// The mean change of a figure, each change with its sequence, and the verdict.
-pub(crate) fn verdict(changes: &[(&str, f64)]) -> Option<(Estimate, Verdict)> {
+pub fn verdict(changes: &[(&str, f64)]) -> Option<(Estimate, Verdict)> {
     let change = estimate(changes)?;
     let verdict = match change.interval {
         _ if changes.iter().all(|(_, change)| *change == 0.0) => Verdict::Same,

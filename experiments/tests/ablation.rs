@@ -1,12 +1,7 @@
 //! The tables of an ablation: paired differences, and rows that measure nothing.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
-#[allow(dead_code, reason = "the programs use the rest")]
-#[path = "../left_out.rs"]
-mod left_out;
-
-use crate::statistics;
-use left_out::{Figures, Measured, Row, all_change, worth};
+use experiments::left_out::{Figures, Measured, Row, all_change, worth};
 use scenes::SceneOptions;
 use veronese::{Quality, SegmentOptions, segment_pair};
 

@@ -1,14 +1,8 @@
 //! The robot of the annotator benchmark, and how it judges, on masks whose depths, parts and overlaps follow from their definition.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
-
-#[path = "../annotator/overlap.rs"]
-mod overlap;
-#[path = "../annotator/robot.rs"]
-mod robot;
-
-use overlap::{between, each, masks, mean, of_label, worst};
+use experiments::annotator::overlap::{between, each, masks, mean, of_label, worst};
+use experiments::annotator::robot::{NOTHING_SAID, View, depths, largest, stroke};
 use proptest::prelude::*;
-use robot::{NOTHING_SAID, View, depths, largest, stroke};
 
 const WIDTH: usize = 40;
 const HEIGHT: usize = 30;

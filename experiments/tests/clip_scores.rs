@@ -1,11 +1,6 @@
 //! The figures of the clip benchmark, on labels whose figures follow from their definition.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
-
-#[path = "../clips/scores.rs"]
-mod scores;
-
-use crate::boundary;
-use scores::{Identities, Scores, VOID, scores};
+use experiments::clips::scores::{Identities, Scores, VOID, scores};
 
 const WIDTH: usize = 80;
 const HEIGHT: usize = 60;

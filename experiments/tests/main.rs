@@ -2,10 +2,6 @@
 
 mod ablation;
 mod annotator;
-#[path = "../boundary.rs"]
-mod boundary;
 mod clip_scores;
 mod mask_scores;
 mod score;
-#[path = "../score/statistics.rs"]
-mod statistics;

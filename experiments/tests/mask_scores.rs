@@ -1,11 +1,6 @@
 //! The scores of the mask benchmark, on labellings with known scores.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
-
-#[path = "../masks/scores.rs"]
-mod scores;
-
-use crate::boundary;
-use scores::{VOID, scores};
+use experiments::masks::scores::{VOID, scores};
 use veronese::Random;
 
 const WIDTH: usize = 160;

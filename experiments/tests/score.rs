@@ -1,12 +1,7 @@
 //! The report of `npm run score`: intervals over sequences, and figures that rose or fell.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
-
-#[path = "../score/report.rs"]
-mod report;
-
-use crate::statistics;
-use report::{Entry, changes, file, table};
-use statistics::{Verdict, estimate, verdict};
+use experiments::score::report::{Entry, changes, file, table};
+use experiments::score::statistics::{Verdict, estimate, verdict};
 
 const NAMES: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 

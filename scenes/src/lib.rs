@@ -6,6 +6,8 @@
 //! outlines). The camera adds blur, a change of brightness between frames, noise, and quantisation to eight bits. The same options give
 //! the same bytes on every platform.
 //!
+//! [`protocol`] generates measurements without frames.
+//!
 //! ```
 //! use scenes::SceneOptions;
 //!
@@ -17,6 +19,7 @@
 
 mod clip;
 mod layer;
+pub mod protocol;
 mod render;
 mod shape;
 mod spline;

@@ -10,6 +10,8 @@ import { Stop, must, run, say } from './run.mjs';
 import { pinnedRust, versionOfRust, wasmTools } from './rust.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
+/** The crate of the package's modules. */
+const CALLS = 'veronese-wasm';
 /** Texts in the package and on the page. */
 const LICENCES = ['LICENSE-APACHE', 'LICENSE-MIT', NOTICES];
 const RUST_SOURCES = ['src', 'wasm/src', 'wasm/Cargo.toml', 'Cargo.toml', 'Cargo.lock', '.cargo', 'scripts/wasm-tools'];
@@ -25,7 +27,10 @@ export const MODULES = [
 ];
 
 /** Shows the steps of the method one by one, for the site alone; no part of the package. */
-const STAGES = { name: 'veronese_stages', folder: 'site/module', title: 'the module of the site', features: ['frames', 'points', 'stages'] };
+const STAGES = {
+  name: 'veronese_stages', folder: 'site/module', title: 'the module of the site',
+  crate: 'veronese-site', features: [], sources: ['site/stages', 'scenes/src', 'scenes/Cargo.toml'],
+};
 
 /** Compiles Rust to WebAssembly, one module after another. */
 export const buildModules = once(() => buildEach(MODULES));
@@ -39,15 +44,16 @@ async function buildEach(modules) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
   const versions = [await versionOfRust(pinnedRust()), optimiser.text];
-  for (const { name, folder, title, features } of modules) {
+  for (const module of modules) {
+    const { name, folder, title, sources = [] } = module;
     const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
-    await step(`${title} (a minute or two when everything is new)`, folder, outputs, RUST_SOURCES, versions, () => buildModule(name, folder, features));
+    await step(`${title} (a minute or two when everything is new)`, folder, outputs, [...RUST_SOURCES, ...sources], versions, () => buildModule(module));
   }
 }
 
 /** Compiles the modules while the program that writes them is being compiled itself. Without it they take longer, and nothing else. */
 export async function compileAhead() {
-  for (const { features } of MODULES) await compile(features, { output: 'collect' }).catch(() => undefined);
+  for (const module of MODULES) await compile(module, { output: 'collect' }).catch(() => undefined);
 }
 
 /** Builds the modules, then the npm package: their JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
@@ -111,10 +117,10 @@ async function step(title, folder, outputs, inputs, versions, build) {
 }
 
 /** Compiles a module, writes its JavaScript and types, and has wasm-opt make it smaller, as wasm-pack does and with its settings. */
-async function buildModule(name, folder, features) {
-  await compile(features);
+async function buildModule({ name, folder, crate = CALLS, features }) {
+  await compile({ crate, features });
   rmSync(join(root, folder, `${name}_bg.wasm`), { force: true });
-  await must('The JavaScript of the module could not be written.', wasmTools, ['module', `target/${TARGET}/release/veronese_wasm.wasm`, folder, name]);
+  await must('The JavaScript of the module could not be written.', wasmTools, ['module', `target/${TARGET}/release/${crate.replace('-', '_')}.wasm`, folder, name]);
   const module = `${folder}/${name}_bg.wasm`;
   // Set-up installs it.
   const { parse } = await import('smol-toml');
@@ -122,10 +128,10 @@ async function buildModule(name, folder, features) {
   await must('The module could not be made smaller.', 'wasm-opt', [module, '-o', module, ...metadata['wasm-pack'].profile.release['wasm-opt']]);
 }
 
-async function compile(features, options = {}) {
+async function compile({ crate = CALLS, features }, options = {}) {
   // The dependencies' sources must be downloaded before the flags below can name their folders.
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
-  const args = ['build', '--lib', '--release', '--target-dir', 'target', '--target', TARGET, '--package', 'veronese-wasm', ...ofModule(features)];
+  const args = ['build', '--lib', '--release', '--target-dir', 'target', '--target', TARGET, '--package', crate, ...ofModule(features)];
   await must('The WebAssembly module could not be compiled.', 'cargo', args, { ...options, env: ofProject() });
 }
 
@@ -137,7 +143,7 @@ export function ofModule(features) {
 
 /** Cargo's arguments for a test of the modules' own crate, and the environment: with these, the libraries are those that the modules have. */
 export function testOfModules(name) {
-  const args = ['test', '--package', 'veronese-wasm', '--test', name, '--release', '--target-dir', 'target', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
+  const args = ['test', '--package', CALLS, '--test', name, '--release', '--target-dir', 'target', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
   return { args, env: { ...ofProject(), CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `node ${join(root, 'scripts', 'lib', 'wasm-test-runner.mjs')}`, VERONESE_WASM_TOOLS: wasmTools } };
 }
 

@@ -14,7 +14,7 @@ const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
 /** Those that compile. */
 const LINTS = [
   // What the tests have compiled anyway, so the benchmarks and the modules of Python and WebAssembly are left to RARE.
-  ['clippy', 'cargo', ['clippy', '--locked', '--package', 'veronese', '--package', 'scenes', '--package', 'experiments', '--all-targets', '--features', 'codecs,stages,ablation', ...DENY]],
+  ['clippy', 'cargo', ['clippy', '--locked', '--package', 'veronese', '--package', 'scenes', '--package', 'experiments', '--package', 'veronese-site', '--all-targets', '--features', 'codecs,ablation', ...DENY]],
 ];
 
 const CHECKS = [
@@ -31,19 +31,20 @@ const CHECKS = [
 ];
 
 const MODULES = ['--package', 'veronese-wasm', '--target', 'wasm32-unknown-unknown'];
+const OF_SITE = ['--package', 'veronese-site'];
 const only = (features) => ['--no-default-features', '--features', features];
 
 /** The crates as users and modules have them: features leave out parts. */
 const RARE = [
   // Natively, everything at once. The Python package needs no Python for it.
-  ['clippy of the workspace', 'cargo', ['clippy', '--locked', '--workspace', '--all-targets', '--features', 'codecs,stages,ablation,plot', ...DENY]],
+  ['clippy of the workspace', 'cargo', ['clippy', '--locked', '--workspace', '--all-targets', '--features', 'codecs,ablation,plot', ...DENY]],
   ['clippy without features', 'cargo', ['clippy', '--locked', '--lib', '--package', 'veronese', ...DENY]],
-  ['clippy for wasm', 'cargo', ['clippy', '--locked', '--all-targets', ...MODULES, '--features', 'codecs,stages', ...DENY]],
-  ...['frames', 'points', 'frames,points', 'frames,points,stages'].map((features) => [
+  ['clippy for wasm', 'cargo', ['clippy', '--locked', '--all-targets', ...MODULES, ...OF_SITE, '--features', 'codecs', ...DENY]],
+  ...['frames', 'points', 'frames,points'].map((features) => [
     `clippy for a module of ${features}`, 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only(features), ...DENY],
   ]),
-  ['documentation of the workspace', 'cargo', ['doc', '--locked', '--no-deps', '--workspace', '--features', 'codecs,stages'], DENY_IN_DOCS],
-  ['documentation for wasm', 'cargo', ['doc', '--locked', '--no-deps', ...MODULES, '--features', 'codecs,stages'], DENY_IN_DOCS],
+  ['documentation of the workspace', 'cargo', ['doc', '--locked', '--no-deps', '--workspace', '--features', 'codecs'], DENY_IN_DOCS],
+  ['documentation for wasm', 'cargo', ['doc', '--locked', '--no-deps', ...MODULES, ...OF_SITE, '--features', 'codecs'], DENY_IN_DOCS],
 ];
 
 /** Runs the checks that compile. Returns counts, as tests.mjs. */

@@ -26,8 +26,8 @@ import { testWithWasmPack } from './wasm-pack.mjs';
  * The crates that have native tests, and that of the Python package, which has none: named beside them, it asks for the same features of
  * other packages, so that the tests and its wheel share what is compiled.
  */
-const CRATES = ['veronese', 'scenes', 'experiments', 'veronese-python'].flatMap((name) => ['--package', name]);
-const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs,stages', ...CRATES];
+const CRATES = ['veronese', 'scenes', 'experiments', 'veronese-site', 'veronese-python'].flatMap((name) => ['--package', name]);
+const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs', ...CRATES];
 const SOAK = { VERONESE_SOAK: '1' };
 
 /** What nothing but their own checks depends on. */
@@ -36,6 +36,8 @@ const NOTES = ['ARCHITECTURE.md', 'CODE_OF_CONDUCT.md', 'CONTRIBUTING.md', 'SECU
 const CRATES_OF_MODULES = ['src', 'wasm', 'scenes', 'experiments', 'Cargo.toml', 'Cargo.lock', '.cargo', 'clippy.toml', 'rustfmt.toml', 'scripts/wasm-tools'];
 const BUILT = [...MODULES.map(({ folder, name }) => `${folder}/${name}_bg.wasm`), 'pkg/THIRD-PARTY-NOTICES'];
 const PAGE = ['www/src', 'www/tests', 'www/browsers', 'www/screens', 'www/index.html'];
+/** The site without its crate. */
+const SITE = ['client', 'data', 'layouts', 'pages', 'styles', 'tests', 'eleventy.config.mjs', 'package.json', 'package-lock.json'].map((name) => `site/${name}`);
 const PACKAGE = ['pkg/src', 'pkg/test', 'pkg/types', 'pkg/scripts', 'pkg/bin', 'pkg/schemas'];
 
 /**
@@ -57,7 +59,7 @@ export const DAILY = {
     title: 'native tests',
     named: true,
     budget: 150,
-    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs', 'python/tests', 'python/package'] },
+    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, ...SITE, 'docs', 'python/tests', 'python/package'] },
     // The names of these tests begin with their files, as modules or paths.
     run: async ({ word }) => {
       const own = word === undefined ? [] : ['--', word];
@@ -93,7 +95,7 @@ export const DAILY = {
     title: 'lints of Rust',
     needs: { checks: true },
     budget: 60,
-    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, 'site', 'docs'] },
+    inputs: { apart: [...NOTES, ...PAGE, ...PACKAGE, ...SITE, 'docs'] },
     run: runLints,
   },
   builds: {

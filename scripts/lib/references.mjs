@@ -23,7 +23,7 @@ export async function referenceOfCrate(folder) {
   const target = join(root, 'target', 'reference');
   const made = join(target, 'doc');
   rmSync(made, { recursive: true, force: true });
-  const args = ['doc', '--quiet', '--target-dir', target, '--locked', '--no-deps', '--lib', '--features', 'codecs,stages'];
+  const args = ['doc', '--quiet', '--target-dir', target, '--locked', '--no-deps', '--lib', '--features', 'codecs'];
   await must('The reference of the crate could not be made.', 'cargo', args);
   rmSync(folder, { recursive: true, force: true });
   cpSync(made, folder, { recursive: true });

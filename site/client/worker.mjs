@@ -1,7 +1,7 @@
 // The module in a worker: answers what compute.mjs asks, in order.
 
 const address = new URL('../module/veronese_stages.js', import.meta.url);
-// As an address, so that the bundler leaves it alone. Its calls are documented in wasm/src/stages.rs.
+// As an address, so that the bundler leaves it alone. Its calls are documented in site/stages/src/calls.rs.
 const module = import(String(address)).then(async (calls) => {
   await calls.default({ module_or_path: new URL('veronese_stages_bg.wasm', address) });
   return calls;

@@ -83,10 +83,10 @@ pub fn numerical_rank(singular_values: &[f64], kappa: f64) -> usize {
 ///
 /// The [module example](super) estimates the number of two motions.
 ///
-/// **Limits.** The paper reports that its rule is always right. Measured with protocol B1, 600 measurements and 40 trials each
-/// (`npm run paper -- --table rank-rule --trials 40 --seed 0`), it is right for n = 2 up to 2 % noise and in 37 of 40 trials at
-/// 5 %; for n = 1 only below 2 % noise; for n = 3 nearly always, but mostly without satisfying (12); for n = 4 in 14 of 40 trials even
-/// without noise. κ responds to the conditioning of the monomials more than to noise.
+/// **Limits.** The paper reports that its rule is always right. Measured with protocol B1, 600 measurements and 40 trials each, it is
+/// right for n = 2 up to 2 % noise and in 37 of 40 trials at 5 %; for n = 1 only below 2 % noise; for n = 3 nearly always, but mostly
+/// without satisfying (12); for n = 4 in 14 of 40 trials even without noise. κ responds to the conditioning of the monomials more than to
+/// noise.
 ///
 /// # Errors
 /// [`Error::TooFewMeasurements`] for fewer than 6 measurements.

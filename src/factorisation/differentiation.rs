@@ -83,7 +83,8 @@ pub fn motions_at(multibody: &MultibodyMotion, position: [f64; 2], angle: f64) -
 }
 
 /// The coefficients of p(x; c, s, t) as a polynomial in t, lowest power first.
-pub(crate) fn along_direction(multibody: &MultibodyMotion, x: [f64; 3], direction: [f64; 2]) -> Vec<f64> {
+#[doc(hidden)]
+pub fn along_direction(multibody: &MultibodyMotion, x: [f64; 3], direction: [f64; 2]) -> Vec<f64> {
     let degree = multibody.degree();
     let mut coefficients = vec![0.0; degree + 1];
     let mut powers = vec![[1.0; 2]; degree + 1];

@@ -48,7 +48,8 @@ pub fn five_steps(multibody: &MultibodyMotion) -> Vec<AffineMotion> {
 }
 
 /// Step 2: the third columns of the A_i, by factoring 𝒜 ν_n(e_3), the last column.
-pub(crate) fn third_columns(multibody: &MultibodyMotion) -> Vec<Vector> {
+#[doc(hidden)]
+pub fn third_columns(multibody: &MultibodyMotion) -> Vec<Vector> {
     let n = multibody.degree();
     let factors = factorise(multibody.multibody_flow(E3).as_slice(), n).unwrap_or_else(|| vec![E3; n]);
     factors.iter().map(|b| [b[0] / b[2], b[1] / b[2], 1.0].map(tamed)).collect()

@@ -28,6 +28,6 @@ pub mod ternary;
 
 pub use differentiation::{algebraic_start, motions_at};
 pub use five_steps::five_steps;
-#[cfg(feature = "stages")]
-pub(crate) use five_steps::third_columns;
+#[doc(hidden)]
+pub use five_steps::third_columns;
 pub use greedy::{Choice, choose};

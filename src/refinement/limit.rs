@@ -4,14 +4,9 @@
 use super::mixture::{EmBuffers, Mixture, Stop};
 use super::{Samples, Search};
 
-#[cfg(not(feature = "stages"))]
-#[path = "../stages/protocol.rs"]
-#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests of the public functions")]
-mod protocol;
-#[cfg(feature = "stages")]
-use veronese::stages::protocol;
-
-use protocol::{Protocol, Relation};
+use crate::measurements::Measurements;
+use crate::motion::AffineMotion;
+use scenes::protocol::{Protocol, Relation};
 
 const LONG: Stop = Stop { iterations: 100, gain: 1e-9, step: 1e-7 };
 
@@ -19,9 +14,13 @@ const LONG: Stop = Stop { iterations: 100, gain: 1e-9, step: 1e-7 };
 fn losses(protocol: &Protocol, trials: u64) -> u64 {
     let lost = |seed: &u64| {
         let problem = protocol.problem(40_000_000 + seed);
-        let (normalised, normalisation) = problem.measurements.normalised();
+        // Their types are those of the crate as `scenes` has it, without tests.
+        let (positions, derivatives) = (problem.measurements.positions(), problem.measurements.derivatives());
+        let data = Measurements::new(positions.to_vec(), derivatives.to_vec()).unwrap();
+        let (normalised, normalisation) = data.normalised();
         let samples = Samples::new(&normalised);
-        let truth = problem.motions.iter().map(|motion| normalisation.apply(motion).matrix).collect();
+        let in_normalised = |motion| normalisation.apply(&AffineMotion::new(motion)).matrix;
+        let truth = problem.motions.iter().map(|motion| in_normalised(motion.matrix)).collect();
         let limit = EmBuffers::default().maximise(&samples, Mixture::new(truth, 0.03), LONG);
         let found = Search::new(&samples, 1).fit(protocol.motions, &[], f64::INFINITY);
         found.log_likelihood < limit.log_likelihood - 0.5

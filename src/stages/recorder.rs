@@ -1,5 +1,8 @@
 //! Notes what the stages of a pair find, in pixels of the full frame.
 
+use super::{
+    Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, PairStages, SelectedMotion,
+};
 use crate::error::Result;
 use crate::estimation::proposal::algebraic::{from_algebra, unexplained};
 use crate::estimation::proposal::local_flow::{LocalFlow, samples};
@@ -16,9 +19,6 @@ use crate::pair::frames::Pair;
 use crate::pair::observer::Observer;
 use crate::pair::segment_observed;
 use crate::pair::settings::Settings;
-use crate::stages::pair::{
-    Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, PairStages, SelectedMotion,
-};
 use crate::view::level::Level;
 
 /// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
@@ -111,7 +111,7 @@ impl Observer for Recorder {
     }
 
     fn regrouped(&mut self, pair: &Pair, motions: &[AffineMotion], labels: &[u8]) {
-        self.draft = labelling(pair, pair.finest(), motions, labels);
+        self.draft = labelling(pair, &pair.levels[pair.draft], motions, labels);
     }
 
     fn labelled(&mut self, pair: &Pair, motions: &[AffineMotion], labels: &[u8]) {

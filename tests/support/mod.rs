@@ -7,7 +7,4 @@
     reason = "every test file uses a part of it"
 )]
 
-pub mod hash;
 pub mod moving;
-#[path = "../../src/stages/protocol.rs"]
-pub mod protocol;

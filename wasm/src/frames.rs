@@ -36,7 +36,7 @@ pub fn segment_pair(
 
 /// The report of a pair, with its labels.
 #[inline(always)]
-pub(super) fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptions) -> JsValue {
+pub fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptions) -> JsValue {
     let settings = Record::new()
         .set("motions", &motions_asked(options.motions))
         .text("quality", options.quality.name())
@@ -114,7 +114,8 @@ fn image_from_labels(
     ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
 }
 
-pub(super) fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
+/// Two frames, each `{ data, width, height }`.
+pub fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
     Ok((frame_from_pixels("the first frame", first)?, frame_from_pixels("the second frame", second)?))
 }
 
@@ -146,7 +147,8 @@ pub(super) fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, 
     Ok(Frame::from_rgba(width, height, data.to_vec())?)
 }
 
-pub(super) fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
+/// The options of [`segment_pair`].
+pub fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
     let mut options = SegmentOptions::default();
     for (name, value) in entries(value)? {
         match name.as_str() {

@@ -23,11 +23,10 @@ mod clip;
 mod files;
 #[cfg(feature = "frames")]
 mod frames;
-mod plain;
+#[doc(hidden)]
+pub mod plain;
 #[cfg(feature = "points")]
 mod points;
-#[cfg(feature = "stages")]
-mod stages;
 
 #[cfg(feature = "frames")]
 pub use clip::{
@@ -40,11 +39,14 @@ pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed
 pub use frames::{paint_labels, paint_labels_offscreen, segment_pair};
 #[cfg(feature = "points")]
 pub use points::fit_motions;
-#[cfg(feature = "stages")]
-pub use stages::{
-    derivatives_of, embedded_spectra, figure_1_trial, motion_measurements, motions_at_pixel, multibody_flow,
-    paper_stages, segment_pair_stages, veronese_map,
-};
+
+// For the site's module, which has these calls and some of its own.
+#[cfg(feature = "frames")]
+#[doc(hidden)]
+pub use frames::{frames, report_of_pair, segment_options};
+#[cfg(feature = "points")]
+#[doc(hidden)]
+pub use points::{matrix, report_of_refinement, rows, seed};
 
 /// Version of the report format.
 const REPORT_VERSION: f64 = 1.0;
@@ -60,7 +62,8 @@ pub fn start() {
 }
 
 /// An error to throw: an `Error` named `VeroneseError` with a `code`.
-struct Failure {
+#[doc(hidden)]
+pub struct Failure {
     code: &'static str,
     message: String,
 }
@@ -124,7 +127,8 @@ fn entries(options: &JsValue) -> Result<Vec<(String, JsValue)>, Failure> {
         .collect())
 }
 
-fn motions(value: &JsValue) -> Result<MotionCount, Failure> {
+#[doc(hidden)]
+pub fn motions(value: &JsValue) -> Result<MotionCount, Failure> {
     let range = format!("'auto' or a whole number from 1 to {MAX_MOTIONS}");
     match (value.as_string().as_deref(), value.as_f64()) {
         (Some("auto"), _) => Ok(MotionCount::Auto),
@@ -142,7 +146,8 @@ fn choice<T: Copy>(name: &str, value: &JsValue, choices: [(&str, T); 2]) -> Resu
     }
 }
 
-fn invalid(name: &str, wanted: &str, found: &JsValue) -> Failure {
+#[doc(hidden)]
+pub fn invalid(name: &str, wanted: &str, found: &JsValue) -> Failure {
     let found = match (found.as_string(), found.as_f64(), found.as_bool()) {
         (Some(text), ..) => format!("'{text}'"),
         (_, Some(number), _) => written(number),

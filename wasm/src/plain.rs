@@ -8,64 +8,65 @@ use wasm_bindgen::JsValue;
 use veronese::Candidate;
 
 /// A builder of a plain object.
-pub(super) struct Record(Object);
+pub struct Record(Object);
 
 impl Record {
-    pub(super) fn new() -> Record {
+    #[allow(clippy::new_without_default, reason = "a record begins empty, and in one way")]
+    pub fn new() -> Record {
         Record(Object::new())
     }
 
     #[inline(never)]
-    pub(super) fn set(self, name: &str, value: &JsValue) -> Record {
+    pub fn set(self, name: &str, value: &JsValue) -> Record {
         // Cannot fail: the object is an ordinary one, created here.
         let _ = Reflect::set(&self.0, &name.into(), value);
         self
     }
 
     #[inline(never)]
-    pub(super) fn number(self, name: &str, value: f64) -> Record {
+    pub fn number(self, name: &str, value: f64) -> Record {
         self.set(name, &value.into())
     }
 
     #[inline(never)]
-    pub(super) fn count(self, name: &str, value: usize) -> Record {
+    pub fn count(self, name: &str, value: usize) -> Record {
         self.number(name, value as f64)
     }
 
     #[inline(never)]
-    pub(super) fn text(self, name: &str, value: &str) -> Record {
+    pub fn text(self, name: &str, value: &str) -> Record {
         self.set(name, &value.into())
     }
 
     #[inline(never)]
-    pub(super) fn bytes(self, name: &str, value: &[u8]) -> Record {
+    pub fn bytes(self, name: &str, value: &[u8]) -> Record {
         self.set(name, &Uint8Array::from(value))
     }
 
     #[inline(never)]
-    pub(super) fn numbers(self, name: &str, values: &[f64]) -> Record {
+    pub fn numbers(self, name: &str, values: &[f64]) -> Record {
         self.set(name, &numbers(values))
     }
 
-    pub(super) fn list<T>(self, name: &str, items: &[T], plain: fn(&T) -> JsValue) -> Record {
+    pub fn list<T>(self, name: &str, items: &[T], plain: fn(&T) -> JsValue) -> Record {
         self.set(name, &list(items, plain))
     }
 
-    pub(super) fn into_value(self) -> JsValue {
+    pub fn into_value(self) -> JsValue {
         self.0.into()
     }
 }
 
-pub(super) fn candidate(candidate: &Candidate) -> JsValue {
+pub fn candidate(candidate: &Candidate) -> JsValue {
     let Candidate { motions, score, .. } = candidate;
     Record::new().count("motions", *motions).number("score", *score).into_value()
 }
 
 #[inline(never)]
-pub(super) fn numbers(values: &[f64]) -> JsValue {
+pub fn numbers(values: &[f64]) -> JsValue {
     list(values, |value| (*value).into())
 }
 
-pub(super) fn list<T>(items: &[T], plain: fn(&T) -> JsValue) -> JsValue {
+pub fn list<T>(items: &[T], plain: fn(&T) -> JsValue) -> JsValue {
     items.iter().map(plain).collect::<Array>().into()
 }

@@ -42,7 +42,7 @@ pub fn fit_motions(
 }
 
 /// Rows of `N` numbers from a flat array.
-pub(super) fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Failure> {
+pub fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Failure> {
     let (rows, rest) = values.as_chunks::<N>();
     if !rest.is_empty() {
         return Err(Failure::input(format!(
@@ -66,7 +66,8 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
     Ok(options)
 }
 
-pub(super) fn seed(value: &JsValue) -> Result<u64, Failure> {
+/// A seed of random numbers.
+pub fn seed(value: &JsValue) -> Result<u64, Failure> {
     match value.as_f64() {
         Some(seed) if (0.0..=MAX_SAFE_INTEGER).contains(&seed) && seed == seed.floor() => Ok(seed as u64),
         _ => Err(invalid("seed", "a whole number from 0 to 9007199254740991", value)),
@@ -111,8 +112,9 @@ fn paper_stages(stages: &PaperStages) -> JsValue {
         .into_value()
 }
 
+/// How a refinement ended.
 #[inline(always)]
-pub(super) fn report_of_refinement(report: &Report) -> Record {
+pub fn report_of_refinement(report: &Report) -> Record {
     let Report { termination, iterations, initial_cost, final_cost, .. } = report;
     Record::new()
         .text("termination", termination.name())
@@ -131,6 +133,7 @@ fn rank_candidate(tried: &RankCandidate) -> JsValue {
         .into_value()
 }
 
-pub(super) fn matrix(motion: &AffineMotion) -> JsValue {
+/// The six entries of a motion.
+pub fn matrix(motion: &AffineMotion) -> JsValue {
     numbers(&motion.matrix)
 }

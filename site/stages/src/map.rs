@@ -1,12 +1,12 @@
 //! The Veronese map of points, and the polynomial that vanishes on them (eq. 7).
 
-use crate::embedding::monomials::{Exponents, exponents};
-use crate::embedding::rank::{KAPPA, numerical_rank};
-use crate::embedding::veronese::embed_columns;
-use crate::error::{Error, Result};
-use crate::factorisation::roots::roots;
-use crate::linear::{NullVector, RowQr, Triangle};
-use crate::stages::{MOST, within};
+use crate::{MOST, within};
+use veronese::embedding::monomials::{Exponents, count, exponents};
+use veronese::embedding::rank::{KAPPA, numerical_rank};
+use veronese::embedding::veronese::embed;
+use veronese::factorisation::roots::roots;
+use veronese::linear::{NullVector, RowQr, Triangle};
+use veronese::{Error, Result};
 
 /// Largest degree.
 const LARGEST_DEGREE: usize = 6;
@@ -16,7 +16,6 @@ const ROUNDING: f64 = 1e-12;
 const LARGEST: f64 = 1e12;
 
 /// The result of [`veronese_map`].
-#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct VeroneseMap {
     /// The powers of the variables in each monomial, in the paper's order. Those of a third variable are 0 if there are two.
@@ -68,20 +67,18 @@ pub fn veronese_map(points: &[f64], variables: usize, degree: usize) -> Result<V
         .map(|point| [point[0], point[1], point.get(2).copied().unwrap_or(0.0)])
         .collect();
     // A form in two variables is one in three without the third.
-    let kept: Vec<(usize, Exponents)> =
-        exponents(degree).into_iter().enumerate().filter(|(_, powers)| variables == 3 || powers[2] == 0).collect();
-    let all = embed_columns(degree, &homogeneous);
-    let column = |k: usize| &all[kept[k].0 * rows..][..rows];
-    let columns = kept.len();
-    let triangle = triangle_of(rows, columns, column);
+    let of_variables = |(powers, _): &(Exponents, Vec<f64>)| variables == 3 || powers[2] == 0;
+    let all = exponents(degree).into_iter().zip(columns_of(degree, &homogeneous));
+    let (exponents, columns): (Vec<Exponents>, Vec<Vec<f64>>) = all.filter(of_variables).unzip();
+    let triangle = triangle_of(&columns);
     let singular_values = triangle.singular_values().unwrap_or_default();
     let null_vector = null_vector(&triangle, singular_values.first().copied().unwrap_or(0.0));
     let (lines, complex) = if variables == 2 { lines(&null_vector) } else { (Vec::new(), 0) };
     Ok(VeroneseMap {
-        exponents: kept.iter().map(|(_, powers)| *powers).collect(),
-        matrix: (0..rows).flat_map(|row| (0..columns).map(move |k| column(k)[row])).collect(),
+        exponents,
+        matrix: (0..rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect(),
         rows,
-        columns,
+        columns: columns.len(),
         rank: numerical_rank(&singular_values, KAPPA),
         singular_values,
         null_vector,
@@ -90,12 +87,19 @@ pub fn veronese_map(points: &[f64], variables: usize, degree: usize) -> Result<V
     })
 }
 
+/// Embedded vectors as columns, one for each monomial.
+pub(crate) fn columns_of(degree: usize, vectors: &[[f64; 3]]) -> Vec<Vec<f64>> {
+    let rows: Vec<_> = vectors.iter().map(|&vector| embed(degree, vector)).collect();
+    (0..count(degree)).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
+}
+
 /// The triangle R of a matrix that is given by its columns.
-pub(super) fn triangle_of<'a>(rows: usize, columns: usize, column: impl Fn(usize) -> &'a [f64]) -> Triangle {
-    let mut qr = RowQr::new(columns);
+pub(crate) fn triangle_of(columns: &[Vec<f64>]) -> Triangle {
+    let rows = columns[0].len();
+    let mut qr = RowQr::new(columns.len());
     for first in (0..rows).step_by(RowQr::BLOCK_ROWS) {
         let part = first..rows.min(first + RowQr::BLOCK_ROWS);
-        let mut block: Vec<f64> = (0..columns).flat_map(|k| column(k)[part.clone()].iter().copied()).collect();
+        let mut block: Vec<f64> = columns.iter().flat_map(|column| column[part.clone()].iter().copied()).collect();
         qr.absorb(part.len(), &mut block);
     }
     qr.into_triangle()
@@ -112,7 +116,7 @@ fn null_vector(triangle: &Triangle, largest: f64) -> Vec<f64> {
     for turn in 0..size - 1 {
         let order: Vec<usize> = (0..size).filter(|&k| k != turn).chain([turn]).collect();
         let columns: Vec<Vec<f64>> = order.iter().map(|&k| matrix.column(k).iter().copied().collect()).collect();
-        let found = NullVector::of(&triangle_of(size, size, |k| &columns[k]));
+        let found = NullVector::of(&triangle_of(&columns));
         if found.residual.max(rounding) < 0.5 * best.residual {
             let mut vector = vec![0.0; size];
             order.iter().zip(&found.vector).for_each(|(&k, value)| vector[k] = *value);
@@ -123,7 +127,7 @@ fn null_vector(triangle: &Triangle, largest: f64) -> Vec<f64> {
 }
 
 /// The normals of the real lines on which the form `c[0] xⁿ + c[1] xⁿ⁻¹y + … + c[n] yⁿ` vanishes, and the number of its other factors.
-pub(super) fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
+pub(crate) fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
     // With y = 1, a root x = r gives the factor x − r y, and a root at infinity the factor y.
     let ascending: Vec<f64> = c.iter().rev().copied().collect();
     let found = roots(&ascending);

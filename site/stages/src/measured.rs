@@ -1,13 +1,10 @@
 //! Measurements of motions that are given.
 
-use crate::error::{Error, Result};
-use crate::motion::AffineMotion;
-use crate::options::MAX_MOTIONS;
-use crate::random::Random;
-use crate::stages::protocol::Problem;
-use crate::stages::{MOST, within};
+use crate::{MOST, within};
+use scenes::protocol::Problem;
+use veronese::{AffineMotion, Error, MAX_MOTIONS, Random, Result};
 
-/// Measurements of given motions by the [`protocol`](super::protocol) of the paper's Figure 1: positions uniform in [−1, 1]², derivatives
+/// Measurements of given motions by the [`protocol`](scenes::protocol) of the paper's Figure 1: positions uniform in [−1, 1]², derivatives
 /// of unit length that satisfy brightness constancy, with noise uniform in ±`noise` on every component.
 ///
 /// `shares` are those of the motions, up to scale. Measurements of all motions alternate in these shares. The random numbers do not depend

@@ -1,18 +1,16 @@
-//! Calls on what lies between the steps, for the site alone. See [`veronese::stages`], which may change in any version.
+//! The calls of the site's module: what lies between the steps, as plain JavaScript objects.
 
 use js_sys::{Float32Array, Float64Array};
 use wasm_bindgen::prelude::*;
 
-use crate::frames::{frames, report_of_pair, segment_options};
-use crate::plain::{Record, list, numbers};
-use crate::points::{matrix, report_of_refinement, rows, seed};
-use crate::{Failure, invalid, motions};
+use crate::{FitStages, MultibodyFlow, PixelStages, Spectrum, TrialError, VeroneseMap};
 use veronese::embedding::rank::RankCandidate;
-use veronese::stages::pair::{
-    Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, SelectedMotion,
-};
-use veronese::stages::{FitStages, MultibodyFlow, PixelStages, Spectrum, TrialError, VeroneseMap};
+use veronese::stages::{Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, SelectedMotion};
 use veronese::{AffineMotion, Measurements, MotionCount, Plane, UNLABELLED};
+use veronese_wasm::plain::{Record, list, numbers};
+use veronese_wasm::{
+    Failure, frames, invalid, matrix, motions, report_of_pair, report_of_refinement, rows, seed, segment_options,
+};
 
 /// The Veronese map of points: `{ exponents, matrix: Float64Array, rows, columns, singularValues, rank, nullVector }`, and with two
 /// variables `{ lines, complex }`.
@@ -22,8 +20,8 @@ use veronese::{AffineMotion, Measurements, MotionCount, Plane, UNLABELLED};
 #[wasm_bindgen(js_name = veroneseMap)]
 pub fn veronese_map(points: &[f64], variables: &JsValue, degree: &JsValue) -> Result<JsValue, JsValue> {
     let variables = whole("variables", variables)?;
-    let map = veronese::stages::veronese_map(points, variables, whole("degree", degree)?).map_err(Failure::from)?;
-    let VeroneseMap { exponents, matrix, rows, columns, singular_values, rank, null_vector, lines, complex, .. } = map;
+    let map = crate::veronese_map(points, variables, whole("degree", degree)?).map_err(Failure::from)?;
+    let VeroneseMap { exponents, matrix, rows, columns, singular_values, rank, null_vector, lines, complex } = map;
     let powers: Vec<Vec<f64>> =
         exponents.iter().map(|powers| powers[..variables].iter().map(|power| *power as f64).collect()).collect();
     let record = Record::new()
@@ -48,8 +46,8 @@ pub fn veronese_map(points: &[f64], variables: &JsValue, degree: &JsValue) -> Re
 #[wasm_bindgen(js_name = multibodyFlow)]
 pub fn multibody_flow(derivatives: &[f64], motions: &JsValue) -> Result<JsValue, JsValue> {
     let rows = rows("derivatives", derivatives)?;
-    let flow = veronese::stages::multibody_flow(&rows, whole("motions", motions)?).map_err(Failure::from)?;
-    let MultibodyFlow { coefficients, singular_values, factors, by_differentiation, .. } = flow;
+    let flow = crate::multibody_flow(&rows, whole("motions", motions)?).map_err(Failure::from)?;
+    let MultibodyFlow { coefficients, singular_values, factors, by_differentiation } = flow;
     let record = Record::new()
         .numbers("coefficients", &coefficients)
         .numbers("singularValues", &singular_values)
@@ -65,7 +63,7 @@ pub fn multibody_flow(derivatives: &[f64], motions: &JsValue) -> Result<JsValue,
 #[wasm_bindgen(js_name = derivativesOf)]
 pub fn derivatives_of(first: &JsValue, second: &JsValue) -> Result<JsValue, JsValue> {
     let (first, second) = frames(first, second)?;
-    let planes = veronese::stages::grey_derivatives(&first, &second).map_err(Failure::from)?;
+    let planes = crate::grey_derivatives(&first, &second).map_err(Failure::from)?;
     let record = Record::new()
         .count("width", first.width())
         .count("height", first.height())
@@ -83,12 +81,12 @@ pub fn derivatives_of(first: &JsValue, second: &JsValue) -> Result<JsValue, JsVa
 pub fn paper_stages(positions: &[f64], derivatives: &[f64], count: &JsValue) -> Result<JsValue, JsValue> {
     let count = if count.is_undefined() { MotionCount::Auto } else { motions(count)? };
     let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
-    let stages = measurements.and_then(|data| veronese::stages::paper_stages(&data, count)).map_err(Failure::from)?;
+    let stages = measurements.and_then(|data| crate::paper_stages(&data, count)).map_err(Failure::from)?;
     Ok(fit_stages(&stages))
 }
 
 fn fit_stages(stages: &FitStages) -> JsValue {
-    let FitStages { fit, normalisation, embedded, third_columns, gaps, mismatches, ambiguous, differentiation, .. } =
+    let FitStages { fit, normalisation, embedded, third_columns, gaps, mismatches, ambiguous, differentiation } =
         stages;
     let [rows, columns] = *embedded;
     let labels: Vec<u8> = fit.labels.iter().map(|label| *label as u8).collect();
@@ -143,8 +141,8 @@ fn tried(candidate: &RankCandidate) -> JsValue {
 pub fn embedded_spectra(positions: &[f64], derivatives: &[f64], largest: &JsValue) -> Result<JsValue, JsValue> {
     let largest = whole("largest", largest)?;
     let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
-    let found = measurements.and_then(|data| veronese::stages::embedded_spectra(&data, largest));
-    Ok(list(&found.map_err(Failure::from)?, |Spectrum { motions, singular_values, rank, .. }| {
+    let found = measurements.and_then(|data| crate::embedded_spectra(&data, largest));
+    Ok(list(&found.map_err(Failure::from)?, |Spectrum { motions, singular_values, rank }| {
         Record::new()
             .count("motions", *motions)
             .numbers("singularValues", singular_values)
@@ -168,8 +166,8 @@ pub fn motions_at_pixel(
 ) -> Result<JsValue, JsValue> {
     let count = whole("motions", motions)?;
     let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
-    let found = measurements.and_then(|data| veronese::stages::motions_at_pixel(&data, count, [x, y], angle));
-    let PixelStages { coefficients, roots, motions, .. } = found.map_err(Failure::from)?;
+    let found = measurements.and_then(|data| crate::motions_at_pixel(&data, count, [x, y], angle));
+    let PixelStages { coefficients, roots, motions } = found.map_err(Failure::from)?;
     let record = Record::new()
         .numbers("coefficients", &coefficients)
         .list("roots", &roots, |root| numbers(root))
@@ -185,7 +183,7 @@ pub fn motions_at_pixel(
 #[wasm_bindgen(js_name = figure1Trial)]
 pub fn figure_1_trial(motions: &JsValue, noise: f64, seed_of_trial: &JsValue) -> Result<JsValue, JsValue> {
     let motions = whole("motions", motions)?;
-    let trial = veronese::stages::figure_1_trial(motions, noise, seed(seed_of_trial)?).map_err(Failure::from)?;
+    let trial = crate::figure_1_trial(motions, noise, seed(seed_of_trial)?).map_err(Failure::from)?;
     let per_cent = |error: TrialError| error.per_cent();
     let errors = Record::new()
         .number("factorisation", per_cent(trial.factorisation))
@@ -214,7 +212,7 @@ pub fn motion_measurements(
 ) -> Result<JsValue, JsValue> {
     let motions: Vec<AffineMotion> = rows("motions", motions)?.into_iter().map(AffineMotion::new).collect();
     let (count, seed) = (whole("count", count)?, seed(seed_of_draw)?);
-    let problem = veronese::stages::motion_measurements(&motions, shares, count, noise, seed).map_err(Failure::from)?;
+    let problem = crate::motion_measurements(&motions, shares, count, noise, seed).map_err(Failure::from)?;
     let labels: Vec<u8> = problem.labels.iter().map(|label| label.map_or(UNLABELLED, |label| label as u8)).collect();
     let record = Record::new()
         .set("positions", &Float64Array::from(problem.measurements.positions().as_flattened()))
@@ -272,7 +270,7 @@ fn background(background: &Background) -> JsValue {
 }
 
 fn measured_pixels(measured: &MeasuredPixels) -> JsValue {
-    let MeasuredPixels { places, measurements, weights, unit, .. } = measured;
+    let MeasuredPixels { places, measurements, weights, unit } = measured;
     Record::new()
         .set("places", &Float64Array::from(places.as_flattened()))
         .set("positions", &Float64Array::from(measurements.positions().as_flattened()))
@@ -283,11 +281,11 @@ fn measured_pixels(measured: &MeasuredPixels) -> JsValue {
 }
 
 fn candidate(candidate: &CandidateMotion) -> JsValue {
-    let CandidateMotion { matrix: motion, source, gain, support, .. } = candidate;
+    let CandidateMotion { matrix: motion, source, gain, support } = candidate;
     let (source, degree) = match source {
         CandidateSource::Constraint(degree) => ("constraint", *degree),
         CandidateSource::Window => ("window", 0),
-        _ => ("hypothesis", 0),
+        CandidateSource::Hypothesis => ("hypothesis", 0),
     };
     Record::new()
         .set("matrix", &matrix(motion))
@@ -303,7 +301,7 @@ fn selected_motion(motion: &SelectedMotion) -> JsValue {
 }
 
 fn labelling(labelling: &Labelling) -> JsValue {
-    let Labelling { grid, motions, labels, .. } = labelling;
+    let Labelling { grid, motions, labels } = labelling;
     add_grid(Record::new(), grid).list("motions", motions, matrix).bytes("labels", labels).into_value()
 }
 

@@ -1,14 +1,12 @@
 //! The singular values behind the rank rule (12).
 
-use crate::embedding::EmbeddedData;
-use crate::embedding::monomials::unknowns;
-use crate::embedding::rank::{KAPPA, MAX_TRIED, numerical_rank};
-use crate::error::Result;
-use crate::measurements::Measurements;
-use crate::stages::within;
+use crate::within;
+use veronese::embedding::EmbeddedData;
+use veronese::embedding::monomials::unknowns;
+use veronese::embedding::rank::{KAPPA, MAX_TRIED, numerical_rank};
+use veronese::{Measurements, Result};
 
 /// The singular values of P̃_i for one number of motions i.
-#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct Spectrum {
     /// The number of motions i.
@@ -20,11 +18,11 @@ pub struct Spectrum {
 }
 
 /// The singular values of P̃_1 … P̃_i for i = `largest`, 1 to [`MAX_TRIED`], as
-/// [`number_of_motions`](crate::embedding::rank::number_of_motions) sees them, also where it stops before. Those for which there are too
+/// [`number_of_motions`](veronese::embedding::rank::number_of_motions) sees them, also where it stops before. Those for which there are too
 /// few measurements are left out.
 ///
 /// # Errors
-/// [`Error::InvalidOption`](crate::Error::InvalidOption) for `largest` out of range.
+/// [`Error::InvalidOption`](veronese::Error::InvalidOption) for `largest` out of range.
 pub fn embedded_spectra(measurements: &Measurements, largest: usize) -> Result<Vec<Spectrum>> {
     within("largest", largest, [1, MAX_TRIED])?;
     let (normalised, _) = measurements.normalised();

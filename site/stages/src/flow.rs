@@ -1,18 +1,15 @@
 //! The multibody optical flow (eq. 13 and 14) where all motions are translations.
 
-use crate::embedding::MultibodyMotion;
-use crate::embedding::monomials::{count, kept_pairs};
-use crate::embedding::veronese::embed_columns;
-use crate::error::{Error, Result};
-use crate::factorisation::choose;
-use crate::factorisation::differentiation::{POINTS, along_direction};
-use crate::factorisation::roots::roots;
-use crate::factorisation::ternary::factorise;
-use crate::linear::NullVector;
-use crate::measurements::Measurements;
-use crate::motion::AffineMotion;
-use crate::stages::map::triangle_of;
-use crate::stages::{MOST, within};
+use crate::map::{columns_of, triangle_of};
+use crate::{MOST, within};
+use veronese::embedding::MultibodyMotion;
+use veronese::embedding::monomials::{count, kept_pairs};
+use veronese::factorisation::choose;
+use veronese::factorisation::differentiation::{POINTS, along_direction};
+use veronese::factorisation::roots::roots;
+use veronese::factorisation::ternary::factorise;
+use veronese::linear::NullVector;
+use veronese::{AffineMotion, Error, Measurements, Result};
 
 /// Largest number of motions.
 const MOST_MOTIONS: usize = 4;
@@ -20,7 +17,6 @@ const MOST_MOTIONS: usize = 4;
 const VANISHING: f64 = 1e-13;
 
 /// The result of [`multibody_flow`].
-#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct MultibodyFlow {
     /// The coefficients of `Π_i yᵀu_i` for the monomials of y = (I_x, I_y, I_t) in the paper's order, up to scale. The last one is 1, or
@@ -43,7 +39,7 @@ pub struct MultibodyFlow {
 /// [`Error::NotFinite`].
 pub fn multibody_flow(derivatives: &[[f64; 3]], motions: usize) -> Result<MultibodyFlow> {
     within("motions", motions, [1, MOST_MOTIONS])?;
-    let (found, columns) = (derivatives.len(), count(motions));
+    let (found, needed) = (derivatives.len(), count(motions) - 1);
     if found > MOST {
         return Err(Error::InvalidOption {
             name: "derivatives",
@@ -51,11 +47,12 @@ pub fn multibody_flow(derivatives: &[[f64; 3]], motions: usize) -> Result<Multib
         });
     }
     let measurements = Measurements::new(vec![[0.0; 2]; found], derivatives.to_vec())?;
-    measurements.check_number(motions, columns - 1)?;
-    let embedded = embed_columns(motions, derivatives);
-    let triangle = triangle_of(found, columns, |k| &embedded[k * found..][..found]);
+    if found < needed {
+        return Err(Error::TooFewMeasurements { motions, needed, found });
+    }
+    let triangle = triangle_of(&columns_of(motions, derivatives));
     let mut coefficients = NullVector::of(&triangle).vector;
-    let last = coefficients[columns - 1];
+    let last = coefficients[needed];
     let is_finite = last.abs() > VANISHING;
     if is_finite {
         coefficients.iter_mut().for_each(|c| *c /= last);

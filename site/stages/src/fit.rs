@@ -1,15 +1,11 @@
 //! The paper's algorithm for Problem 1 step by step, and differentiation beside its factorisation.
 
-use crate::embedding::monomials::unknowns;
-use crate::error::Result;
-use crate::factorisation::assignment::assign;
-use crate::factorisation::differentiation::{POINTS, motions_from_points};
-use crate::factorisation::{five_steps, third_columns};
-use crate::measurements::{Measurements, Normalisation};
-use crate::motion::AffineMotion;
-use crate::options::MotionCount;
-use crate::paper::{PaperFit, paper_fit};
-use crate::random::Random;
+use veronese::embedding::monomials::unknowns;
+use veronese::factorisation::assignment::assign;
+use veronese::factorisation::differentiation::{POINTS, motions_from_points};
+use veronese::factorisation::{five_steps, third_columns};
+use veronese::paper::{PaperFit, paper_fit};
+use veronese::{AffineMotion, Measurements, MotionCount, Normalisation, Random, Result};
 
 /// Seed of the points at which the multibody motion is differentiated.
 const SEED: u64 = 1;
@@ -17,7 +13,6 @@ const SEED: u64 = 1;
 const EQUAL: f64 = 1e-5;
 
 /// The result of [`paper_stages`].
-#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct FitStages {
     /// All steps of the paper. Its multibody motion is in normalised coordinates, its motions are in those of the input.

@@ -3,7 +3,6 @@
 //! Positions are uniform in [−1, 1]², the six entries of each motion uniform in [−1, 1]. Labels alternate. `y` is uniform on the unit
 //! circle orthogonal to `A x`, plus noise uniform in [−p, p] on every component. The `y` of an outlier is uniform on the unit sphere.
 
-// By the name of the crate: tests, benchmarks and experiments include this file.
 use veronese::{AffineMotion, Measurements, Random, Result};
 
 /// Parameters of a problem.
@@ -48,6 +47,8 @@ pub enum Relation {
     RankOne,
     /// One motion has u = 0.
     RankTwo,
+    /// The linear part of one motion has rows that are multiples of each other.
+    ProportionalRows,
     /// All motions are translations.
     Translations,
     /// All motions are similarities.
@@ -55,7 +56,7 @@ pub enum Relation {
 }
 
 /// All special configurations.
-pub const SPECIAL: [Relation; 11] = [
+pub const SPECIAL: [Relation; 12] = [
     Relation::EqualA13,
     Relation::EqualA23,
     Relation::EqualTranslation,
@@ -65,6 +66,7 @@ pub const SPECIAL: [Relation; 11] = [
     Relation::StaticAndTranslation,
     Relation::RankOne,
     Relation::RankTwo,
+    Relation::ProportionalRows,
     Relation::Translations,
     Relation::Similarities,
 ];
@@ -136,6 +138,7 @@ impl Protocol {
             }
             Relation::RankOne => a[0] = [0.0, 0.0, 0.0, 0.0, 0.0, first[5]],
             Relation::RankTwo => a[0] = [0.0, 0.0, 0.0, first[3], first[4], first[5]],
+            Relation::ProportionalRows => (a[0][3], a[0][4]) = (0.5 * first[0], 0.5 * first[1]),
             Relation::Translations => a.iter_mut().for_each(|m| *m = [0.0, 0.0, m[2], 0.0, 0.0, m[5]]),
             Relation::Similarities => a.iter_mut().for_each(|m| *m = [m[0], m[1], m[2], -m[1], m[0], m[5]]),
         }

@@ -1,18 +1,15 @@
 //! Differentiation at one pixel.
 
-use crate::embedding::MultibodyMotion;
-use crate::error::{Error, Result};
-use crate::factorisation::differentiation::{along_direction, motions_at};
-use crate::factorisation::roots::roots;
-use crate::measurements::Measurements;
-use crate::motion::AffineMotion;
-use crate::stages::within;
+use crate::within;
+use veronese::embedding::MultibodyMotion;
+use veronese::factorisation::differentiation::{along_direction, motions_at};
+use veronese::factorisation::roots::roots;
+use veronese::{AffineMotion, Error, Measurements, Result};
 
 /// Largest number of motions.
 const MOST_MOTIONS: usize = 4;
 
 /// The result of [`motions_at_pixel`].
-#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct PixelStages {
     /// The multibody polynomial at the pixel for y = (cos θ, sin θ, t), by increasing powers of t. The last coefficient is 1.

@@ -1,19 +1,15 @@
 //! One trial of the paper's Figure 1: how far each method is from the true motions.
 
-use crate::embedding::rank::{MAX_TRIED, number_of_motions};
-use crate::error::Result;
-use crate::motion::AffineMotion;
-use crate::options::{FitOptions, MotionCount};
-use crate::paper::paper_fit;
-use crate::points::fit_motions;
-use crate::stages::protocol::{Problem, Protocol};
-use crate::stages::within;
+use crate::within;
+use scenes::protocol::{Problem, Protocol};
+use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
+use veronese::paper::paper_fit;
+use veronese::{AffineMotion, FitOptions, MotionCount, Result, fit_motions};
 
 /// Largest noise in the figure.
 const MOST_NOISE: f64 = 0.05;
 
 /// The result of [`figure_1_trial`].
-#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure1Trial {
     /// The true motions.
@@ -22,13 +18,13 @@ pub struct Figure1Trial {
     pub factorisation: TrialError,
     /// The error of the paper's nonlinear refinement.
     pub refined: TrialError,
-    /// The error of [`Method::Best`](crate::Method::Best).
+    /// The error of [`Method::Best`](veronese::Method::Best).
     pub best: TrialError,
     /// The error of the least squares estimate that knows the true labels.
     pub oracle: TrialError,
     /// Whether the rank rule (12) finds the number of motions.
     pub rule_right: bool,
-    /// Whether [`Method::Best`](crate::Method::Best) finds it.
+    /// Whether [`Method::Best`](veronese::Method::Best) finds it.
     pub best_right: bool,
 }
 
@@ -44,7 +40,7 @@ pub struct TrialError {
 /// A trial of Figure 1 for 2 to 4 motions and noise from 0 to 0.05: 600 measurements by [`Protocol`].
 ///
 /// # Errors
-/// [`Error::InvalidOption`](crate::Error::InvalidOption) for `motions` or `noise` out of range.
+/// [`Error::InvalidOption`](veronese::Error::InvalidOption) for `motions` or `noise` out of range.
 pub fn figure_1_trial(motions: usize, noise: f64, seed: u64) -> Result<Figure1Trial> {
     within("motions", motions, [2, 4])?;
     within("noise", noise, [0.0, MOST_NOISE])?;
