@@ -1,12 +1,11 @@
 //! Clips: objects that keep their number from their first frame to their last.
 //!
-//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/tracker.rs`, `clip/evidence.rs`), and
-//!    where these show no object with an earlier one (`clip/farther.rs`).
-//! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
-//!    first one's cut.
+//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/pairing.rs`), and where these show no
+//!    object with an earlier one (`clip/farther.rs`). Pauses are no evidence (`clip/held.rs`).
+//! 2. The log-odds of each pixel are carried along the motions, colours learned and the foreground cut (`clip/foreground.rs`).
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
-//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), what lasted a few frames is dropped,
-//!    and the others get their final numbers (`clip/numbering.rs`).
+//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), parts that move together
+//!    are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
 //! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
 //! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
@@ -21,19 +20,19 @@ mod description;
 mod edits;
 mod evidence;
 mod farther;
+mod foreground;
 mod frame_annotation;
 mod frame_state;
+mod grouping;
 mod held;
 mod identity;
 mod job;
 mod layer;
-mod numbering;
 mod options;
 mod overlay;
 mod pairing;
 mod parting;
 mod record;
-mod round;
 mod runs;
 mod saved;
 mod segmented_clip;

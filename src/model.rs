@@ -290,8 +290,6 @@ model! {
     certain: f32 = 4.0;
     /// Probability of either side that nothing excludes.
     doubt: f32 = 0.01;
-    /// Odds of the first round's cut in the second one, nats. Real.
-    first_cut: f32 = 2.0;
     /// Odds of the labels found automatically where a person first annotates an object, nats. 1.5 costs .004 J where a mask is given. Real.
     found: f32 = 2.0;
     /// Largest log-likelihood ratio of a label found automatically, nats. Real.
@@ -312,11 +310,11 @@ model! {
     /// Share of carried evidence of ground that counts: an object that rests looks like ground, ground seldom like an object. Chosen on
     /// thirty real clips: J .659 with 1, .665 with .5. Less is better for people and animals, and worse where water or roads become objects.
     ground: f32 = 0.7;
-    /// Rounds over a clip, and of learning and cutting after a click or a box.
+    /// Rounds of learning and cutting after a click or a box.
     rounds: usize = 2;
     /// Weight of automatic evidence: neighbours and frames share its mistakes. More for colours takes ground of like colour. Real.
     automatic: f32 = 0.3;
-    /// Weight of evidence that has decided before: in the second round, and of labels carried from the frame before. Real.
+    /// Weight of labels carried from the frame before: their evidence has decided before. Real.
     trust: f32 = 0.5;
     /// Price of a border pixel, costs. Real.
     smoothness: f32 = 3.0;
@@ -364,7 +362,7 @@ model! {
     motion: f32 = 1.0;
     /// The same, as a share of the displacement.
     relative_motion: f32 = 0.2;
-    /// Distance within which an object that was hidden is looked for, and which parts it, in roots of its size.
+    /// Distance within which parts of an object are looked for, and which parts it, in roots of its size.
     search: f64 = 1.0;
     /// Share by which that distance grows in each frame in which the object is hidden.
     search_growth: f32 = 0.1;
@@ -407,13 +405,15 @@ model! {
     uncrossed: f32 = 0.2;
     /// Share of an object's full size that is left in a frame in which less is in sight: objects also become smaller by moving away.
     shrinking: f32 = 0.97;
-    /// Frames in a row in which pieces of an object must move apart to be two. Generated.
-    apart: usize = 5;
+    /// Frames in which two must move together to be one, or, in a row, apart to be two. Generated.
+    lasting_motion: usize = 5;
     /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
     lasting: usize = 4;
 
-    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next one 1, and 0 where an ablation leaves it out.
+    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next two 1, and 0 where an ablation leaves it out.
     looks_farther: usize = 1;
+    /// Whether parts that move together are joined.
+    joins: usize = 1;
     /// Whether there are several objects, each with its number. Else all that is found is one.
     identities: usize = 1;
 }

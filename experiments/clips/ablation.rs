@@ -9,13 +9,14 @@ use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, vary};
 use veronese::{ClipModel, Frame};
 
 /// The rows of the table, in its order.
-const LEFT_OUT: [Row; 7] = [
+const LEFT_OUT: [Row; 8] = [
     ("nothing", &[]),
     ("evidence of other frames", &[("decay", 0.0)]),
     ("comparisons with earlier frames", &[("looks_farther", 0.0)]),
     ("identities", &[("identities", 0.0)]),
     ("recognition of what was hidden", &[("likeness", 2.0)]),
     ("parting", &[("fragment", 2.0)]),
+    ("joining of parts", &[("joins", 0.0)]),
     ("dropping of what lasts a few frames", &[("lasting", 0.0)]),
 ];
 

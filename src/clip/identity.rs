@@ -217,7 +217,8 @@ impl Identities {
             let [one, other] = [pieces[0], second].map(|c| pixels_of(&found, c));
             let apart = &mut self.objects[k].apart;
             apart.add(along, &one, &other);
-            if apart.distance() > model().search * (other.len() as f64).sqrt() || apart.frames >= model().apart {
+            if apart.distance() > model().search * (other.len() as f64).sqrt() || apart.frames >= model().lasting_motion
+            {
                 self.objects[k].apart = Apart::default();
                 if let Some(new) = self.new_number() {
                     other.iter().for_each(|&p| labels[p] = new);

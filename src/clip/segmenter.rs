@@ -3,8 +3,8 @@
 use super::description::{ClipFrame, WorkingFrame};
 use super::evidence::{KeptPairs, Pairs};
 use super::frame_state::FrameState;
+use super::grouping::Census;
 use super::identity::{Identities, Parting};
-use super::numbering::Numbering;
 use super::options::ClipOptions;
 use super::parting::divide;
 use super::runs::Runs;
@@ -163,7 +163,7 @@ impl ClipSegmenter {
         if look_ahead.is_none() {
             let width = self.tracker.options().settings(size).scaling(size).small[0];
             self.part(width);
-            self.number();
+            self.group(width);
         }
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
@@ -189,10 +189,13 @@ impl ClipSegmenter {
     }
 
     /// Gives the objects the numbers that the whole clip tells.
-    fn number(&mut self) {
-        let mut numbering = Numbering::new();
-        self.frames.iter().for_each(|frame| numbering.add(&frame.found.labels.values(), frame.back.is_none()));
-        let numbers = numbering.final_numbers();
+    fn group(&mut self, width: usize) {
+        let mut census = Census::new();
+        for frame in &self.frames {
+            let onward = frame.onward.as_ref().map(|flow| flow.flow(width));
+            census.add(&frame.found.labels.values(), width, onward.as_ref(), frame.back.is_none());
+        }
+        let numbers = census.final_numbers();
         for frame in &mut self.frames {
             frame.found.labels = frame.found.labels.map(|label| numbers[usize::from(label)]);
         }

@@ -1,15 +1,15 @@
-//! Frames in, objects of the working size out: each frame is paired with its neighbours, held back, cut in a round and handed to objects.
+//! Frames in, objects of the working size out: each frame is paired with its neighbours, held back, cut and handed to objects.
 
 use std::rc::Rc;
 
 use super::evidence::{Flow, Pairs};
 use super::farther::{FARTHEST, Farther, FartherPair, shows_object};
+use super::foreground::{Foreground, ForegroundCuts};
 use super::held::HeldFrames;
 use super::identity::{Identities, Parting};
 use super::options::{ClipOptions, MAX_LOOK_AHEAD};
 use super::pairing;
 use super::record::{PendingFrame, Record};
-use super::round::{Foreground, Round};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::options::Quality;
@@ -34,7 +34,7 @@ pub(crate) struct Tracker {
     prior: Option<Prior>,
     farther: Farther,
     held: HeldFrames,
-    round: Round,
+    cuts: ForegroundCuts,
     identities: Identities,
     /// The frame that got its pairs last.
     preview: Option<PreviewSource>,
@@ -86,7 +86,7 @@ impl Tracker {
             farther: Farther::new(),
             // A stream knows no frame after the newest one that has its pairs.
             held: HeldFrames::new(if options.look_ahead.is_none() { FARTHEST } else { 0 }),
-            round: Round::new(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD), solver),
+            cuts: ForegroundCuts::new(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD), solver),
             identities,
             preview: None,
         }
@@ -183,7 +183,7 @@ impl Tracker {
         while let Some((record, odds)) = self.held.next() {
             frames.extend(self.cut(record, odds));
         }
-        while let Some(foreground) = self.round.next() {
+        while let Some(foreground) = self.cuts.next() {
             frames.push(self.tracked(foreground));
         }
         let identities = std::mem::replace(&mut self.identities, Identities::new(self.options.pair.subject));
@@ -219,7 +219,7 @@ impl Tracker {
     }
 
     fn cut(&mut self, record: Rc<Record>, odds: Plane) -> Option<Tracked> {
-        let foreground = self.round.push(record, odds)?;
+        let foreground = self.cuts.push(record, odds)?;
         Some(self.tracked(foreground))
     }
 
@@ -229,7 +229,7 @@ impl Tracker {
             None => false,
             Some(onward) if onward.measured => true,
             // A stream knows the frames that it has looked ahead to.
-            Some(_) => match self.round.oldest() {
+            Some(_) => match self.cuts.oldest() {
                 Some(next) => next.back.is_some(),
                 None => self.last.is_some() && self.options.look_ahead == Some(0),
             },

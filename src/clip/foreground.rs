@@ -1,5 +1,5 @@
-//! One round over a clip: evidence is carried along the motions from both sides, colours are learned from the frames around each frame,
-//! and its foreground is cut.
+//! The foreground of each frame: log-odds are carried along the motions from both sides, colours are learned from the frames around, and
+//! the foreground is cut.
 //!
 //! ```text
 //! past(t)   = odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
@@ -7,7 +7,7 @@
 //! E(l)      = Σ_p l_p ≠ object · w (z + colour)(p) + borders
 //! ```
 //! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
-//! there, while ground seldom looks like an object. A frame leaves the round when the frames it waits for have come.
+//! there, while ground seldom looks like an object. A frame leaves when the frames it waits for have come.
 
 use crate::clip::options::{MAX_LOOK_AHEAD, model};
 use std::collections::VecDeque;
@@ -19,9 +19,9 @@ use super::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
 
-/// A round in progress.
+/// Cuts the foreground of one frame after another.
 #[derive(Debug)]
-pub(crate) struct Round {
+pub(crate) struct ForegroundCuts {
     /// Frames that each frame waits for.
     delay: usize,
     solver: Solver,
@@ -39,7 +39,7 @@ struct Waiting {
     past: Plane,
 }
 
-/// A frame that leaves a round.
+/// A frame that leaves.
 pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
     /// Odds of object against background with the evidence of other frames, nats.
@@ -48,9 +48,9 @@ pub(crate) struct Foreground {
     pub(crate) mask: Vec<u8>,
 }
 
-impl Round {
-    pub(crate) fn new(delay: usize, solver: Solver) -> Round {
-        Round { delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
+impl ForegroundCuts {
+    pub(crate) fn new(delay: usize, solver: Solver) -> ForegroundCuts {
+        ForegroundCuts { delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
     }
 
     /// Takes the next frame with its own odds; returns one that has waited long enough.
