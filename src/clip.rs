@@ -2,7 +2,7 @@
 //!
 //! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/pairing.rs`), and where these show no
 //!    object with an earlier one (`clip/farther.rs`). Pauses are no evidence (`clip/held.rs`).
-//! 2. The log-odds of each pixel are carried along the motions, colours learned and the foreground cut (`clip/foreground.rs`).
+//! 2. The log-odds of each pixel are carried along the motions, colours learned and the foreground cut, in two rounds (`clip/foreground.rs`).
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
 //! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), parts that move together
 //!    are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).

@@ -156,6 +156,8 @@ model! {
 
     /// Distance of the windows that propose motions, pixels of the base level. Generated.
     tile_stride: usize = 6;
+    /// Side of the blocks by which the colour model is cross-validated, working pixels. Generated.
+    colour_block: usize = 12;
     /// Smaller eigenvalue of a window's structure tensor, in noise variances, from which on it proposes. Generated.
     tile_certain: f32 = 0.05;
     /// Proposals from windows, at most. Generated.
@@ -290,6 +292,10 @@ model! {
     certain: f32 = 4.0;
     /// Probability of either side that nothing excludes.
     doubt: f32 = 0.01;
+    /// Log-odds of the first round's cut in the second one, nats. Real.
+    first_cut: f32 = 2.0;
+    /// Weight of the log-odds of pairs in the second round, as the first has decided by them. Real.
+    first_odds: f32 = 0.5;
     /// Odds of the labels found automatically where a person first annotates an object, nats. 1.5 costs .004 J where a mask is given. Real.
     found: f32 = 2.0;
     /// Largest log-likelihood ratio of a label found automatically, nats. Real.
@@ -300,18 +306,21 @@ model! {
     /// Odds of an object where a person has seen it when strokes were drawn, and drawn none, nats. 0 costs .002 J after the second
     /// round of strokes, and rounds lose in five clips of thirty instead of two; 2 costs .004 after the first. Real.
     seen: f32 = 1.0;
-    /// Odds within which evidence does not tell an object from ground, nats: probabilities of .27 to .73. Also what it costs a pixel to
-    /// leave the objects of its motion, half of what it costs to leave its own. Real; insensitive.
+    /// Log-odds within which evidence does not tell an object from ground, nats: probabilities of .27 to .73. Real; insensitive.
     undecided: f32 = 1.0;
+    /// Cost of a pixel that leaves the objects of its motion, nats; half of the cost of leaving its own object.
+    leaves_motion: f32 = 1.0;
     /// Weight of the odds of the pair with the frame before; the pair with the next one has the rest.
     backward: f32 = 0.5;
-    /// Share of evidence, and of what is remembered of an object's looks, that is left a frame later. Real.
+    /// Share of a frame's evidence that counts in the next frame. Real.
     decay: f32 = 0.8;
+    /// Share of what is remembered of an object's looks, velocity and agreement with labels that is left a frame later. Real.
+    memory_decay: f32 = 0.8;
     /// Share of carried evidence of ground that counts: an object that rests looks like ground, ground seldom like an object. Chosen on
     /// thirty real clips: J .659 with 1, .665 with .5. Less is better for people and animals, and worse where water or roads become objects.
     ground: f32 = 0.7;
     /// Rounds of learning and cutting after a click or a box.
-    rounds: usize = 2;
+    prompt_rounds: usize = 2;
     /// Weight of automatic evidence: neighbours and frames share its mistakes. More for colours takes ground of like colour. Real.
     automatic: f32 = 0.3;
     /// Weight of labels carried from the frame before: their evidence has decided before. Real.
@@ -358,10 +367,14 @@ model! {
     border: f32 = 3.0;
     /// Cells of the memory around an object, on each side.
     cells_around: usize = 3;
-    /// Difference of displacements that are the same, and how well a place is known after a frame, pixels of the working size.
-    motion: f32 = 1.0;
+    /// Largest difference of displacements that are the same, pixels of the working size.
+    same_motion: f32 = 1.0;
     /// The same, as a share of the displacement.
-    relative_motion: f32 = 0.2;
+    same_relative_motion: f32 = 0.2;
+    /// How much less well the place of an object is known with each frame, pixels of the working size.
+    drift: f32 = 1.0;
+    /// Standard deviation of the blur of the masks and colours that are propagated, pixels of the working size.
+    blur: f32 = 1.0;
     /// Distance within which parts of an object are looked for, and which parts it, in roots of its size.
     search: f64 = 1.0;
     /// Share by which that distance grows in each frame in which the object is hidden.
@@ -410,8 +423,10 @@ model! {
     /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
     lasting: usize = 4;
 
-    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next two 1, and 0 where an ablation leaves it out.
+    /// Whether a frame is compared with earlier ones where neighbours show nothing. As the next three 1, and 0 where an ablation leaves it out.
     looks_farther: usize = 1;
+    /// Whether the foreground is cut in a second round.
+    cuts_twice: usize = 1;
     /// Whether parts that move together are joined.
     joins: usize = 1;
     /// Whether there are several objects, each with its number. Else all that is found is one.

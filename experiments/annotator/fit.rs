@@ -11,7 +11,8 @@ use crate::measure;
 use crate::session::Session;
 
 /// The constants of the propagation that are fitted.
-const FITTED: [&str; 9] = ["bias", "trust", "memory", "back_off", "decay", "cell", "smoothness", "shift", "automatic"];
+const FITTED: [&str; 9] =
+    ["bias", "trust", "memory", "back_off", "memory_decay", "cell", "smoothness", "shift", "automatic"];
 /// Factors that a constant is tried with, one constant after another.
 const FACTORS: [f64; 2] = [1.25, 0.8];
 /// Gain of a factor below which the constant stays: chance.

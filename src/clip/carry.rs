@@ -58,7 +58,7 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&F
             let comes_back = |&[qx, qy]: &[usize; 2]| {
                 return_flow.is_none_or(|flow| {
                     let ([u, v], [r, s]) = (along.at(x, y), flow.at(qx, qy));
-                    (u + r) * (u + r) + (v + s) * (v + s) < (2.0 * f64::from(model().motion)).powi(2)
+                    (u + r) * (u + r) + (v + s) * (v + s) < (2.0 * f64::from(model().same_motion)).powi(2)
                 })
             };
             let place = along.destination(x, y).filter(comes_back);

@@ -1,5 +1,5 @@
-//! The foreground of each frame: log-odds are carried along the motions from both sides, colours are learned from the frames around, and
-//! the foreground is cut.
+//! The foreground of each frame, cut in rounds: log-odds are carried along the motions from both sides, colours are learned from the frames
+//! around, and the foreground is cut. A second round starts from the log-odds and the cut of the first.
 //!
 //! ```text
 //! past(t)   = odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
@@ -9,7 +9,7 @@
 //! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
 //! there, while ground seldom looks like an object. A frame leaves when the frames it waits for have come.
 
-use crate::clip::options::{MAX_LOOK_AHEAD, model};
+use crate::clip::options::model;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -19,9 +19,12 @@ use super::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
 
-/// Cuts the foreground of one frame after another.
+/// Frames on each side whose colours count.
+const COLOUR_FRAMES: usize = 16;
+
+/// One round over the frames.
 #[derive(Debug)]
-pub(crate) struct ForegroundCuts {
+pub(crate) struct Round {
     /// Frames that each frame waits for.
     delay: usize,
     solver: Solver,
@@ -39,18 +42,32 @@ struct Waiting {
     past: Plane,
 }
 
-/// A frame that leaves.
+/// A frame that leaves a round.
 pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
+    /// The log-odds that it came with.
+    own: Plane,
     /// Odds of object against background with the evidence of other frames, nats.
     pub(crate) odds: Plane,
     /// 1 where the frame shows an object, else 0.
     pub(crate) mask: Vec<u8>,
 }
 
-impl ForegroundCuts {
-    pub(crate) fn new(delay: usize, solver: Solver) -> ForegroundCuts {
-        ForegroundCuts { delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
+impl Foreground {
+    /// The frame's record and log-odds for the second round.
+    pub(crate) fn for_second_round(self) -> (Rc<Record>, Plane) {
+        let Foreground { record, own: mut odds, mask, .. } = self;
+        for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
+            let cut = if object > 0 { model().first_cut } else { -model().first_cut };
+            *odds = model().first_odds * *odds + cut;
+        }
+        (record, odds)
+    }
+}
+
+impl Round {
+    pub(crate) fn new(delay: usize, solver: Solver) -> Round {
+        Round { delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
     }
 
     /// Takes the next frame with its own odds; returns one that has waited long enough.
@@ -72,14 +89,14 @@ impl ForegroundCuts {
     /// The frame that has waited longest leaves.
     pub(crate) fn next(&mut self) -> Option<Foreground> {
         let (odds, own_colours, mut colours) = self.with_future()?;
-        let Waiting { record, .. } = self.waiting.pop_front()?;
+        let Waiting { record, odds: own, .. } = self.waiting.pop_front()?;
         if record.back.is_none() {
             self.colours.clear();
         }
         colours.add(&own_colours);
         self.colours.iter().for_each(|counts| colours.add(counts));
         self.colours.push_back(own_colours);
-        if self.colours.len() > 2 * MAX_LOOK_AHEAD {
+        if self.colours.len() > COLOUR_FRAMES {
             self.colours.pop_front();
         }
         let ratios = colours.ratios();
@@ -89,14 +106,14 @@ impl ForegroundCuts {
         let [width, height] = record.size();
         let ground = Plane::from_vec(width, height, odds.values().iter().enumerate().map(price).collect());
         let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
-        Some(Foreground { record, odds, mask })
+        Some(Foreground { record, own, odds, mask })
     }
 
     /// The evidence of the frame that has waited longest with that of all others, its colours by that evidence, and those of the waiting
     /// frames of its scene by theirs.
     fn with_future(&self) -> Option<(Plane, ColourCounts, ColourCounts)> {
         let of_scene = self.waiting.iter().skip(1).take_while(|waiting| waiting.record.back.is_some());
-        let last_of_colours = of_scene.count().min(2 * MAX_LOOK_AHEAD);
+        let last_of_colours = of_scene.count().min(COLOUR_FRAMES);
         let mut colours = ColourCounts::none();
         let mut future: Option<Plane> = None;
         for (k, Waiting { record, odds, past }) in self.waiting.iter().enumerate().rev() {

@@ -103,7 +103,7 @@ impl Census {
         let difference = length(at(one.motion, other.centre), other.displacement)
             + length(at(other.motion, one.centre), one.displacement);
         let moved = |sighting: &Sighting| length(at(BACKGROUND, sighting.centre), sighting.displacement);
-        if moved(one) >= f64::from(model().motion) && moved(other) >= f64::from(model().motion) {
+        if moved(one) >= f64::from(model().same_motion) && moved(other) >= f64::from(model().same_motion) {
             meeting.frames += 1;
             meeting.difference += difference;
             meeting.displacement += moved(one) + moved(other);
@@ -150,7 +150,7 @@ impl Meeting {
     fn is_of_one_object(&self) -> bool {
         model().joins > 0
             && self.frames >= model().lasting_motion
-            && self.difference <= f64::from(model().relative_motion) * self.displacement
+            && self.difference <= f64::from(model().same_relative_motion) * self.displacement
             && self.distance <= model().search
     }
 }

@@ -46,7 +46,7 @@ impl FrameFeatures {
         let mut luminance = frame.luminance().clone();
         (0..scaling.halvings()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
-        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().motion));
+        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().blur));
         let size = scaling.small;
         let colours =
             (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();

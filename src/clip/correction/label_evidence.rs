@@ -39,7 +39,7 @@ impl LabelEvidence {
         }
         let area = Area::of(&inside, width).grown(model().margin, width, height);
         let side = |p: usize| usize::from(mask.values()[p] < 0.5);
-        let shares = if begins { [0.0, 1.0] } else { [model().decay, 1.0 - model().decay] };
+        let shares = if begins { [0.0, 1.0] } else { [model().memory_decay, 1.0 - model().memory_decay] };
         self.count(shares, found, &area, width, &side);
     }
 

@@ -85,7 +85,7 @@ impl Whole {
             return Whole { shift, velocity, frames, now: !is_hidden, share, pixels: expected, ..self };
         }
         let step = [0, 1].map(|k| (centre[k] - self.centre[k]) / (self.frames as f32 + 1.0));
-        let velocity = Some(self.velocity.map_or(step, |_| onward(1.0 - model().decay, step)));
+        let velocity = Some(self.velocity.map_or(step, |_| onward(1.0 - model().memory_decay, step)));
         Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, features, centre, self.known) }
     }
 

@@ -2,7 +2,6 @@
 
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Direction, ObjectSet, Spread};
-use crate::clip::options::MAX_LOOK_AHEAD;
 
 /// A frame that tells where an object is, and where that spreads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +114,9 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
 
 /// A few of the frames, evenly from the last one back.
 fn sample(frames: &[usize]) -> Vec<usize> {
-    let count = frames.len().min(MAX_LOOK_AHEAD);
+    /// As many as tell the looks of an object; for speed.
+    const MOST: usize = 8;
+    let count = frames.len().min(MOST);
     (0..count).map(|k| frames[frames.len() - 1 - k * frames.len() / count]).collect()
 }
 

@@ -280,7 +280,7 @@ impl View<'_> {
         let (features, width) = (self.features, self.features.size[0]);
         let Beginning { area, odds: prior, mut sides } = from;
         sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
-        for _ in 0..model().rounds {
+        for _ in 0..model().prompt_rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
             // Ground counts less where there is more of it.
             let weight = (count(0) / count(1).max(1.0)).sqrt();

@@ -98,7 +98,13 @@ impl Propagator {
         let (mut appearance, mut label_evidence) = (self.appearance.clone(), LabelEvidence::default());
         if let (Some(appearance), Some(reached)) = (&mut appearance, &self.reached) {
             appearance.forget_recent();
-            appearance.learn(features, reached.centre, Source::Recent, 1.0 - model().decay, &side(&reached.mask));
+            appearance.learn(
+                features,
+                reached.centre,
+                Source::Recent,
+                1.0 - model().memory_decay,
+                &side(&reached.mask),
+            );
             label_evidence.learn(found, &reached.mask, true);
         }
         let reached = self.reached.as_ref().map(|reached| Reached { whole: reached.whole.turned(), ..reached.clone() });
@@ -208,8 +214,8 @@ impl Propagator {
         let (features, [width, height]) = (of.features, of.features.size);
         let still = Flow::still(features.size);
         let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
-        let soft = gaussian(&reached.mask, model().motion);
-        let all = gaussian(&reached.whole.template.mask, model().motion);
+        let soft = gaussian(&reached.mask, model().blur);
+        let all = gaussian(&reached.whole.template.mask, model().blur);
         let along = |of: &Plane, p: usize| {
             let [u, v] = to.at(p % width, p / width);
             let [x, y] = [(p % width) as f32 + u as f32, (p / width) as f32 + v as f32];
@@ -228,7 +234,7 @@ impl Propagator {
         let hidden = placement.as_ref().and_then(|placement| placement.hidden.as_ref());
         let mut awaited = None;
         if let Some([alike, around]) = hidden {
-            let alike = gaussian(alike, model().motion);
+            let alike = gaussian(alike, model().blur);
             both.iter_mut().zip(alike.values()).for_each(|(both, &alike)| *both = [both[0].max(alike); 2]);
             awaited = Some(features.plane_of(&|p| alike.values()[p] + around.values()[p]));
         }
@@ -273,7 +279,7 @@ impl Propagator {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             looks[p] = memory + model().trace * traced.as_ref().map_or(0.0, |of| of[k]);
         }
-        let change = self.change.as_ref().map(|change| gaussian(change, model().motion));
+        let change = self.change.as_ref().map(|change| gaussian(change, model().blur));
         let change = change.map(|change| (0..width * height).map(|p| along(&change, p)).collect());
         let signs = Signs { looks, change };
         Some(Prediction { area, odds, signs, centre, placement, awaited })
@@ -364,9 +370,9 @@ impl Propagator {
     fn reach(&mut self, of: &Observation<'_>, reached: Reached, [knows_little, begins]: [bool; 2]) {
         // Of an object that is partly hidden it would learn the one in front.
         if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.whole.now) {
-            appearance.fade(model().decay);
+            appearance.fade(model().memory_decay);
             if knows_little {
-                let weight = 1.0 - model().decay;
+                let weight = 1.0 - model().memory_decay;
                 appearance.learn(of.features, reached.centre, Source::Recent, weight, &side(&reached.mask));
             }
         }

@@ -100,7 +100,7 @@ impl Template {
         frames: usize,
         covered: &[bool],
     ) -> Option<Shift> {
-        let reach = ((model().fine as f32 + model().motion * frames as f32) as isize)
+        let reach = ((model().fine as f32 + model().drift * frames as f32) as isize)
             .min((model().reach / model().coarse) as isize);
         let mut costs = Vec::new();
         let (best, least) = best_of(reach, 1.0, expected, expected, &mut |shift| {
@@ -147,7 +147,7 @@ impl Template {
     pub(super) fn around(&self, features: &FrameFeatures, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
         let mut there = vec![false; features.pixels()];
         self.cover(shift, &mut there);
-        let wide = gaussian(&features.plane(&|p| there[p]), model().motion * (frames as f32 + 1.0));
+        let wide = gaussian(&features.plane(&|p| there[p]), model().drift * (frames as f32 + 1.0));
         features.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
     }
 

@@ -31,7 +31,7 @@ impl Trace {
         let [width, height] = features.size;
         let places = [0, 1].map(|k| Plane::from_fn(width, height, |x, y| [x, y][k] as f32));
         let was_seen = vec![true; features.pixels()];
-        Trace { mask: gaussian(mask, model().motion), colours: features.fine.clone(), places, was_seen }
+        Trace { mask: gaussian(mask, model().blur), colours: features.fine.clone(), places, was_seen }
     }
 
     /// Goes on to a frame by the flows to the one before and from there. Returns the odds of the object at the pixels of an area, nats.
@@ -97,7 +97,7 @@ fn source(to: &Flow, from: &Flow, [x, y]: [usize; 2]) -> Option<usize> {
     let (step, [px, py]) = (to.at(x, y), to.destination(x, y)?);
     let back = from.at(px, py);
     let length = |of: [f64; 2]| (of[0] * of[0] + of[1] * of[1]).sqrt();
-    let tolerance = f64::from(model().motion) + f64::from(model().relative_motion) * length(step);
+    let tolerance = f64::from(model().same_motion) + f64::from(model().same_relative_motion) * length(step);
     (length([step[0] + back[0], step[1] + back[1]]) < tolerance).then_some(py * to.width + px)
 }
 

@@ -2,9 +2,12 @@
 
 use super::sight::{Sight, mean_motion, moves};
 use crate::clip::evidence::Flow;
-use crate::clip::options::{MAX_LOOK_AHEAD, model};
+use crate::clip::options::model;
 use crate::clip::record::Record;
 use crate::labelling::BACKGROUND;
+
+/// Frames for which a hidden object is remembered.
+const REMEMBERED: usize = 16;
 
 /// An object.
 #[derive(Clone, Debug)]
@@ -44,7 +47,7 @@ impl Apart {
             let ([u, v], [r, s]) = (motion.flow(x, y), mean_motion(along, other));
             let [a, b] = along.motions[BACKGROUND].flow(x, y);
             let (difference, own) = (libm::hypot(u - r, v - s), libm::hypot(r - a, s - b));
-            difference > f64::from(model().motion) && difference > f64::from(model().relative_motion) * own
+            difference > f64::from(model().same_motion) && difference > f64::from(model().same_relative_motion) * own
         };
         self.frames = if differs((one, other)) && differs((other, one)) { self.frames + 1 } else { 0 };
     }
@@ -93,7 +96,7 @@ impl Object {
 
     /// Whether it may come back.
     pub(crate) fn is_remembered(&self) -> bool {
-        self.hidden <= 2 * MAX_LOOK_AHEAD
+        self.hidden <= REMEMBERED
     }
 
     pub(crate) fn moves_like(&self, sight: &Sight) -> bool {
@@ -120,5 +123,5 @@ fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
 /// Whether one displacement is like another.
 fn same([u, v]: [f64; 2], [r, s]: [f64; 2]) -> bool {
     ((u - r) * (u - r) + (v - s) * (v - s)).sqrt()
-        < f64::from(model().motion) + f64::from(model().relative_motion) * (r * r + s * s).sqrt()
+        < f64::from(model().same_motion) + f64::from(model().same_relative_motion) * (r * r + s * s).sqrt()
 }

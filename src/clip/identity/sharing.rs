@@ -27,8 +27,8 @@ pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: 
         let all = votes.iter().sum::<usize>().max(1) as f32;
         let own = own(p).filter(|&k| main[k] == motion(p) || !main.contains(&motion(p)));
         for (k, cost) in costs.iter_mut().enumerate() {
-            let other = if own.is_some_and(|own| own != k) { 2.0 * model().undecided } else { 0.0 };
-            cost.values_mut()[p] = other + model().undecided * (1.0 - votes[k] as f32 / all);
+            let other = if own.is_some_and(|own| own != k) { 2.0 * model().leaves_motion } else { 0.0 };
+            cost.values_mut()[p] = other + model().leaves_motion * (1.0 - votes[k] as f32 / all);
         }
     }
     let solved = record.borders(model().smoothness).solve(&costs, Solver::FAST);

@@ -25,7 +25,7 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8],
 /// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
 /// information needed, averaged over the labels; 0…1.
 fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> f32 {
-    let half = halves(palette.width(), labels.len(), 2 * model.tile_stride);
+    let half = halves(palette.width(), labels.len(), model.colour_block);
     let tables = [0, 1].map(|which| {
         let of_half = |(&weight, &half): (&f32, &u8)| if half == which { weight } else { 0.0 };
         posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Vec<f32>>(), n, model)
