@@ -127,8 +127,8 @@ model! {
     smallest_weight: f32 = 1e-3;
     /// Added to the share of every colour, so that none is impossible. Generated.
     colour_prior: f32 = 1e-3;
-    /// Price of a pixel of shift when the search for the dominant motion starts, mean costs: it decides between shifts that are as good.
-    shift_price: f32 = 1e-3;
+    /// Penalty of a pixel of shift when the search for the dominant motion starts, mean costs: it decides between shifts that are as good.
+    shift_penalty: f32 = 1e-3;
     /// Least slope of a reading of the multibody polynomial, as a share of their mean. Guard.
     least_slope: f32 = 1e-3;
     /// Least deviation of a frame's grey levels that a gain is computed from. Guard.
@@ -176,7 +176,7 @@ model! {
 
     /// Gain per pixel that does not count: windows across borders and chance produce as much. Generated.
     margin: f32 = 0.35;
-    /// Proposals whose estimated gain is below this share of the price are not tried. Speed.
+    /// Proposals whose estimated gain is below this share of the penalty are not tried. Speed.
     smallest_tried_gain: f64 = 0.25;
     /// Proposals tried in earnest per round. Speed.
     tries: usize = 6;
@@ -185,25 +185,25 @@ model! {
     /// Largest number of motions that are selected.
     most: usize = 10;
 
-    /// λ: price of a border pixel of frames at their original size, costs. Generated.
+    /// λ: penalty of a border pixel of frames at their original size, costs. Generated.
     smoothness: f32 = 8.0;
     /// The same of frames that were halved. Real.
     smoothness_halved: f32 = 12.0;
-    /// Price of an object's pixel, costs: 1/40 of the largest. Generated.
+    /// Penalty of an object's pixel, costs: 1/40 of the largest. Generated.
     object_bias: f32 = 0.05;
     /// Share of λ that remains at the strongest image edge: without it, texture falls to pieces. Real.
     edge_share: f32 = 0.02;
     /// Step of an edge at which the rest of λ has fallen to 1/e, in deviations of the noise or, if it is less, in grey levels. Generated; real.
     noise_steps: f32 = 4.0;
     /// Cost per nat of improbability of a colour, if colours can be trusted entirely.
-    colour_price: f32 = 1.0;
+    colour_weight: f32 = 1.0;
     /// Largest factor of the standard deviation where no motion fits. Real.
     largest_inflation: f32 = 3.0;
     /// The same with quality `fast`. Speed.
     visibility_rounds_fast: usize = 1;
 
     /// Nats per pixel of border. Generated; real.
-    border_price: f64 = 0.5;
+    border_penalty: f64 = 0.5;
     /// Regions smaller than this share of the frame are not objects. Generated.
     smallest_share: f64 = 0.004;
 
@@ -221,7 +221,7 @@ model! {
     /// Largest cost of a motion at a pixel that it moves behind another object. Generated.
     hidden_cost: f32 = 1.4;
     /// Cost of a change of light; if it is infinite, none is looked for. Generated; real.
-    light_price: f32 = 1.4;
+    light_penalty: f32 = 1.4;
     /// Confidence of being an object: weight of the probability of the motion. Fit to real pairs and generated scenes.
     doubt_motion: f64 = 0.55;
     /// Weight of the share of the outline on the frame's border. Fit to real pairs and generated scenes.
@@ -295,7 +295,7 @@ model! {
     /// Log-odds of the first round's cut in the second one, nats. Real.
     first_cut: f32 = 2.0;
     /// Weight of the log-odds of pairs in the second round, as the first has decided by them. Real.
-    first_odds: f32 = 0.5;
+    first_log_odds: f32 = 0.5;
     /// Odds of the labels found automatically where a person first annotates an object, nats. 1.5 costs .004 J where a mask is given. Real.
     found: f32 = 2.0;
     /// Largest log-likelihood ratio of a label found automatically, nats. Real.
@@ -325,7 +325,7 @@ model! {
     automatic: f32 = 0.3;
     /// Weight of labels carried from the frame before: their evidence has decided before. Real.
     trust: f32 = 0.5;
-    /// Price of a border pixel, costs. Real.
+    /// Penalty of a border pixel, costs. Real.
     smoothness: f32 = 3.0;
 
     /// Added to all odds for the object of a person, nats: without it masks shrink until they vanish. Fit to real clips.
@@ -344,7 +344,7 @@ model! {
     silences: f32 = 40.0;
     /// Squared difference of colours beyond which it does not matter, L*a*b*.
     truncation: f32 = 600.0;
-    /// Price of a shift of a whole object, for each coarse pixel away from the one expected, truncated differences. Fit to real clips.
+    /// Penalty of a shift of a whole object, for each coarse pixel away from the one expected, truncated differences. Fit to real clips.
     shift: f32 = 0.003;
     /// Coarse pixels are so many of the working size. Speed.
     coarse: usize = 4;

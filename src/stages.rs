@@ -104,7 +104,7 @@ pub struct CandidateMotion {
     pub matrix: AffineMotion,
     /// Where it comes from.
     pub source: CandidateSource,
-    /// How much it would save beside the dominant motion alone before it is refined, in the unit of [`Background::price`].
+    /// How much it would save beside the dominant motion alone before it is refined, in the unit of [`Background::penalty`].
     pub gain: f64,
     /// Share of the pixels, 0…1, that it explains better than the dominant motion does.
     pub support: f64,

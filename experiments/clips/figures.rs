@@ -102,7 +102,7 @@ fn rows(clips: &[&Measured]) -> Vec<Row> {
 fn events(clips: &[&Measured]) -> Vec<OfEvent> {
     let of = |event: Event| {
         let own: Vec<&Measured> = clips.iter().copied().filter(|one| one.case.has(event)).collect();
-        let methods = [Method::Clip, Method::Flow];
+        let methods = [Method::Clip, Method::LayeredMotion];
         OfEvent { event: word(event), rows: methods.into_iter().filter_map(|method| row(&own, method)).collect() }
     };
     Event::ALL.into_iter().map(of).filter(|event| !event.rows.is_empty()).collect()

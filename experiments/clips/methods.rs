@@ -20,7 +20,7 @@ pub enum Method {
     /// The stream segmenter with a look-ahead.
     Stream(Quality, usize),
     /// OpenCV: DIS flow, the dominant affine motion, a threshold.
-    Flow,
+    LayeredMotion,
     /// OpenCV: background subtraction.
     Mog2,
     Knn,
@@ -33,7 +33,7 @@ impl Method {
         Method::Stream(Quality::Best, 4),
         Method::Stream(Quality::Fast, 4),
         Method::Stream(Quality::Fast, 0),
-        Method::Flow,
+        Method::LayeredMotion,
         Method::Mog2,
         Method::Knn,
     ];
@@ -45,7 +45,7 @@ impl Method {
             Method::Stream(Quality::Best, _) => "stream",
             Method::Stream(_, 0) => "live",
             Method::Stream(..) => "stream-fast",
-            Method::Flow => "flow",
+            Method::LayeredMotion => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
         }
@@ -58,7 +58,7 @@ impl Method {
             Method::Stream(Quality::Best, _) => "stream, look-ahead 4",
             Method::Stream(_, 0) => "stream, fast, look-ahead 0",
             Method::Stream(..) => "stream, fast, look-ahead 4",
-            Method::Flow => "OpenCV, DIS flow",
+            Method::LayeredMotion => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
         }
@@ -108,7 +108,7 @@ pub fn found(method: Method, name: &str, data: &Data, peers: &Path, kept: Option
             Some(clip_labels(ClipSegmenter::new(options)?, &data.frames, None)?)
         }
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
-        Method::Flow | Method::Mog2 | Method::Knn => None,
+        Method::LayeredMotion | Method::Mog2 | Method::Knn => None,
     };
     if let Some(labels) = own {
         let milliseconds = Some(1e3 * start.elapsed().as_secs_f64() / data.frames.len() as f64);

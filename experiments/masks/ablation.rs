@@ -17,12 +17,12 @@ const LEFT_OUT: [Row; 16] = [
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
     ("smoothness lower at edges", &[("noise_steps", 1e9)]),
     ("occlusion", &[("hidden_cost", f64::INFINITY), ("visibility_rounds", 0.0), ("visibility_rounds_fast", 0.0)]),
-    ("return of shadows", &[("light_price", f64::INFINITY)]),
+    ("return of shadows", &[("light_penalty", f64::INFINITY)]),
     ("larger variance where nothing fits", &[("largest_inflation", 1.0)]),
-    ("price of borders", &[("border_price", 0.0)]),
+    ("penalty of borders", &[("border_penalty", 0.0)]),
     ("splitting", &[("splits", 0.0)]),
     ("merging", &[("merges", 0.0)]),
-    ("colour", &[("colour_price", 0.0)]),
+    ("colour", &[("colour_weight", 0.0)]),
     ("guided upsampling", &[("flat_variance", f64::INFINITY)]),
 ];
 

@@ -1,6 +1,6 @@
 //! Evidence carried through time along the motions of the pixels.
 
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
@@ -8,7 +8,7 @@ use crate::labelling::BACKGROUND;
 
 /// A plane of another frame at each pixel of this one: its value where the pixel's motion leads, or at the nearest place
 /// inside the frame.
-pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
+pub(crate) fn carried(plane: &Plane, along: &LayeredMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut carried = Plane::filled(width, height, 0.0);
     let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
@@ -30,7 +30,7 @@ pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
 }
 
 /// The labels of a frame whose pixels go on with the motions that led from the frame before it to the one before that, whose flow that is.
-pub(crate) fn continued_labels(flow: &Flow) -> Vec<u8> {
+pub(crate) fn continued_labels(flow: &LayeredMotion) -> Vec<u8> {
     let (width, height) = (flow.width, flow.labels.len() / flow.width);
     let mut labels = vec![BACKGROUND as u8; flow.labels.len()];
     for (number, motion) in (0u8..).zip(&flow.motions).skip(BACKGROUND + 1) {
@@ -50,7 +50,12 @@ pub(crate) fn continued_labels(flow: &Flow) -> Vec<u8> {
 
 /// The labels of another frame where the motions of this one's pixels lead; `unknown` where that is outside, or something else was in
 /// front. `return_flow` is the other frame's flow to this one, if it was measured.
-pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&Flow>, unknown: u8) -> Vec<u8> {
+pub(crate) fn carried_labels(
+    labels: &[u8],
+    along: &LayeredMotion,
+    return_flow: Option<&LayeredMotion>,
+    unknown: u8,
+) -> Vec<u8> {
     let (width, height) = (along.width, labels.len() / along.width);
     let mut carried = Vec::with_capacity(labels.len());
     for y in 0..height {
@@ -82,7 +87,7 @@ mod tests {
         };
         // The motions lead back to the frame before.
         let motions = vec![AffineMotion::STATIC, AffineMotion::translation(-3.0, 0.0)];
-        let flow = |left| Flow { width, labels: square(left), motions: motions.clone(), measured: true };
+        let flow = |left| LayeredMotion { width, labels: square(left), motions: motions.clone(), measured: true };
         assert_eq!(continued_labels(&flow(5))[..], square(8)[..]);
         // Pixels that leave the frame are gone.
         assert_eq!(continued_labels(&flow(14))[..], square(17)[..]);

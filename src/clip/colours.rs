@@ -13,11 +13,13 @@ impl ColourCounts {
         ColourCounts([(); 2].map(|()| vec![0.0; COLOURS]))
     }
 
-    /// The counts of one frame, from the odds of object against background at its pixels.
-    pub(crate) fn of(palette: &Palette, odds: &Plane) -> ColourCounts {
+    /// The counts of one frame, from the log-odds of object against background at its pixels.
+    pub(crate) fn of(palette: &Palette, log_odds: &Plane) -> ColourCounts {
         let mut counts = ColourCounts::none();
-        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > model().undecided) {
-            counts.0[usize::from(odds < 0.0)][palette.index(p)] += 1.0;
+        for (p, &log_odds) in
+            log_odds.values().iter().enumerate().filter(|(_, log_odds)| log_odds.abs() > model().undecided)
+        {
+            counts.0[usize::from(log_odds < 0.0)][palette.index(p)] += 1.0;
         }
         counts
     }
@@ -51,8 +53,9 @@ mod tests {
         let rgba: Vec<u8> =
             (0..64 * 48).flat_map(|p| if p % 64 < 20 { [250, 10, 10, 255] } else { [10, 10, 250, 255] }).collect();
         let palette = Palette::new(&Frame::from_rgba(64, 48, rgba).unwrap(), &Scaling::halved([64, 48], 0));
-        let ratios =
-            |odds: &dyn Fn(usize) -> f32| ColourCounts::of(&palette, &Plane::from_fn(64, 48, |x, _| odds(x))).ratios();
+        let ratios = |log_odds: &dyn Fn(usize) -> f32| {
+            ColourCounts::of(&palette, &Plane::from_fn(64, 48, |x, _| log_odds(x))).ratios()
+        };
         let known = ratios(&|x| if x < 20 { 2.0 } else { -2.0 });
         assert!(known[palette.index(3)] > 3.0 && known[palette.index(40)] < -3.0);
         assert!(ratios(&|_| -2.0).iter().all(|&ratio| ratio == 0.0), "no object yet");

@@ -30,7 +30,7 @@ use std::collections::VecDeque;
 
 use super::annotation::{Direction, ObjectSet, Spread};
 use super::changes::Changes;
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use super::frame_annotation::{Change, FrameAnnotation};
 use super::layer::Layer;
 use super::segmented_clip::SegmentedClip;
@@ -235,7 +235,7 @@ impl SceneCorrection {
     ) {
         let (Arrived { index: t, features, .. }, [first, last]) = (*arrived, self.scene);
         let found = clip.found_at(t, features.size);
-        let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(features.size));
+        let flow = |kept: Option<LayeredMotion>| kept.map(|flow| flow.enlarged(features.size));
         let [to, from] = match direction {
             Direction::Forward => [flow(clip.back(t)), if t > first { flow(clip.onward(t - 1)) } else { None }],
             Direction::Backward => [flow(clip.onward(t)), if t < last { flow(clip.back(t + 1)) } else { None }],
@@ -291,9 +291,9 @@ impl SceneCorrection {
             let Some(layer) = state.layer.as_ref().filter(|_| is_open) else { continue };
             if layer.labels.each().any(|(label, _)| is_gone(label)) {
                 let labels = layer.labels.map(|label| if is_gone(label) { UNLABELLED } else { label });
-                let odds = clip.odds_of(layer);
+                let log_odds = clip.log_odds_of(layer);
                 changes.add(t);
-                clip.frames[t].layer = clip.layer_of(&labels.values(), &|_, at| odds.values()[at]);
+                clip.frames[t].layer = clip.layer_of(&labels.values(), &|_, at| log_odds.values()[at]);
             }
         }
     }

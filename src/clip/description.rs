@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use super::options::model;
 use crate::answer::UNLABELLED;
 use crate::frame::Plane;
@@ -51,11 +51,11 @@ pub(crate) struct WorkingFrame<'a> {
     pub(crate) index: usize,
     /// The object of every pixel, 0 for the background.
     pub(crate) labels: &'a [u8],
-    /// Odds of object against background, nats.
-    pub(crate) odds: &'a Plane,
+    /// Log-odds of object against background, nats.
+    pub(crate) log_odds: &'a Plane,
     /// To the next frame of the scene, if there is one.
-    pub(crate) onward: Option<&'a Flow>,
-    /// Whether pixels whose odds do not decide are marked.
+    pub(crate) onward: Option<&'a LayeredMotion>,
+    /// Whether pixels whose log-odds do not decide are marked.
     pub(crate) mark_unknown: bool,
 }
 
@@ -67,10 +67,10 @@ impl WorkingFrame<'_> {
 
     /// The frame with these labels of full size, marked where they are unknown if that is asked for.
     pub(crate) fn marked(&self, mut labels: Vec<u8>, width: usize) -> ClipFrame {
-        let scaling = Scaling::between([width, labels.len() / width], [self.odds.width(), self.odds.height()]);
+        let scaling = Scaling::between([width, labels.len() / width], [self.log_odds.width(), self.log_odds.height()]);
         if self.mark_unknown {
-            for (label, odds) in labels.iter_mut().zip(scaling.enlarged(self.odds.values())) {
-                if odds.abs() < model().undecided {
+            for (label, log_odds) in labels.iter_mut().zip(scaling.enlarged(self.log_odds.values())) {
+                if log_odds.abs() < model().undecided {
                     *label = UNLABELLED;
                 }
             }
@@ -81,7 +81,7 @@ impl WorkingFrame<'_> {
     /// The labels at full size.
     pub(crate) fn upsampled(&self, luminance: &Plane) -> Vec<u8> {
         let full = [luminance.width(), luminance.height()];
-        let scaling = Scaling::between(full, [self.odds.width(), self.odds.height()]);
+        let scaling = Scaling::between(full, [self.log_odds.width(), self.log_odds.height()]);
         let of = self.labels.iter().max().map_or(1, |&most| usize::from(most) + 1);
         upsample(self.labels, &scaling, of, luminance, &Model::DEFAULT)
     }
@@ -93,7 +93,7 @@ impl WorkingFrame<'_> {
         let mut objects = boxes(&labels, scaling.full[0]);
         for object in &mut objects {
             let pixels = || (0..self.labels.len()).filter(|&p| self.labels[p] == object.id);
-            object.confidence = mean_probability(self.odds, pixels());
+            object.confidence = mean_probability(self.log_odds, pixels());
             object.matrix = self.onward.map(|onward| {
                 let of_largest_part = onward.most_frequent(pixels()).unwrap_or(BACKGROUND);
                 scale(&onward.motions[of_largest_part])
@@ -126,8 +126,9 @@ fn boxes(labels: &[u8], width: usize) -> Vec<ClipObject> {
 }
 
 /// Mean probability of an object at some pixels.
-fn mean_probability(odds: &Plane, pixels: impl Iterator<Item = usize>) -> f64 {
-    let probability = |odds: f32| f64::from(1.0 / (1.0 + libm::expf(-odds)));
-    let (sum, count) = pixels.fold((0.0, 0usize), |(sum, count), p| (sum + probability(odds.values()[p]), count + 1));
+fn mean_probability(log_odds: &Plane, pixels: impl Iterator<Item = usize>) -> f64 {
+    let probability = |log_odds: f32| f64::from(1.0 / (1.0 + libm::expf(-log_odds)));
+    let (sum, count) =
+        pixels.fold((0.0, 0usize), |(sum, count), p| (sum + probability(log_odds.values()[p]), count + 1));
     sum / count.max(1) as f64
 }

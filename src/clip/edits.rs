@@ -56,13 +56,13 @@ impl SegmentedClip {
     pub(super) fn accept(&mut self, frame: &Frame, Accepted { frame: index, labels }: Accepted, changes: &mut Changes) {
         let shown = self.shown(index, frame.luminance());
         let labels = labels.unwrap_or_else(|| shown.clone());
-        let before = self.frames[index].layer.as_ref().map(|layer| (layer.labels.values(), self.odds_of(layer)));
-        let found = self.odds_of(&self.frames[index].found);
-        let odds = |p: usize, at: usize| match &before {
-            Some((labels, odds)) if labels[p] != UNLABELLED => odds.values()[at],
+        let before = self.frames[index].layer.as_ref().map(|layer| (layer.labels.values(), self.log_odds_of(layer)));
+        let found = self.log_odds_of(&self.frames[index].found);
+        let log_odds = |p: usize, at: usize| match &before {
+            Some((labels, log_odds)) if labels[p] != UNLABELLED => log_odds.values()[at],
             _ => found.values()[at],
         };
-        let layer = self.layer_of(&labels, &odds);
+        let layer = self.layer_of(&labels, &log_odds);
         (self.frames[index].layer, self.frames[index].accepted) = (layer, true);
         if labels != shown {
             changes.set(index, &shown, &labels);

@@ -1,4 +1,4 @@
-//! The evidence of a pair about the pixels of its first frame: the odds that each belongs to an object, and where each goes. And how this is
+//! The evidence of a pair about the pixels of its first frame: the log-odds that each belongs to an object, and where each goes. And how this is
 //! kept.
 
 use super::runs::Runs;
@@ -9,15 +9,14 @@ use crate::frame::scaling::Scaling;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::pair::figure::GROUND;
 use crate::pair::frame_motions::{FrameMotions, Prior};
 
-/// Odds are multiples of this many nats, so that they take little room when they are kept.
+/// Log-odds are multiples of this many nats, so that they take little room when they are kept.
 const STEP: f32 = 0.25;
 
 /// The motion of every pixel of a frame to another frame. The first motion is that of the background.
 #[derive(Clone, Debug)]
-pub(crate) struct Flow {
+pub(crate) struct LayeredMotion {
     /// Width of the frame, working pixels.
     pub(crate) width: usize,
     /// The motion of every working pixel, an index to `motions`.
@@ -28,11 +27,11 @@ pub(crate) struct Flow {
     pub(crate) measured: bool,
 }
 
-impl Flow {
+impl LayeredMotion {
     /// The flow of a frame where nothing moves.
-    pub(crate) fn still([width, height]: [usize; 2]) -> Flow {
+    pub(crate) fn still([width, height]: [usize; 2]) -> LayeredMotion {
         let labels = vec![BACKGROUND as u8; width * height];
-        Flow { width, labels, motions: vec![AffineMotion::STATIC], measured: false }
+        LayeredMotion { width, labels, motions: vec![AffineMotion::STATIC], measured: false }
     }
 
     /// The motion that most of some pixels have, if there are any.
@@ -73,36 +72,36 @@ impl Flow {
     }
 
     /// The flow at a size from which its own is halved.
-    pub(crate) fn enlarged(&self, size: [usize; 2]) -> Flow {
+    pub(crate) fn enlarged(&self, size: [usize; 2]) -> LayeredMotion {
         let scaling = Scaling::between(size, [self.width, self.height()]);
         let motions = self.motions.iter().map(|motion| motion.scaled(scaling.step as f64)).collect();
-        Flow { width: size[0], labels: scaling.enlarged(&self.labels), motions, measured: self.measured }
+        LayeredMotion { width: size[0], labels: scaling.enlarged(&self.labels), motions, measured: self.measured }
     }
 
     /// Where the pixels go if they keep the motions with which they came.
-    pub(crate) fn continued(&self) -> Flow {
+    pub(crate) fn continued(&self) -> LayeredMotion {
         let motions = self.motions.iter().map(|motion| motion.inverse().unwrap_or(AffineMotion::STATIC)).collect();
-        Flow { motions, measured: false, ..self.clone() }
+        LayeredMotion { motions, measured: false, ..self.clone() }
     }
 }
 
-/// A [`Flow`] as it is kept.
+/// A [`LayeredMotion`] as it is kept.
 #[derive(Clone, Debug)]
-pub(crate) struct KeptFlow {
+pub(crate) struct KeptLayeredMotion {
     labels: Runs,
     motions: Vec<AffineMotion>,
     measured: bool,
 }
 
-saved!(KeptFlow { labels, motions, measured });
+saved!(KeptLayeredMotion { labels, motions, measured });
 
-impl KeptFlow {
-    pub(crate) fn of(flow: &Flow) -> KeptFlow {
-        KeptFlow { labels: Runs::of(&flow.labels), motions: flow.motions.clone(), measured: flow.measured }
+impl KeptLayeredMotion {
+    pub(crate) fn of(flow: &LayeredMotion) -> KeptLayeredMotion {
+        KeptLayeredMotion { labels: Runs::of(&flow.labels), motions: flow.motions.clone(), measured: flow.measured }
     }
 
-    pub(crate) fn flow(&self, width: usize) -> Flow {
-        Flow { width, labels: self.labels.values(), motions: self.motions.clone(), measured: self.measured }
+    pub(crate) fn flow(&self, width: usize) -> LayeredMotion {
+        LayeredMotion { width, labels: self.labels.values(), motions: self.motions.clone(), measured: self.measured }
     }
 
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {
@@ -113,20 +112,20 @@ impl KeptFlow {
     }
 }
 
-/// Odds as they are kept: multiples of a step.
+/// Log-odds as they are kept: multiples of a step.
 #[derive(Clone, Debug)]
-pub(crate) struct KeptOdds(Runs);
+pub(crate) struct KeptLogOdds(Runs);
 
-saved!(KeptOdds { 0 });
+saved!(KeptLogOdds { 0 });
 
-impl KeptOdds {
-    pub(crate) fn of(odds: &Plane) -> KeptOdds {
-        // One byte; 128 stands for even odds.
-        let code = |odds: &f32| (libm::roundf(odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
-        KeptOdds(Runs::of(&odds.values().iter().map(code).collect::<Vec<u8>>()))
+impl KeptLogOdds {
+    pub(crate) fn of(log_odds: &Plane) -> KeptLogOdds {
+        // One byte; 128 stands for even log-odds.
+        let code = |log_odds: &f32| (libm::roundf(log_odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
+        KeptLogOdds(Runs::of(&log_odds.values().iter().map(code).collect::<Vec<u8>>()))
     }
 
-    pub(crate) fn odds(&self, width: usize, height: usize) -> Plane {
+    pub(crate) fn log_odds(&self, width: usize, height: usize) -> Plane {
         // As above.
         let decoded = self.0.values().iter().map(|&code| STEP * (f32::from(code) - 128.0)).collect();
         Plane::from_vec(width, height, decoded)
@@ -141,9 +140,9 @@ impl KeptOdds {
 #[derive(Clone, Debug)]
 pub(crate) struct KeptPairs {
     /// From the frame before to this one.
-    onward: Option<(KeptOdds, KeptFlow)>,
+    onward: Option<(KeptLogOdds, KeptLayeredMotion)>,
     /// From this frame to the one before.
-    back: Option<(KeptOdds, KeptFlow)>,
+    back: Option<(KeptLogOdds, KeptLayeredMotion)>,
     /// The expectation for the next pair.
     prior: Option<Prior>,
 }
@@ -153,50 +152,52 @@ saved!(KeptPairs { onward, back, prior });
 /// [`KeptPairs`] in use.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
-    pub(crate) onward: Option<(Plane, Flow)>,
-    pub(crate) back: Option<(Plane, Flow)>,
+    pub(crate) onward: Option<(Plane, LayeredMotion)>,
+    pub(crate) back: Option<(Plane, LayeredMotion)>,
     pub(crate) prior: Option<Prior>,
 }
 
 impl Pairs {
     pub(crate) fn kept(&self) -> KeptPairs {
-        let kept =
-            |view: &Option<(Plane, Flow)>| view.as_ref().map(|(odds, flow)| (KeptOdds::of(odds), KeptFlow::of(flow)));
+        let kept = |view: &Option<(Plane, LayeredMotion)>| {
+            view.as_ref().map(|(log_odds, flow)| (KeptLogOdds::of(log_odds), KeptLayeredMotion::of(flow)))
+        };
         KeptPairs { onward: kept(&self.onward), back: kept(&self.back), prior: self.prior.clone() }
     }
 }
 
 impl KeptPairs {
     pub(crate) fn pairs(&self, [width, height]: [usize; 2]) -> Pairs {
-        let view = |kept: &Option<(KeptOdds, KeptFlow)>| {
-            kept.as_ref().map(|(odds, flow)| (odds.odds(width, height), flow.flow(width)))
+        let view = |kept: &Option<(KeptLogOdds, KeptLayeredMotion)>| {
+            kept.as_ref().map(|(log_odds, flow)| (log_odds.log_odds(width, height), flow.flow(width)))
         };
         Pairs { onward: view(&self.onward), back: view(&self.back), prior: self.prior.clone() }
     }
 
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {
-        let valid = |(odds, flow): &(KeptOdds, KeptFlow)| odds.is_valid(pixels) && flow.is_valid(pixels);
+        let valid =
+            |(log_odds, flow): &(KeptLogOdds, KeptLayeredMotion)| log_odds.is_valid(pixels) && flow.is_valid(pixels);
         [&self.onward, &self.back].into_iter().flatten().all(valid) && self.prior.as_ref().is_none_or(Prior::is_valid)
     }
 }
 
-/// Log-odds of object against background at every working pixel, nats.
-pub(crate) fn odds(found: &FrameMotions) -> Plane {
+/// Log-log-odds of object against background at every working pixel, nats.
+pub(crate) fn log_odds(found: &FrameMotions) -> Plane {
     let FrameMotions { probabilities, groups, .. } = found;
     let (width, height) = (probabilities[0].width(), probabilities[0].height());
-    let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().doubt));
+    let [mut log_odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().doubt));
     for (probability, group) in probabilities.iter().zip(groups) {
-        let sum = if *group == GROUND { &mut ground } else { &mut odds };
+        let sum = if *group == BACKGROUND { &mut ground } else { &mut log_odds };
         sum.values_mut().iter_mut().zip(probability.values()).for_each(|(s, p)| *s += p);
     }
-    for (odds, ground) in odds.values_mut().iter_mut().zip(ground.values()) {
-        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-model().certain, model().certain) / STEP);
+    for (log_odds, ground) in log_odds.values_mut().iter_mut().zip(ground.values()) {
+        *log_odds = STEP * libm::roundf(libm::logf(*log_odds / ground).clamp(-model().certain, model().certain) / STEP);
     }
-    odds
+    log_odds
 }
 
 /// The flow of motions that were found.
-pub(crate) fn flow(found: FrameMotions) -> Flow {
+pub(crate) fn flow(found: FrameMotions) -> LayeredMotion {
     let FrameMotions { labels, motions, probabilities, .. } = found;
-    Flow { width: probabilities[0].width(), labels, motions, measured: true }
+    LayeredMotion { width: probabilities[0].width(), labels, motions, measured: true }
 }

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::evidence::odds;
+use super::evidence::log_odds;
 use super::options::model;
 use super::record::PendingFrame;
 use crate::frame::Plane;
@@ -31,7 +31,7 @@ pub(super) struct Farther {
 /// What an earlier frame tells.
 pub(super) struct FartherPair {
     /// Of object against background, nats.
-    pub(super) odds: Plane,
+    pub(super) log_odds: Plane,
     /// How many frames earlier it is.
     pub(super) reach: usize,
 }
@@ -62,8 +62,8 @@ impl Farther {
         }
         let earlier = &self.earlier[self.earlier.len().checked_sub(self.reach)?];
         let view = newest.motions_to(earlier, settings, Expected::Nothing);
-        let pair = FartherPair { odds: odds(&view), reach: self.reach };
-        if !view.is_cut() && shows_object(&pair.odds) {
+        let pair = FartherPair { log_odds: log_odds(&view), reach: self.reach };
+        if !view.is_cut() && shows_object(&pair.log_odds) {
             return Some(pair);
         }
         // Where nothing moves, few frames look so far.
@@ -76,6 +76,6 @@ impl Farther {
 }
 
 /// Whether any pixel is more likely an object's than the background's.
-pub(super) fn shows_object(odds: &Plane) -> bool {
-    odds.values().iter().any(|&odds| odds > 0.0)
+pub(super) fn shows_object(log_odds: &Plane) -> bool {
+    log_odds.values().iter().any(|&log_odds| log_odds > 0.0)
 }

@@ -2,8 +2,8 @@
 //! around, and the foreground is cut. A second round starts from the log-odds and the cut of the first.
 //!
 //! ```text
-//! past(t)   = odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
-//! z(t)      = past(t) + future(t) − odds(t)
+//! past(t)   = log-odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
+//! z(t)      = past(t) + future(t) − log-odds(t)
 //! E(l)      = Σ_p l_p ≠ object · w (z + colour)(p) + borders
 //! ```
 //! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
@@ -38,7 +38,7 @@ pub(crate) struct Round {
 #[derive(Debug)]
 struct Waiting {
     record: Rc<Record>,
-    odds: Plane,
+    log_odds: Plane,
     past: Plane,
 }
 
@@ -47,8 +47,8 @@ pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
     /// The log-odds that it came with.
     own: Plane,
-    /// Odds of object against background with the evidence of other frames, nats.
-    pub(crate) odds: Plane,
+    /// Log-odds of object against background with the evidence of other frames, nats.
+    pub(crate) log_odds: Plane,
     /// 1 where the frame shows an object, else 0.
     pub(crate) mask: Vec<u8>,
 }
@@ -56,12 +56,12 @@ pub(crate) struct Foreground {
 impl Foreground {
     /// The frame's record and log-odds for the second round.
     pub(crate) fn for_second_round(self) -> (Rc<Record>, Plane) {
-        let Foreground { record, own: mut odds, mask, .. } = self;
-        for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
+        let Foreground { record, own: mut log_odds, mask, .. } = self;
+        for (log_odds, &object) in log_odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { model().first_cut } else { -model().first_cut };
-            *odds = model().first_odds * *odds + cut;
+            *log_odds = model().first_log_odds * *log_odds + cut;
         }
-        (record, odds)
+        (record, log_odds)
     }
 }
 
@@ -70,14 +70,14 @@ impl Round {
         Round { delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
     }
 
-    /// Takes the next frame with its own odds; returns one that has waited long enough.
-    pub(crate) fn push(&mut self, record: Rc<Record>, odds: Plane) -> Option<Foreground> {
+    /// Takes the next frame with its own log-odds; returns one that has waited long enough.
+    pub(crate) fn push(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<Foreground> {
         let past = match (&self.past, &record.back) {
-            (Some(past), Some(back)) => self.joined(&odds, &carried(past, back)),
-            _ => odds.clone(),
+            (Some(past), Some(back)) => self.joined(&log_odds, &carried(past, back)),
+            _ => log_odds.clone(),
         };
         self.past = Some(past.clone());
-        self.waiting.push_back(Waiting { record, odds, past });
+        self.waiting.push_back(Waiting { record, log_odds, past });
         if self.waiting.len() > self.delay { self.next() } else { None }
     }
 
@@ -88,8 +88,8 @@ impl Round {
 
     /// The frame that has waited longest leaves.
     pub(crate) fn next(&mut self) -> Option<Foreground> {
-        let (odds, own_colours, mut colours) = self.with_future()?;
-        let Waiting { record, odds: own, .. } = self.waiting.pop_front()?;
+        let (log_odds, own_colours, mut colours) = self.with_future()?;
+        let Waiting { record, log_odds: own, .. } = self.waiting.pop_front()?;
         if record.back.is_none() {
             self.colours.clear();
         }
@@ -100,13 +100,13 @@ impl Round {
             self.colours.pop_front();
         }
         let ratios = colours.ratios();
-        let price = |(p, odds): (usize, &f32)| {
-            model().automatic * (odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
+        let price = |(p, log_odds): (usize, &f32)| {
+            model().automatic * (log_odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
         };
         let [width, height] = record.size();
-        let ground = Plane::from_vec(width, height, odds.values().iter().enumerate().map(price).collect());
+        let ground = Plane::from_vec(width, height, log_odds.values().iter().enumerate().map(price).collect());
         let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
-        Some(Foreground { record, own, odds, mask })
+        Some(Foreground { record, own, log_odds, mask })
     }
 
     /// The evidence of the frame that has waited longest with that of all others, its colours by that evidence, and those of the waiting
@@ -116,14 +116,14 @@ impl Round {
         let last_of_colours = of_scene.count().min(COLOUR_FRAMES);
         let mut colours = ColourCounts::none();
         let mut future: Option<Plane> = None;
-        for (k, Waiting { record, odds, past }) in self.waiting.iter().enumerate().rev() {
+        for (k, Waiting { record, log_odds, past }) in self.waiting.iter().enumerate().rev() {
             let with_future = match (&future, &record.onward) {
-                (Some(future), Some(onward)) => self.joined(odds, &carried(future, onward)),
-                _ => odds.clone(),
+                (Some(future), Some(onward)) => self.joined(log_odds, &carried(future, onward)),
+                _ => log_odds.clone(),
             };
             if k <= last_of_colours {
                 let mut both = past.clone();
-                let pixels = both.values_mut().iter_mut().zip(with_future.values()).zip(odds.values());
+                let pixels = both.values_mut().iter_mut().zip(with_future.values()).zip(log_odds.values());
                 pixels.for_each(|((both, future), own)| *both += future - own);
                 let counts = ColourCounts::of(&record.palette, &both);
                 if k == 0 {

@@ -1,6 +1,6 @@
 //! A frame of a segmented clip: the labels found automatically, a person's annotation of it, and the layer that comes of all annotations.
 
-use super::evidence::KeptFlow;
+use super::evidence::KeptLayeredMotion;
 use super::frame_annotation::FrameAnnotation;
 use super::layer::Layer;
 use super::saved::saved;
@@ -16,22 +16,22 @@ pub(super) struct FrameState {
     /// Whether a person finds the frame right: its layer has all its labels.
     pub(super) accepted: bool,
     /// To the next frame of the scene.
-    pub(super) onward: Option<KeptFlow>,
+    pub(super) onward: Option<KeptLayeredMotion>,
     /// To the frame before.
-    pub(super) back: Option<KeptFlow>,
+    pub(super) back: Option<KeptLayeredMotion>,
 }
 
 saved!(FrameState { found, annotation, layer, accepted, onward, back });
 
 impl FrameState {
-    pub(super) fn new(Tracked { record, labels, odds, goes_on }: Tracked) -> FrameState {
+    pub(super) fn new(Tracked { record, labels, log_odds, goes_on }: Tracked) -> FrameState {
         FrameState {
-            found: Layer::of(&labels, &odds),
+            found: Layer::of(&labels, &log_odds),
             annotation: None,
             layer: None,
             accepted: false,
-            onward: record.onward.as_ref().filter(|_| goes_on).map(KeptFlow::of),
-            back: record.back.as_ref().map(KeptFlow::of),
+            onward: record.onward.as_ref().filter(|_| goes_on).map(KeptLayeredMotion::of),
+            back: record.back.as_ref().map(KeptLayeredMotion::of),
         }
     }
 
@@ -48,9 +48,9 @@ impl FrameState {
     /// Whether it fits the numbers of pixels of the working size and of the full size.
     pub(super) fn is_valid(&self, pixels: usize, full: usize) -> bool {
         self.found.labels.is_valid(pixels)
-            && self.found.odds.is_valid(pixels)
+            && self.found.log_odds.is_valid(pixels)
             && self.annotation.as_ref().is_none_or(|annotation| annotation.is_valid(full))
-            && self.layer.as_ref().is_none_or(|layer| layer.labels.is_valid(full) && layer.odds.is_valid(pixels))
+            && self.layer.as_ref().is_none_or(|layer| layer.labels.is_valid(full) && layer.log_odds.is_valid(pixels))
             && [&self.onward, &self.back].into_iter().flatten().all(|flow| flow.is_valid(pixels))
     }
 }

@@ -4,7 +4,7 @@
 //! longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,
 //! leftmost pixel.
 
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use super::identity::MAX_OBJECTS;
 use crate::clip::options::model;
 use crate::labelling::BACKGROUND;
@@ -67,7 +67,7 @@ impl Census {
     }
 
     /// Counts the objects of the next frame. `onward` is its flow to the next frame of its scene.
-    pub(crate) fn add(&mut self, labels: &[u8], width: usize, onward: Option<&Flow>, begins_scene: bool) {
+    pub(crate) fn add(&mut self, labels: &[u8], width: usize, onward: Option<&LayeredMotion>, begins_scene: bool) {
         let index = self.count;
         self.count += 1;
         if begins_scene {
@@ -88,7 +88,7 @@ impl Census {
         }
     }
 
-    fn meet(&mut self, one: &Sighting, other: &Sighting, onward: &Flow) {
+    fn meet(&mut self, one: &Sighting, other: &Sighting, onward: &LayeredMotion) {
         let numbers = [one.number, other.number];
         let known = self.meetings.iter().position(|meeting| meeting.numbers == numbers);
         let place = known.unwrap_or_else(|| {
@@ -156,7 +156,7 @@ impl Meeting {
 }
 
 /// The objects of a frame, by number.
-fn sightings(labels: &[u8], width: usize, onward: Option<&Flow>) -> Vec<Sighting> {
+fn sightings(labels: &[u8], width: usize, onward: Option<&LayeredMotion>) -> Vec<Sighting> {
     let mut sightings: Vec<Option<Sighting>> = (0..=MAX_OBJECTS).map(|_| None).collect();
     for (p, &number) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
         let (x, y) = (p % width, p / width);

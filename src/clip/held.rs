@@ -27,24 +27,24 @@ impl HeldFrames {
     }
 
     /// Takes the next frame. Returns one that has been held long enough.
-    pub(super) fn push(&mut self, record: Rc<Record>, odds: Plane) -> Option<(Rc<Record>, Plane)> {
-        self.frames.push_back((record, odds));
+    pub(super) fn push(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<(Rc<Record>, Plane)> {
+        self.frames.push_back((record, log_odds));
         if self.frames.len() > self.delay { self.next() } else { None }
     }
 
     /// The frame that is held longest. Its log-odds are zero where they would be those of a pause.
     pub(super) fn next(&mut self) -> Option<(Rc<Record>, Plane)> {
-        let (record, mut odds) = self.frames.pop_front()?;
+        let (record, mut log_odds) = self.frames.pop_front()?;
         // A scene begins as if nothing had moved for long.
         let before = if record.back.is_none() { REACH } else { self.frames_at_rest };
         self.frames_at_rest = if record.is_still() { before.saturating_add(1) } else { 0 };
         let mut after = self.frames.iter().take(REACH).take_while(|(record, _)| record.back.is_some());
         let is_near = (1..=REACH).contains(&self.frames_at_rest)
             || self.frames_at_rest > 0 && after.any(|(record, _)| !record.is_still());
-        if is_near && !shows_object(&odds) {
-            odds.values_mut().fill(0.0);
+        if is_near && !shows_object(&log_odds) {
+            log_odds.values_mut().fill(0.0);
         }
-        Some((record, odds))
+        Some((record, log_odds))
     }
 
     /// The newest frame that is held.
@@ -53,7 +53,7 @@ impl HeldFrames {
     }
 
     /// The log-odds of the newest frames, as many as these.
-    pub(super) fn newest_odds(&mut self, count: usize) -> impl Iterator<Item = &mut Plane> {
-        self.frames.iter_mut().rev().take(count).map(|(_, odds)| odds)
+    pub(super) fn newest_log_odds(&mut self, count: usize) -> impl Iterator<Item = &mut Plane> {
+        self.frames.iter_mut().rev().take(count).map(|(_, log_odds)| log_odds)
     }
 }

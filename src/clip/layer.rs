@@ -1,24 +1,24 @@
-//! Labels of a frame with their odds: those found automatically, and those that annotations lay over them.
+//! Labels of a frame with their log-odds: those found automatically, and those that annotations lay over them.
 
-use super::evidence::KeptOdds;
+use super::evidence::KeptLogOdds;
 use super::runs::Runs;
 use super::saved::saved;
 use crate::frame::Plane;
 
-/// Labels and odds.
+/// Labels and log-odds.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
     /// The object of each pixel, 0 for the background. Those of annotations have the full size, and 255 where the labels below show.
     pub(super) labels: Runs,
-    /// Odds of object against background, nats, working size.
-    pub(super) odds: KeptOdds,
+    /// Log-odds of object against background, nats, working size.
+    pub(super) log_odds: KeptLogOdds,
 }
 
-saved!(Layer { labels, odds });
+saved!(Layer { labels, log_odds });
 
 impl Layer {
-    pub(super) fn of(labels: &[u8], odds: &Plane) -> Layer {
-        Layer { labels: Runs::of(labels), odds: KeptOdds::of(odds) }
+    pub(super) fn of(labels: &[u8], log_odds: &Plane) -> Layer {
+        Layer { labels: Runs::of(labels), log_odds: KeptLogOdds::of(log_odds) }
     }
 
     /// Whether a number labels any pixel.

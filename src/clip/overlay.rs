@@ -25,39 +25,41 @@ impl SegmentedClip {
             number if is_users(label) || is_users(number) => label,
             number => number,
         };
-        let (mut labels, mut odds) = self.found(index);
+        let (mut labels, mut log_odds) = self.found(index);
         labels.iter_mut().for_each(|label| *label = given(*label));
         let onward = self.onward(index);
-        let working = |labels: &[u8], odds: &Plane, mark_unknown| {
-            WorkingFrame { index, labels, odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
+        let working = |labels: &[u8], log_odds: &Plane, mark_unknown| {
+            WorkingFrame { index, labels, log_odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
         };
         let is_final = |label: &u8| self.numbers[usize::from(*label)] == *label && !is_users(*label);
         if state.layer.is_none() && labels.iter().all(is_final) {
-            return Ok(working(&labels, &odds, self.mark_unknown));
+            return Ok(working(&labels, &log_odds, self.mark_unknown));
         }
-        let found = working(&labels, &odds, false).labels;
+        let found = working(&labels, &log_odds, false).labels;
         let mut full = self.overlaid(index, &found, &user_objects);
         full.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
-        let layer = state.layer.as_ref().map(|layer| self.odds_of(layer)).zip(self.layer_labels(index));
+        let layer = state.layer.as_ref().map(|layer| self.log_odds_of(layer)).zip(self.layer_labels(index));
         let scaling = self.scaling();
         for at in 0..labels.len() {
             let p = scaling.corner(at);
-            let odds = &mut odds.values_mut()[at];
+            let log_odds = &mut log_odds.values_mut()[at];
             match &layer {
-                Some((of_layer, above)) if above[p] != UNLABELLED => *odds = of_layer.values()[at],
-                _ if full[p] == 0 && found[p] > 0 => *odds = -model().certain,
+                Some((of_layer, above)) if above[p] != UNLABELLED => *log_odds = of_layer.values()[at],
+                _ if full[p] == 0 && found[p] > 0 => *log_odds = -model().certain,
                 _ => {}
             }
             labels[at] = full[p];
         }
         let (onward, mark_unknown) = (onward.as_ref(), self.mark_unknown);
-        Ok(WorkingFrame { index, labels: &labels, odds: &odds, onward, mark_unknown }.marked(full, frame.width()))
+        Ok(WorkingFrame { index, labels: &labels, log_odds: &log_odds, onward, mark_unknown }
+            .marked(full, frame.width()))
     }
 
     /// The labels of a frame found automatically, at full size.
     pub(super) fn found_full(&self, index: usize, luminance: &Plane) -> Vec<u8> {
-        let (labels, odds) = self.found(index);
-        WorkingFrame { index, labels: &labels, odds: &odds, onward: None, mark_unknown: false }.upsampled(luminance)
+        let (labels, log_odds) = self.found(index);
+        WorkingFrame { index, labels: &labels, log_odds: &log_odds, onward: None, mark_unknown: false }
+            .upsampled(luminance)
     }
 
     /// The labels of a frame, before objects are merged or deleted.
@@ -96,23 +98,23 @@ impl SegmentedClip {
         Some(labels)
     }
 
-    /// A layer of full-size labels, if they say anything. `odds` has those of a full-size pixel, and of the working pixel that it is the
+    /// A layer of full-size labels, if they say anything. `log_odds` has those of a full-size pixel, and of the working pixel that it is the
     /// corner of.
-    pub(super) fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
+    pub(super) fn layer_of(&self, labels: &[u8], log_odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
         if labels.iter().all(|&label| label == UNLABELLED) {
             return None;
         }
         let scaling = self.scaling();
         let [width, height] = scaling.small;
-        let odds = Plane::from_fn(width, height, |x, y| {
+        let log_odds = Plane::from_fn(width, height, |x, y| {
             let at = y * width + x;
             let p = scaling.corner(at);
             match labels[p] {
                 UNLABELLED => 0.0,
                 0 => -2.0 * model().certain,
-                _ => odds(p, at),
+                _ => log_odds(p, at),
             }
         });
-        Some(Layer::of(labels, &odds))
+        Some(Layer::of(labels, &log_odds))
     }
 }

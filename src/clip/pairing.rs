@@ -1,7 +1,7 @@
 //! The ways to pair a frame of a clip with the one before.
 
 use super::carry::continued_labels;
-use super::evidence::{Flow, Pairs, flow, odds};
+use super::evidence::{LayeredMotion, Pairs, flow, log_odds};
 use super::record::PendingFrame;
 use crate::frame::Plane;
 use crate::options::SegmentOptions;
@@ -52,10 +52,10 @@ pub(super) fn of_stream(
 /// next pair is expected to be like the last one.
 pub(super) fn of_repeated(newest: &PendingFrame, prior: Option<&Prior>, waits: bool) -> Pairs {
     let size @ [width, height] = newest.pyramid.scaling.small;
-    let still = || (Plane::filled(width, height, 0.0), Flow { measured: true, ..Flow::still(size) });
+    let still = || (Plane::filled(width, height, 0.0), LayeredMotion { measured: true, ..LayeredMotion::still(size) });
     Pairs { onward: waits.then(still), back: Some(still()), prior: prior.cloned() }
 }
 
-fn evidence(solution: FrameMotions) -> (Plane, Flow) {
-    (odds(&solution), flow(solution))
+fn evidence(solution: FrameMotions) -> (Plane, LayeredMotion) {
+    (log_odds(&solution), flow(solution))
 }

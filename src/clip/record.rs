@@ -2,13 +2,13 @@
 
 use std::rc::Rc;
 
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use super::farther::shows_object;
 use super::options::model;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
-use crate::labelling::terms::smoothness::Borders;
+use crate::labelling::terms::smoothness::EdgeWeights;
 use crate::model::Model;
 use crate::pair::frame_motions::{Expected, FrameMotions, frame_motions};
 use crate::pair::settings::Settings;
@@ -23,8 +23,8 @@ pub(crate) struct PendingFrame {
     pub(crate) pyramid: Rc<FramePyramid>,
     /// Whether it shows the frame before again.
     pub(crate) repeats: bool,
-    /// Log-odds and flow of the pair with the frame before.
-    pub(crate) back: Option<(Plane, Flow)>,
+    /// Log-log-odds and flow of the pair with the frame before.
+    pub(crate) back: Option<(Plane, LayeredMotion)>,
     /// Whether the log-odds are those of the pair with an earlier frame.
     pub(crate) looked_farther: bool,
 }
@@ -51,24 +51,24 @@ impl PendingFrame {
     /// frame before. Of the second view of a lone pair the log-odds are zero: it makes the mistakes of the first.
     pub(crate) fn recorded(
         self,
-        (onward_odds, onward): (Option<Plane>, Option<Flow>),
+        (onward_log_odds, onward): (Option<Plane>, Option<LayeredMotion>),
         is_second_of_two: bool,
         keeps_frame: bool,
     ) -> (Record, Plane) {
-        let (mut back_odds, back) = self.back.unzip();
-        let onward_odds = onward_odds.filter(|odds| !self.looked_farther || shows_object(odds));
+        let (mut back_log_odds, back) = self.back.unzip();
+        let onward_log_odds = onward_log_odds.filter(|log_odds| !self.looked_farther || shows_object(log_odds));
         if is_second_of_two {
-            back_odds.iter_mut().for_each(|odds| odds.values_mut().fill(0.0));
+            back_log_odds.iter_mut().for_each(|log_odds| log_odds.values_mut().fill(0.0));
         }
-        let moves = |flow: &Option<Flow>| flow.as_ref().is_some_and(|flow| !flow.is_still());
+        let moves = |flow: &Option<LayeredMotion>| flow.as_ref().is_some_and(|flow| !flow.is_still());
         // Of both pairs, or of the one in which something moves; zero where there is no pair.
-        let odds = match (onward_odds, back_odds) {
+        let log_odds = match (onward_log_odds, back_log_odds) {
             (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
             (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
-            (Some(mut odds), Some(other)) => {
+            (Some(mut log_odds), Some(other)) => {
                 let share = model().backward;
-                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
-                odds
+                log_odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
+                log_odds
             }
             (Some(only), None) | (None, Some(only)) => only,
             (None, None) => {
@@ -82,11 +82,11 @@ impl PendingFrame {
             frame: Some(self.frame.clone()).filter(|_| keeps_frame),
             repeats: self.repeats,
             palette: appearance.palette.clone(),
-            unit_borders: unit_borders(appearance),
+            unit_weights: unit_weights(appearance),
             onward,
             back,
         };
-        (record, odds)
+        (record, log_odds)
     }
 }
 
@@ -101,12 +101,12 @@ pub(crate) struct Record {
     pub(crate) repeats: bool,
     /// Quantised colour of every working pixel.
     pub(crate) palette: Palette,
-    /// Prices of borders between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.
-    pub(crate) unit_borders: Borders,
+    /// Weights of edges between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.
+    pub(crate) unit_weights: EdgeWeights,
     /// To the next frame; none at the end of a scene.
-    pub(crate) onward: Option<Flow>,
+    pub(crate) onward: Option<LayeredMotion>,
     /// To the frame before; none at the beginning of a scene.
-    pub(crate) back: Option<Flow>,
+    pub(crate) back: Option<LayeredMotion>,
 }
 
 impl Record {
@@ -117,16 +117,16 @@ impl Record {
 
     /// Whether nothing moves in its pairs.
     pub(crate) fn is_still(&self) -> bool {
-        [&self.onward, &self.back].into_iter().flatten().all(Flow::is_still)
+        [&self.onward, &self.back].into_iter().flatten().all(LayeredMotion::is_still)
     }
 
-    /// Prices of borders between labels.
-    pub(crate) fn borders(&self, smoothness: f32) -> Borders {
-        self.unit_borders.times(smoothness)
+    /// Weights of edges between labels.
+    pub(crate) fn borders(&self, smoothness: f32) -> EdgeWeights {
+        self.unit_weights.times(smoothness)
     }
 }
 
-/// Prices of borders along the edges of a frame, in units of the smoothness.
-fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], SMALLEST_NOISE, 1.0, &Model::DEFAULT)
+/// Weights of edges along the edges of a frame, in units of the smoothness.
+fn unit_weights(appearance: &Appearance) -> EdgeWeights {
+    EdgeWeights::new(&appearance.pictures[0], SMALLEST_NOISE, 1.0, &Model::DEFAULT)
 }

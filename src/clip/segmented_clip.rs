@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::annotation::{Direction, ObjectSet};
-use super::evidence::Flow;
+use super::evidence::LayeredMotion;
 use super::frame_state::FrameState;
 use super::layer::Layer;
 use super::options::ClipOptions;
@@ -188,16 +188,16 @@ impl SegmentedClip {
         self.settings().scaling(self.size)
     }
 
-    /// The odds of a layer.
-    pub(super) fn odds_of(&self, layer: &Layer) -> Plane {
+    /// The log-odds of a layer.
+    pub(super) fn log_odds_of(&self, layer: &Layer) -> Plane {
         let [width, height] = self.scaling().small;
-        layer.odds.odds(width, height)
+        layer.log_odds.log_odds(width, height)
     }
 
-    /// Labels and odds of a frame as the clip was segmented.
+    /// Labels and log-odds of a frame as the clip was segmented.
     pub(super) fn found(&self, index: usize) -> (Vec<u8>, Plane) {
         let found = &self.frames[index].found;
-        (found.labels.values(), self.odds_of(found))
+        (found.labels.values(), self.log_odds_of(found))
     }
 
     /// Labels of a frame as the clip was segmented, at a size that is no smaller. Objects that were merged are one.
@@ -224,12 +224,12 @@ impl SegmentedClip {
     }
 
     /// To the next frame of the scene; after the last one there is none.
-    pub(super) fn onward(&self, index: usize) -> Option<Flow> {
+    pub(super) fn onward(&self, index: usize) -> Option<LayeredMotion> {
         self.frames[index].onward.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
     }
 
     /// To the frame before; before the first one of a scene there is none.
-    pub(super) fn back(&self, index: usize) -> Option<Flow> {
+    pub(super) fn back(&self, index: usize) -> Option<LayeredMotion> {
         self.frames[index].back.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
     }
 }

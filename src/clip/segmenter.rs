@@ -116,16 +116,16 @@ impl ClipSegmenter {
     /// that need not be those of the segmented clip. There is none before there are such pairs, and none twice. Asked after each frame,
     /// previews are those of all frames but the last, and objects keep their number from one to the next.
     pub fn preview(&mut self) -> Option<ClipFrame> {
-        let PreviewSource { record, frame, odds } = self.tracker.preview()?;
+        let PreviewSource { record, frame, log_odds } = self.tracker.preview()?;
         let SegmentOptions { subject, mark_unknown, .. } = self.tracker.options().pair;
         let (objects, last) = &mut self.previews;
         if last.replace(record.index) != record.index.checked_sub(1) {
             *objects = Identities::new(subject);
         }
-        let mask: Vec<u8> = odds.values().iter().map(|&odds| u8::from(odds > 0.0)).collect();
+        let mask: Vec<u8> = log_odds.values().iter().map(|&log_odds| u8::from(log_odds > 0.0)).collect();
         let labels = objects.assign(&record, &mask);
         let onward = record.onward.as_ref();
-        let preview = WorkingFrame { index: record.index, labels: &labels, odds: &odds, onward, mark_unknown };
+        let preview = WorkingFrame { index: record.index, labels: &labels, log_odds: &log_odds, onward, mark_unknown };
         Some(preview.described(frame.luminance()))
     }
 

@@ -63,11 +63,11 @@ impl StreamSegmenter {
         self.tracker.dropped()
     }
 
-    fn described(&self, Tracked { record, labels, odds, goes_on }: &Tracked) -> Option<ClipFrame> {
+    fn described(&self, Tracked { record, labels, log_odds, goes_on }: &Tracked) -> Option<ClipFrame> {
         let working = WorkingFrame {
             index: record.index,
             labels,
-            odds,
+            log_odds,
             onward: record.onward.as_ref().filter(|_| *goes_on),
             mark_unknown: self.tracker.options().pair.mark_unknown,
         };

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::evidence::{Flow, Pairs};
+use super::evidence::{LayeredMotion, Pairs};
 use super::farther::{FARTHEST, Farther, FartherPair, shows_object};
 use super::foreground::{Foreground, Round};
 use super::held::HeldFrames;
@@ -45,8 +45,8 @@ pub(crate) struct Tracker {
 pub(crate) struct PreviewSource {
     pub(crate) record: Rc<Record>,
     pub(crate) frame: Rc<Frame>,
-    /// Log-odds of object against background, nats.
-    pub(crate) odds: Plane,
+    /// Log-log-odds of object against background, nats.
+    pub(crate) log_odds: Plane,
 }
 
 /// A frame whose objects are known.
@@ -55,8 +55,8 @@ pub(crate) struct Tracked {
     pub(crate) record: Rc<Record>,
     /// The object of every working pixel, 0 for the background.
     pub(crate) labels: Vec<u8>,
-    /// Odds of object against background with the evidence of other frames, nats.
-    pub(crate) odds: Plane,
+    /// Log-odds of object against background with the evidence of other frames, nats.
+    pub(crate) log_odds: Plane,
     /// Whether the clip goes on with a frame of the same scene, as far as that is known.
     pub(crate) goes_on: bool,
 }
@@ -148,13 +148,13 @@ impl Tracker {
         let Pairs { mut onward, back, prior } = pairs;
         self.prior = prior;
         newest.back = back;
-        if let Some(FartherPair { odds, reach }) = self.farther.look(&last, &newest, settings) {
+        if let Some(FartherPair { log_odds, reach }) = self.farther.look(&last, &newest, settings) {
             // Frames between in which nothing was seen are no evidence of ground.
-            let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(odds, _)| odds);
-            let between = self.held.newest_odds(reach - 1).chain(of_last);
-            between.filter(|odds| !shows_object(odds)).for_each(|odds| odds.values_mut().fill(0.0));
+            let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(log_odds, _)| log_odds);
+            let between = self.held.newest_log_odds(reach - 1).chain(of_last);
+            between.filter(|log_odds| !shows_object(log_odds)).for_each(|log_odds| log_odds.values_mut().fill(0.0));
             if let Some((near, _)) = &mut newest.back {
-                *near = odds;
+                *near = log_odds;
             }
             newest.looked_farther = true;
         }
@@ -184,8 +184,8 @@ impl Tracker {
         if last.index == self.paired {
             frames.extend(self.go_on(last, (None, None)));
         }
-        while let Some((record, odds)) = self.held.next() {
-            frames.extend(self.cut(record, odds));
+        while let Some((record, log_odds)) = self.held.next() {
+            frames.extend(self.cut(record, log_odds));
         }
         while let Some(foreground) = self.rounds[0].next() {
             frames.extend(self.second_round(foreground));
@@ -214,19 +214,19 @@ impl Tracker {
     }
 
     /// Goes on with a frame that has its pairs, or as much as there will be of them.
-    fn go_on(&mut self, pending: PendingFrame, onward: (Option<Plane>, Option<Flow>)) -> Option<Tracked> {
+    fn go_on(&mut self, pending: PendingFrame, onward: (Option<Plane>, Option<LayeredMotion>)) -> Option<Tracked> {
         let is_second_of_two = onward.1.is_none() && self.held.newest().is_some_and(|record| record.back.is_none());
         let frame = pending.frame.clone();
-        let (record, odds) = pending.recorded(onward, is_second_of_two, self.keeps_frames);
+        let (record, log_odds) = pending.recorded(onward, is_second_of_two, self.keeps_frames);
         let record = Rc::new(record);
         self.paired += 1;
-        self.preview = Some(PreviewSource { record: record.clone(), frame, odds: odds.clone() });
-        let (record, odds) = self.held.push(record, odds)?;
-        self.cut(record, odds)
+        self.preview = Some(PreviewSource { record: record.clone(), frame, log_odds: log_odds.clone() });
+        let (record, log_odds) = self.held.push(record, log_odds)?;
+        self.cut(record, log_odds)
     }
 
-    fn cut(&mut self, record: Rc<Record>, odds: Plane) -> Option<Tracked> {
-        let foreground = self.rounds[0].push(record, odds)?;
+    fn cut(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<Tracked> {
+        let foreground = self.rounds[0].push(record, log_odds)?;
         self.second_round(foreground)
     }
 
@@ -236,12 +236,12 @@ impl Tracker {
         if is_live || model().cuts_twice == 0 {
             return Some(self.tracked(first));
         }
-        let (record, odds) = first.for_second_round();
-        let foreground = self.rounds[1].push(record, odds)?;
+        let (record, log_odds) = first.for_second_round();
+        let foreground = self.rounds[1].push(record, log_odds)?;
         Some(self.tracked(foreground))
     }
 
-    fn tracked(&mut self, Foreground { record, odds, mask, .. }: Foreground) -> Tracked {
+    fn tracked(&mut self, Foreground { record, log_odds, mask, .. }: Foreground) -> Tracked {
         let labels = self.identities.assign(&record, &mask);
         let goes_on = match &record.onward {
             None => false,
@@ -252,6 +252,6 @@ impl Tracker {
                 None => self.last.is_some() && self.options.look_ahead == Some(0),
             },
         };
-        Tracked { record, labels, odds, goes_on }
+        Tracked { record, labels, log_odds, goes_on }
     }
 }

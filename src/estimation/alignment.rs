@@ -12,8 +12,8 @@ use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::{lane_sum, whole};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::brightness::{GREY, Photometric};
-use crate::view::level::Level;
+use crate::view::brightness::{GREY, GainBias};
+use crate::view::level::PairLevel;
 
 /// Which entries of the motion are free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,7 @@ pub(crate) struct Support<'a> {
 
 impl<'a> Support<'a> {
     /// Every pixel of a level.
-    pub(crate) fn everything(level: &Level) -> Support<'static> {
+    pub(crate) fn everything(level: &PairLevel) -> Support<'static> {
         let (w, h) = (level.width(), level.height());
         Support {
             weights: None,
@@ -131,10 +131,10 @@ impl<'a> Support<'a> {
 
 /// Aligns a motion (of the working frame) on a level. Returns it unchanged if its pixels do not determine it.
 pub(crate) fn align(
-    level: &Level,
+    level: &PairLevel,
     motion: &AffineMotion,
     support: &Support<'_>,
-    photometric: &mut Photometric,
+    photometric: &mut GainBias,
     how: Alignment,
 ) -> AffineMotion {
     if support.sum < SMALLEST_SUPPORT {
@@ -233,10 +233,10 @@ impl RowBuffers {
 
     fn normal_equations(
         &mut self,
-        level: &Level,
+        level: &PairLevel,
         motion: &AffineMotion,
         support: &Support<'_>,
-        photometric: Photometric,
+        photometric: GainBias,
         how: Alignment,
         scale: f64,
     ) -> (Normal, Right) {
@@ -260,10 +260,10 @@ impl RowBuffers {
     /// Residuals, gradients and robust weights of a row.
     fn measure(
         &mut self,
-        level: &Level,
+        level: &PairLevel,
         motion: &AffineMotion,
         support: &Support<'_>,
-        photometric: Photometric,
+        photometric: GainBias,
         how: Alignment,
         y: usize,
     ) {
@@ -414,7 +414,7 @@ mod tests {
         });
         let levels = build(first, second, 64);
         let level = &levels[0];
-        let mut photometric = Photometric::default();
+        let mut photometric = GainBias::default();
         let how = Alignment { robustness: 9.0, photometric: true, ..Alignment::of_region(30, 0.0, &Model::DEFAULT) };
         let found = align(level, &AffineMotion::STATIC, &Support::everything(level), &mut photometric, how);
         for (x, y) in [(5.0, 5.0), (90.0, 10.0), (40.0, 75.0)] {
@@ -437,8 +437,7 @@ mod tests {
         let level = &build(first, second, 64)[0];
         let error = |convergence| {
             let how = Alignment { convergence, ..Alignment::of_region(30, 1.0, &Model::DEFAULT) };
-            let found =
-                align(level, &AffineMotion::STATIC, &Support::everything(level), &mut Photometric::default(), how);
+            let found = align(level, &AffineMotion::STATIC, &Support::everything(level), &mut GainBias::default(), how);
             (found.matrix[0] - truth.matrix[0]).abs() + (found.matrix[4] - truth.matrix[4]).abs()
         };
         assert!(error(Convergence::Every) < 0.2 * error(Convergence::Translation));
@@ -452,7 +451,7 @@ mod tests {
             level,
             &start,
             &Support::everything(level),
-            &mut Photometric::default(),
+            &mut GainBias::default(),
             Alignment::of_region(5, 1e-3, &Model::DEFAULT),
         );
         assert!(found.is_finite());

@@ -2,9 +2,9 @@
 
 use super::alignment::{Alignment, Convergence, Freedom, Support, align};
 use crate::motion::AffineMotion;
-use crate::view::brightness::Photometric;
-use crate::view::cost::{CostModel, cost_with};
-use crate::view::level::Level;
+use crate::view::brightness::GainBias;
+use crate::view::cost::{RobustKernel, cost_with};
+use crate::view::level::PairLevel;
 
 /// How the dominant motion is found.
 #[derive(Clone, Copy, Debug)]
@@ -18,17 +18,17 @@ pub(crate) struct DominantSearch {
 /// The dominant motion of the working frame and the change of brightness (none unless it is estimated), from the levels `base` and coarser.
 /// Near a motion that is expected, the base level is enough.
 pub(crate) fn dominant_motion(
-    levels: &[Level],
+    levels: &[PairLevel],
     base: usize,
     expected: Option<&AffineMotion>,
     how: DominantSearch,
-) -> (AffineMotion, Photometric) {
+) -> (AffineMotion, GainBias) {
     let finest = &levels[base].thinned();
     let levels = if expected.is_some() { &levels[..=base] } else { levels };
     let coarsest = if expected.is_some() { finest } else { &levels[levels.len() - 1] };
     let start = match how.brightness {
-        true => Photometric::from_moments(&coarsest.first, &coarsest.second, coarsest.model),
-        false => Photometric::default(),
+        true => GainBias::from_moments(&coarsest.first, &coarsest.second, coarsest.model),
+        false => GainBias::default(),
     };
     let mut candidates = match expected {
         Some(motion) => vec![*motion],
@@ -38,7 +38,7 @@ pub(crate) fn dominant_motion(
     let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
-        let sum = cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)).total();
+        let sum = cost_with(finest, &motion, photometric, RobustKernel::estimation(finest.model)).total();
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
@@ -47,16 +47,16 @@ pub(crate) fn dominant_motion(
 }
 
 /// The whole-pixel shift at the coarsest level with the smallest cost.
-fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
+fn best_shift(level: &PairLevel, photometric: GainBias) -> AffineMotion {
     let mut best = (f64::INFINITY, AffineMotion::STATIC);
     let reach = level.model.reach;
     for dx in -reach..=reach {
         for dy in -reach..=reach {
             let (dx, dy) = (f64::from(dx), f64::from(dy));
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
-            let plane = cost_with(level, &shift, photometric, CostModel::estimation(level.model));
+            let plane = cost_with(level, &shift, photometric, RobustKernel::estimation(level.model));
             let cost = plane.total() / plane.values().len() as f64
-                + f64::from(level.model.shift_price) * (dx * dx + dy * dy).sqrt();
+                + f64::from(level.model.shift_penalty) * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
             }
@@ -67,13 +67,13 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
 
 /// Coarse to fine from one start: translation first, then affine.
 fn descend(
-    levels: &[Level],
+    levels: &[PairLevel],
     base: usize,
-    finest: &Level,
+    finest: &PairLevel,
     mut motion: AffineMotion,
-    mut photometric: Photometric,
+    mut photometric: GainBias,
     how: DominantSearch,
-) -> (AffineMotion, Photometric) {
+) -> (AffineMotion, GainBias) {
     let model = levels[base].model;
     let affine = Alignment {
         freedom: Freedom::Affine,
@@ -101,10 +101,10 @@ fn descend(
 }
 
 /// The zero motion: only the change of brightness is fitted.
-fn static_candidate(level: &Level, mut photometric: Photometric, brightness: bool) -> (f64, AffineMotion, Photometric) {
+fn static_candidate(level: &PairLevel, mut photometric: GainBias, brightness: bool) -> (f64, AffineMotion, GainBias) {
     if brightness {
         photometric = photometric.refined_at_rest(level);
     }
-    let cost = cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation(level.model)).total();
+    let cost = cost_with(level, &AffineMotion::STATIC, photometric, RobustKernel::estimation(level.model)).total();
     (cost, AffineMotion::STATIC, photometric)
 }

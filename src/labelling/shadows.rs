@@ -15,7 +15,7 @@
 //! brighter, whichever is larger: the ground is darker in a shadow.
 
 use super::solver::Solver;
-use super::terms::smoothness::Borders;
+use super::terms::smoothness::EdgeWeights;
 use super::{BACKGROUND, is_background, objects};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
@@ -23,17 +23,17 @@ use crate::frame::palette::{COLOURS, Palette, brighter};
 use crate::frame::warp::warp;
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cost};
-use crate::view::level::Level;
+use crate::view::cost::{RobustKernel, cost};
+use crate::view::level::PairLevel;
 
 /// Cost that no pixel of the background pays.
 const NEVER: f32 = 100.0;
 
 /// Gives shadows of objects, in labels of the working size, back to the background. `borders` are those of the labels.
 pub(crate) fn return_shadows(
-    level: &Level,
+    level: &PairLevel,
     palette: &Palette,
-    borders: &Borders,
+    borders: &EdgeWeights,
     motions: &[AffineMotion],
     labels: &mut [u8],
     solver: Solver,
@@ -44,10 +44,10 @@ pub(crate) fn return_shadows(
     let mut given_back = Plane::filled(width, height, 0.0);
     let mut kept = Plane::filled(width, height, NEVER);
     for k in objects(motions.len()) {
-        let own = cost(level, &motions[k], CostModel::labels(level.model));
+        let own = cost(level, &motions[k], RobustKernel::labels(level.model));
         let values = kept.values_mut().iter_mut().zip(given_back.values_mut()).zip(own.values()).zip(lit.values());
         for (p, (((kept, given_back), own), lit)) in values.enumerate().filter(|(p, _)| usize::from(labels[*p]) == k) {
-            (*kept, *given_back) = (*own, lit + level.model.light_price + ratios[palette.index(p)]);
+            (*kept, *given_back) = (*own, lit + level.model.light_penalty + ratios[palette.index(p)]);
         }
     }
     let found = borders.solve(&[given_back, kept], solver);
@@ -59,8 +59,8 @@ pub(crate) fn return_shadows(
 }
 
 /// Cost of the background's motion with a smooth change of light.
-fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
-    let (model, window) = (CostModel::labels(level.model), level.model.light_window);
+fn cost_of_light(level: &PairLevel, background: &AffineMotion) -> Plane {
+    let (model, window) = (RobustKernel::labels(level.model), level.model.light_window);
     let mut difference = warp(&level.second, &level.scaled(background));
     difference.values_mut().iter_mut().zip(level.first.values()).for_each(|(second, first)| *second -= first);
     let (noise, position) = (level.noise * level.noise, level.model.position_variance());
@@ -86,7 +86,7 @@ fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
 fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Vec<f32>> {
     let mut counts = vec![[0.0f32; 2]; COLOURS];
     let mut totals = [0.0f32; 2];
-    let unexplained = CostModel::labels(model).outside();
+    let unexplained = RobustKernel::labels(model).outside();
     for (p, (&label, &lit)) in labels.iter().zip(lit.values()).enumerate() {
         let side = usize::from(!is_background(label));
         if side == 0 || lit >= unexplained {
@@ -115,7 +115,7 @@ mod tests {
 
     /// A textured object of one colour moves 3 pixels to the right over a textured ground of another, under a light that changes below it.
     /// All of it is labelled as the object.
-    fn scene(shadow_colour: [f32; 3]) -> (Level, Palette, Vec<u8>) {
+    fn scene(shadow_colour: [f32; 3]) -> (PairLevel, Palette, Vec<u8>) {
         let [width, height] = SIZE;
         let texture = |x: f32, y: f32| 20.0 * libm::sinf(0.9 * x + 0.4 * y) * libm::cosf(0.7 * y - 0.3 * x);
         let thing = |x: f32, y: f32| (40.0..70.0).contains(&x) && (20.0..40.0).contains(&y);
@@ -156,7 +156,7 @@ mod tests {
     fn returned(shadow_colour: [f32; 3]) -> [usize; 2] {
         let (mut level, palette, mut labels) = scene(shadow_colour);
         level.noise = 2.0;
-        let borders = Borders::uniform(SIZE[0], SIZE[1], 8.0);
+        let borders = EdgeWeights::uniform(SIZE[0], SIZE[1], 8.0);
         let motions = [AffineMotion::STATIC, AffineMotion::translation(3.0, 0.0)];
         let before = labels.clone();
         return_shadows(&level, &palette, &borders, &motions, &mut labels, Solver::BEST);

@@ -5,9 +5,9 @@ use super::settings::Settings;
 use crate::estimation::alignment::{Alignment, Support, align};
 use crate::estimation::dominant::{DominantSearch, dominant_motion};
 use crate::motion::AffineMotion;
-use crate::view::brightness::Photometric;
+use crate::view::brightness::GainBias;
 use crate::view::cost::noise;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Where the dominant motion comes from.
 pub(crate) enum Dominant<'a> {
@@ -28,10 +28,10 @@ pub(crate) struct Objects<'a> {
 
 impl Objects<'_> {
     /// The change of brightness. Along a single motion that of plain ground would be that of the objects.
-    fn brightness_at_rest(&self, level: &Level) -> Photometric {
+    fn brightness_at_rest(&self, level: &PairLevel) -> GainBias {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
         let step = level.stride << level.index;
-        Photometric::along_labels(level, &motions, |x, y| usize::from(self.labels[y * step * self.width + x * step]))
+        GainBias::along_labels(level, &motions, |x, y| usize::from(self.labels[y * step * self.width + x * step]))
     }
 }
 
@@ -42,7 +42,7 @@ impl Pair {
             Dominant::Sought(expected) => self.find_dominant(expected, settings),
             Dominant::Known(motion) => {
                 if settings.brightness() {
-                    self.remove(Photometric::along(&self.levels[self.base], motion));
+                    self.remove(GainBias::along(&self.levels[self.base], motion));
                 }
                 *motion
             }
@@ -70,11 +70,11 @@ impl Pair {
         let model = base.model;
         base.noise = noise(base, &motion);
         let how = Alignment::of_region(model.region_iterations, model.ridge_background, model).until(settings.dominant);
-        align(base, &motion, &Support::everything(base), &mut Photometric::default(), how)
+        align(base, &motion, &Support::everything(base), &mut GainBias::default(), how)
     }
 
     /// A sample of the base level much as [`Dominant::Rest`] would leave it, for a fraction of the time.
-    pub(super) fn sample_of_rest(&self, objects: &Objects<'_>, settings: &Settings) -> Level {
+    pub(super) fn sample_of_rest(&self, objects: &Objects<'_>, settings: &Settings) -> PairLevel {
         let mut level = self.levels[self.base].clone();
         for _ in 0..rest_rounds(settings) {
             objects.brightness_at_rest(&level.thinned()).remove_from(&mut level);
@@ -84,7 +84,7 @@ impl Pair {
         level.thinned()
     }
 
-    fn remove(&mut self, photometric: Photometric) {
+    fn remove(&mut self, photometric: GainBias) {
         self.levels.iter_mut().for_each(|level| photometric.remove_from(level));
     }
 }

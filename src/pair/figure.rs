@@ -29,11 +29,9 @@ use crate::labelling::regions::description::counts;
 use crate::labelling::{BACKGROUND, across_borders, thinned};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, costs};
-use crate::view::level::Level;
+use crate::view::cost::{RobustKernel, costs};
+use crate::view::level::PairLevel;
 
-/// The group of the ground.
-pub(crate) const GROUND: usize = 0;
 /// Largest share of the border of the frame in the figure. Guard: scenes without objects have none that surrounds them.
 const MOST_OF_FRAME: f64 = 0.5;
 /// Largest share of the picture. Guard: an object may fill half of it; in scenes without objects far more would be figure.
@@ -47,12 +45,12 @@ const LEAST_GRADIENT: f64 = 0.25;
 /// How fast centrality falls: 1/e at .35 of the frame's sides from its middle.
 const CENTRAL: f64 = 8.0;
 
-/// The groups of the regions of a pair: [`GROUND`], and those of the figure in order of their first region. The main subject is one.
+/// The groups of the regions of a pair: [`BACKGROUND`], and those of the figure in order of their first region. The main subject is one.
 pub(super) fn groups(
     mut regions: Regions<'_>,
     motions: &[AffineMotion],
     labels: &[u8],
-    level: &Level,
+    level: &PairLevel,
     subject: bool,
 ) -> Vec<usize> {
     let mut joined = regions.clone().groups();
@@ -65,7 +63,7 @@ pub(super) fn groups(
     let mut found: Vec<usize> = Vec::new();
     let number = |(region, group): (usize, usize)| {
         if figure >> region & 1 == 0 {
-            return GROUND;
+            return BACKGROUND;
         }
         1 + found.iter().position(|&of| of == group).unwrap_or_else(|| {
             found.push(group);
@@ -103,7 +101,7 @@ impl Known {
         joined: &[usize],
         motions: &[AffineMotion],
         labels: &[u8],
-        level: &Level,
+        level: &PairLevel,
     ) -> Known {
         let (n, pixels) = (motions.len(), labels.len() as f64);
         let areas: Vec<f64> = counts(labels, n).into_iter().map(|count| count as f64 / pixels).collect();
@@ -244,7 +242,7 @@ fn centres(labels: &[u8], width: usize, areas: &[f64]) -> Vec<f64> {
 }
 
 /// The sum along the border of every two regions of the logarithm of the gradient against that of the whole picture.
-fn edges(labels: &[u8], n: usize, level: &Level) -> Vec<f64> {
+fn edges(labels: &[u8], n: usize, level: &PairLevel) -> Vec<f64> {
     let energy = level.energy.values();
     let mean = energy.iter().map(|&energy| f64::from(energy)).sum::<f64>() / energy.len() as f64;
     let mut edges = vec![0.0; n * n];
@@ -259,9 +257,9 @@ fn edges(labels: &[u8], n: usize, level: &Level) -> Vec<f64> {
 }
 
 /// By how much the motion of every region lowers the costs that its pixels have under the motion of the background, on a sample.
-fn gains(motions: &[AffineMotion], labels: &[u8], level: &Level) -> Vec<f64> {
+fn gains(motions: &[AffineMotion], labels: &[u8], level: &PairLevel) -> Vec<f64> {
     let sample = level.thinned();
-    let costs = costs(&sample, motions, CostModel::labels(level.model));
+    let costs = costs(&sample, motions, RobustKernel::labels(level.model));
     let mut gains = vec![0.0; motions.len()];
     for (p, &label) in thinned(labels, level.width(), sample.stride).iter().enumerate() {
         let [ground, own] = [BACKGROUND, usize::from(label)].map(|k| costs[k].values()[p]);
@@ -363,8 +361,8 @@ mod tests {
         let of = |motions: &[AffineMotion], labels: &[u8]| {
             groups(Regions::new(motions, labels, width, &Model::DEFAULT), motions, labels, level, false)
         };
-        assert_eq!(of(&motions, &labels), [GROUND, 1]);
+        assert_eq!(of(&motions, &labels), [BACKGROUND, 1]);
         let swapped: Vec<u8> = labels.iter().map(|label| 1 - label).collect();
-        assert_eq!(of(&[motions[1], motions[0]], &swapped), [1, GROUND], "also where the object's label is 0");
+        assert_eq!(of(&[motions[1], motions[0]], &swapped), [1, BACKGROUND], "also where the object's label is 0");
     }
 }

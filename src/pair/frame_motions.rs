@@ -12,7 +12,7 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cheapest, costs};
+use crate::view::cost::{RobustKernel, cheapest, costs};
 
 /// The motions of a frame to another one, and where they are. The background has label [`BACKGROUND`].
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub(crate) struct FrameMotions {
     pub(crate) labels: Vec<u8>,
     /// The probability, 0…1, of every motion at every working pixel.
     pub(crate) probabilities: Vec<Plane>,
-    /// The group of every motion; that of the ground is [`GROUND`](super::figure::GROUND).
+    /// The group of every motion; that of the ground is [`BACKGROUND`].
     pub(crate) groups: Vec<usize>,
     /// Expected of the next pair by a fast stream.
     prior: Option<Prior>,
@@ -106,7 +106,7 @@ pub(crate) fn frame_motions(
     return_shadows(&mut labelled, settings);
     let LabelledPair { pair, motions, labels, .. } = labelled;
     let level = pair.finest();
-    let mut costs = costs(level, &motions, CostModel::labels(model));
+    let mut costs = costs(level, &motions, RobustKernel::labels(model));
     let most = model.largest_cost();
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);

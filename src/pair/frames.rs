@@ -6,13 +6,13 @@ use super::settings::Settings;
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::scaling::Scaling;
-use crate::view::level::{Level, levels};
+use crate::view::level::{PairLevel, levels};
 
 /// The levels of a pair, from the working size down. A pair of the same frames the other way round is one with the frames swapped.
 #[derive(Clone)]
 pub(crate) struct Pair {
-    /// Level 0 is the working size.
-    pub(crate) levels: Vec<Level>,
+    /// PairLevel 0 is the working size.
+    pub(crate) levels: Vec<PairLevel>,
     /// Index of the level on which the dominant motion is found and others are proposed.
     pub(crate) base: usize,
     /// Index of the level on which motions are first selected, the base level or a finer one.
@@ -43,7 +43,7 @@ impl Pair {
         Pair { levels, base, selection, draft, appearance, scaling: pyramid.scaling }
     }
 
-    pub(crate) fn finest(&self) -> &Level {
+    pub(crate) fn finest(&self) -> &PairLevel {
         &self.levels[0]
     }
 

@@ -13,11 +13,11 @@ use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
 use crate::frame::Plane;
 use crate::frame::scaling::Scaling;
-use crate::labelling::regions::description::{counts, price_of_motion};
+use crate::labelling::regions::description::{counts, motion_penalty};
 use crate::labelling::terms::data::{compare, estimation_costs};
 use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.
 pub(super) fn solve(
@@ -108,12 +108,12 @@ fn rest_is_shorter(LabelledPair { pair, motions, labels, .. }: &LabelledPair) ->
     };
     let costs = estimation_costs(level, &compare(level, &[AffineMotion::STATIC, motions[BACKGROUND]], Vec::new()));
     let [at_rest, moving] = [&costs[0], &costs[1]].map(of_background);
-    0.5 * (at_rest - moving) < price_of_motion(counts(labels, 1)[BACKGROUND])
+    0.5 * (at_rest - moving) < motion_penalty(counts(labels, 1)[BACKGROUND])
 }
 
 /// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans
 /// may be explained so much worse at rest that it outweighs the ground around it.
-fn rest_is_likely(level: &Level, motion: &AffineMotion) -> bool {
+fn rest_is_likely(level: &PairLevel, motion: &AffineMotion) -> bool {
     let [rest, moving] = [AffineMotion::STATIC, *motion].map(|motion| ScoredMotion::new(level, motion).cost);
     let pixels = || rest.values().iter().zip(moving.values());
     pixels().filter(|(rest, moving)| rest < moving).count() >= pixels().filter(|(rest, moving)| rest > moving).count()

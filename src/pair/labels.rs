@@ -16,11 +16,11 @@ use crate::labelling::shadows;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::add_colours;
 use crate::labelling::terms::data::{Compared, compare, estimation_costs, label_costs};
-use crate::labelling::terms::smoothness::Borders;
+use crate::labelling::terms::smoothness::EdgeWeights;
 use crate::labelling::terms::visibility::with_visibility;
 use crate::labelling::{BACKGROUND, objects};
 use crate::motion::AffineMotion;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// A pair with its motions (pixels of the working size) and the label of each working pixel.
 pub(super) struct LabelledPair {
@@ -35,7 +35,7 @@ pub(super) struct LabelledPair {
 impl LabelledPair {
     /// Description length of both frames at the working size if their noise is as given, nats.
     pub(super) fn length(&self, noise: f32) -> f64 {
-        let level = Level { noise, ..self.pair.finest().clone() };
+        let level = PairLevel { noise, ..self.pair.finest().clone() };
         let costs = estimation_costs(&level, &compare(&level, &self.motions, Vec::new()));
         length(&self.motions, &costs, &self.labels, level.width(), level.model)
     }
@@ -52,9 +52,9 @@ pub(super) enum Start {
 /// The energy of the labels on a level: the motions, their costs, the weights of borders, and the labels of least energy so far.
 struct LabelEnergy<'a> {
     pair: &'a Pair,
-    level: &'a Level,
+    level: &'a PairLevel,
     settings: &'a Settings,
-    borders: Borders,
+    borders: EdgeWeights,
     motions: Vec<AffineMotion>,
     /// The frames along these motions.
     compared: Compared,
@@ -112,10 +112,10 @@ pub(super) fn return_shadows(labelled: &mut LabelledPair, settings: &Settings) {
 }
 
 /// Smoothness weights on a level.
-pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders {
+pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> EdgeWeights {
     let level = &pair.levels[index];
     let smoothness = settings.labelling.smoothness;
-    Borders::new(&pair.appearance.pictures[index], level.noise, smoothness, level.model)
+    EdgeWeights::new(&pair.appearance.pictures[index], level.noise, smoothness, level.model)
 }
 
 impl<'a> LabelEnergy<'a> {
@@ -175,7 +175,7 @@ impl<'a> LabelEnergy<'a> {
             self.costs = with_visibility(level, &self.motions, &costs, &self.labels, options.object_bias);
             self.borders = borders(pair, 0, settings);
         }
-        if self.motions.len() > 1 && settings.model.colour_price > 0.0 {
+        if self.motions.len() > 1 && settings.model.colour_weight > 0.0 {
             add_colours(&mut self.costs, &pair.appearance.palette, &self.labels, settings.model);
         }
         self.borders.solve(&self.costs, options.solver)
@@ -275,7 +275,7 @@ impl<'a> LabelEnergy<'a> {
 }
 
 /// Gives small components of labels to the labels around them, and removes motions that are then without pixels.
-fn remove_small_components(labels: &mut [u8], motions: &mut Vec<AffineMotion>, level: &Level) {
+fn remove_small_components(labels: &mut [u8], motions: &mut Vec<AffineMotion>, level: &PairLevel) {
     for k in absorb_small_components(labels, level, motions.len()) {
         motions.remove(k);
     }
@@ -284,7 +284,7 @@ fn remove_small_components(labels: &mut [u8], motions: &mut Vec<AffineMotion>, l
 /// Gives small components of labels to the labels around them. Returns the objects that are then without pixels, the last one first; labels
 /// are numbered as if there were none.
 #[inline(never)]
-fn absorb_small_components(labels: &mut [u8], level: &Level, motions: usize) -> Vec<usize> {
+fn absorb_small_components(labels: &mut [u8], level: &PairLevel, motions: usize) -> Vec<usize> {
     let smallest = (level.model.smallest_share * labels.len() as f64) as usize;
     absorb_small(labels, level.width(), smallest);
     let sizes = counts(labels, motions);

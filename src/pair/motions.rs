@@ -7,23 +7,25 @@ use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, so
 use crate::estimation::proposal::algebraic::from_algebra;
 use crate::estimation::proposal::local_flow::local_flow;
 use crate::estimation::proposal::tiles::from_tiles;
-use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
+use crate::estimation::selection::{
+    GreedySelection, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost,
+};
 use crate::frame::filter::eroded;
-use crate::labelling::regions::description::price_on;
+use crate::labelling::regions::description::motion_penalty_on;
 use crate::labelling::{BACKGROUND, mask_of, thinned};
 use crate::motion::AffineMotion;
-use crate::view::brightness::Photometric;
-use crate::view::level::Level;
+use crate::view::brightness::GainBias;
+use crate::view::level::PairLevel;
 
 impl Settings {
-    /// The price of a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
-    fn price(&self, level: &Level) -> f64 {
-        if self.least > 1 { 1.0 } else { price_on(level) }
+    /// The penalty of a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
+    fn price(&self, level: &PairLevel) -> f64 {
+        if self.least > 1 { 1.0 } else { motion_penalty_on(level) }
     }
 
     /// How motions are added on a level.
-    fn deflation(&self, level: &Level) -> Deflation {
-        Deflation {
+    fn deflation(&self, level: &PairLevel) -> GreedySelection {
+        GreedySelection {
             price: self.price(level),
             most: self.most,
             tries: self.tries,
@@ -33,7 +35,7 @@ impl Settings {
     }
 
     /// Refines motions on a level, each on its own pixels.
-    fn refit(&self, level: &Level, selected: &mut [ScoredMotion]) {
+    fn refit(&self, level: &PairLevel, selected: &mut [ScoredMotion]) {
         refit(level, selected, self.model.refit_rounds, self.refinement);
     }
 
@@ -47,7 +49,7 @@ impl Settings {
     }
 
     /// Takes motions away that do not pay for themselves, unless their number is given.
-    fn prune(&self, level: &Level, selected: &mut Vec<ScoredMotion>) {
+    fn prune(&self, level: &PairLevel, selected: &mut Vec<ScoredMotion>) {
         if self.least == 1 {
             prune(selected, self.price(level));
         }
@@ -99,8 +101,8 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
 }
 
 /// Adds motions to those on a thinned level that only show there, and refines all. Returns the best proposal that was rejected.
-fn add_fine(level: &Level, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
-    let how = Deflation { tries: settings.model.tries_fast, ..settings.deflation(level) };
+fn add_fine(level: &PairLevel, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
+    let how = GreedySelection { tries: settings.model.tries_fast, ..settings.deflation(level) };
     let proposals = fine_proposals(level, selected, settings.tiles);
     let rejected = add_motions(level, selected, &proposals, how);
     settings.refit(level, selected);
@@ -122,7 +124,7 @@ pub(super) fn motions_of(selected: &[ScoredMotion]) -> Vec<AffineMotion> {
 }
 
 /// Motions with their costs on a level.
-fn scored_on(level: &Level, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
+fn scored_on(level: &PairLevel, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
     motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect()
 }
 
@@ -147,7 +149,7 @@ pub(super) fn follow(
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
         let region = softened(&eroded(&mask_of(&expected, label as u8, width, height)));
         let how = Alignment::of_region(model.region_iterations, ridge_of_label(label, model), model);
-        let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
+        let motion = align(level, motion, &Support::weighted(&region, model), &mut GainBias::default(), how);
         selected.push(ScoredMotion::new(level, motion));
     }
     settings.refit(level, &mut selected);
@@ -168,6 +170,6 @@ pub(super) fn add_missing(pair: &Pair, motions: &mut Vec<AffineMotion>, most: us
     let flow = local_flow(&pair.levels, dominant, pair.base);
     let proposals = from_tiles(&pair.levels[pair.base], dominant, &flow, settings.tiles);
     let mut selected = scored_on(level, motions);
-    add_motions(level, &mut selected, &proposals, Deflation { most, ..settings.deflation(level) });
+    add_motions(level, &mut selected, &proposals, GreedySelection { most, ..settings.deflation(level) });
     motions.extend(selected[motions.len()..].iter().map(|one| one.motion));
 }

@@ -3,7 +3,7 @@
 use super::frames::Pair;
 use super::settings::Settings;
 use crate::estimation::proposal::local_flow::LocalFlow;
-use crate::estimation::selection::{Deflation, ScoredMotion};
+use crate::estimation::selection::{GreedySelection, ScoredMotion};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 
@@ -20,7 +20,7 @@ pub(crate) trait Observer {
     fn dominant_found(&mut self, _: &Pair, _dominant: AffineMotion, _: &LocalFlow, _: &Settings) {}
 
     /// Motions are proposed beside the dominant one, which is scored on the level of the selection. Known ones come last.
-    fn proposed(&mut self, _: &Pair, _dominant: &ScoredMotion, _proposals: &[AffineMotion], _: Deflation) {}
+    fn proposed(&mut self, _: &Pair, _dominant: &ScoredMotion, _proposals: &[AffineMotion], _: GreedySelection) {}
 
     /// Motions are selected greedily …
     fn selected(&mut self, _: &Pair, _: &[ScoredMotion]) {}

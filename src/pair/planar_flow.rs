@@ -12,7 +12,7 @@ use crate::frame::filter::gaussian;
 use crate::linear::Triangle;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Entries of the flow of a plane.
 const ENTRIES: usize = 8;
@@ -41,7 +41,7 @@ struct Point {
 }
 
 /// The median distance of the flow of each region to that of the plane, pixels of the level; none where there are too few points.
-pub(super) fn distances_to_plane(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Option<f64>> {
+pub(super) fn distances_to_plane(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<Option<f64>> {
     let points = points(level, motions, labels);
     let plane = fitted(&points);
     let mut distances = vec![Vec::new(); motions.len()];
@@ -49,7 +49,7 @@ pub(super) fn distances_to_plane(level: &Level, motions: &[AffineMotion], labels
     distances.iter_mut().map(|of| median_f64(of).filter(|_| of.len() >= FEWEST)).collect()
 }
 
-fn points(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Point> {
+fn points(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<Point> {
     let (width, height) = (level.width(), level.height());
     let texture = gaussian(&level.energy, WINDOW);
     let mut points = Vec::new();

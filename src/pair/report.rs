@@ -26,7 +26,7 @@ use crate::labelling::upsampling::{enlarged, upsample};
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
-use crate::view::cost::{CostModel, costs};
+use crate::view::cost::{RobustKernel, costs};
 
 /// The result of [`segment_pair`](crate::segment_pair).
 #[non_exhaustive]
@@ -84,7 +84,7 @@ pub(super) fn report(
     let candidates = evidence::evidence(&labelled, settings);
     let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
-        costs(level, &labelled.motions, CostModel::labels(model))
+        costs(level, &labelled.motions, RobustKernel::labels(model))
     } else {
         Vec::new()
     };

@@ -91,7 +91,7 @@ impl Settings {
             least: 1,
             visibility_rounds: model.visibility_rounds,
             labelling: LabellingOptions { smoothness, object_bias: model.object_bias, solver: Solver::BEST },
-            returns_shadows: model.light_price.is_finite(),
+            returns_shadows: model.light_penalty.is_finite(),
             follows: false,
             subject: options.subject,
             model,
@@ -120,7 +120,7 @@ impl Settings {
             },
         };
         if let MotionCount::Given(n) = options.motions {
-            // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
+            // The caller knows better than the penalty: anything that helps is added, nothing needed is taken away.
             settings.most = n;
             settings.least = n;
         }

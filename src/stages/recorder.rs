@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::estimation::proposal::algebraic::{from_algebra, unexplained};
 use crate::estimation::proposal::local_flow::{LocalFlow, samples};
 use crate::estimation::proposal::tiles::from_tiles;
-use crate::estimation::selection::deflation::RoughCosts;
-use crate::estimation::selection::{Deflation, ScoredMotion, winners};
+use crate::estimation::selection::greedy::RoughCosts;
+use crate::estimation::selection::{GreedySelection, ScoredMotion, winners};
 use crate::frame::{Derivatives, Frame, Plane};
 use crate::labelling::regions::description::counts;
 use crate::lanes::each_with;
@@ -19,7 +19,7 @@ use crate::pair::frames::Pair;
 use crate::pair::observer::Observer;
 use crate::pair::segment_observed;
 use crate::pair::settings::Settings;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
 ///
@@ -82,7 +82,7 @@ impl Observer for Recorder {
     }
 
     /// Scores the candidates. Those that the hypothesis did not begin with were known before.
-    fn proposed(&mut self, pair: &Pair, dominant: &ScoredMotion, proposals: &[AffineMotion], how: Deflation) {
+    fn proposed(&mut self, pair: &Pair, dominant: &ScoredMotion, proposals: &[AffineMotion], how: GreedySelection) {
         let Some(hypothesis) = self.hypotheses.last_mut() else { return };
         hypothesis.price = how.price;
         let candidates = &mut hypothesis.candidates;
@@ -135,7 +135,7 @@ impl Observer for Recorder {
 
 /// The measurements of the multibody constraint; `scale` is that of the level.
 fn measured(
-    level: &Level,
+    level: &PairLevel,
     dominant: &AffineMotion,
     flow: &LocalFlow,
     settings: &Settings,
@@ -154,7 +154,7 @@ fn measured(
 
 /// The motions that a level proposes.
 fn candidates(
-    level: &Level,
+    level: &PairLevel,
     dominant: &AffineMotion,
     flow: &LocalFlow,
     settings: &Settings,
@@ -186,12 +186,12 @@ fn cheapest_labels(pair: &Pair, scored: &[ScoredMotion]) -> Labelling {
     labelling(pair, level, &motions, &cheapest(&scored))
 }
 
-fn labelling(pair: &Pair, level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Labelling {
+fn labelling(pair: &Pair, level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Labelling {
     let motions = motions.iter().map(|motion| motion.scaled(pair.scaling.step as f64)).collect();
     Labelling { grid: grid(pair, level), motions, labels: labels.to_vec() }
 }
 
-fn grid(pair: &Pair, level: &Level) -> Grid {
+fn grid(pair: &Pair, level: &PairLevel) -> Grid {
     Grid { width: level.width(), height: level.height(), scale: level.pixel() * (pair.scaling.step as f64) }
 }
 

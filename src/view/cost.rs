@@ -9,7 +9,7 @@
 //! `k(f) = 1 − 2 (1 − c) f (1 − f)`, f the fractional shift and c the correlation of neighbouring noise. Without it a
 //! half-pixel shift beats the true motion in flat areas.
 
-use super::brightness::{GREY, Photometric};
+use super::brightness::{GREY, GainBias};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::warp::{CHUNK, Footprints};
@@ -17,31 +17,31 @@ use crate::lanes::{LANES, each, lower};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Least noise, grey levels: rounding both frames makes √(1/12 + 1/12).
 pub(crate) const SMALLEST_NOISE: f32 = 0.408;
 
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CostModel {
+pub(crate) struct RobustKernel {
     /// T: the largest cost, of a pixel that the motion does not explain.
     pub(crate) truncation: f32,
     /// κ: standard deviation of the position predicted by a correct motion, pixels.
     pub(crate) position_sigma: f32,
 }
 
-impl CostModel {
+impl RobustKernel {
     /// For estimating motions.
     #[inline(always)]
-    pub(crate) fn estimation(model: &Model) -> CostModel {
-        CostModel { truncation: model.robustness, position_sigma: model.position_sigma }
+    pub(crate) fn estimation(model: &Model) -> RobustKernel {
+        RobustKernel { truncation: model.robustness, position_sigma: model.position_sigma }
     }
 
     /// For labelling pixels.
     #[inline(always)]
-    pub(crate) fn labels(model: &Model) -> CostModel {
-        CostModel { truncation: model.largest_cost(), position_sigma: model.position_sigma }
+    pub(crate) fn labels(model: &Model) -> RobustKernel {
+        RobustKernel { truncation: model.largest_cost(), position_sigma: model.position_sigma }
     }
 
     #[inline(always)]
@@ -66,18 +66,18 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
 
 /// Cost of a motion (of the working frame) at every pixel of a level, between the first frame and the second. A pixel that leaves the
 /// second frame has the neutral cost.
-pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
+pub(crate) fn cost(level: &PairLevel, motion: &AffineMotion, model: RobustKernel) -> Plane {
     cost_within(level, &level.area(), motion, model)
 }
 
 /// [`cost`] of every motion.
-pub(crate) fn costs(level: &Level, motions: &[AffineMotion], model: CostModel) -> Vec<Plane> {
+pub(crate) fn costs(level: &PairLevel, motions: &[AffineMotion], model: RobustKernel) -> Vec<Plane> {
     motions.iter().map(|motion| cost(level, motion, model)).collect()
 }
 
 /// [`cost`] at the pixels of an area, as a plane of its size.
 #[inline(never)]
-pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
+pub(crate) fn cost_within(level: &PairLevel, area: &Area, motion: &AffineMotion, model: RobustKernel) -> Plane {
     let mut plane = Comparison::new(level, motion, model).plane(area);
     each(plane.values_mut(), |c| if c.is_finite() { c } else { model.outside() });
     plane
@@ -85,29 +85,29 @@ pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, mod
 
 /// [`cost`] that is infinite where the displaced position lies outside the second frame.
 #[inline(never)]
-pub(crate) fn cost_where_seen(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
+pub(crate) fn cost_where_seen(level: &PairLevel, motion: &AffineMotion, model: RobustKernel) -> Plane {
     Comparison::new(level, motion, model).plane(&level.area())
 }
 
 /// Cost under a change of brightness that has not yet been removed from the second frame.
-pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
+pub(crate) fn cost_with(level: &PairLevel, motion: &AffineMotion, photometric: GainBias, model: RobustKernel) -> Plane {
     Comparison { photometric, outside: model.outside(), ..Comparison::new(level, motion, model) }.plane(&level.area())
 }
 
 /// A level's frames compared along a motion.
 pub(crate) struct Comparison<'a> {
-    level: &'a Level,
+    level: &'a PairLevel,
     scaled: AffineMotion,
-    photometric: Photometric,
-    model: CostModel,
+    photometric: GainBias,
+    model: RobustKernel,
     /// Cost of a pixel that leaves the second frame.
     outside: f32,
 }
 
 impl<'a> Comparison<'a> {
     /// A comparison in which pixels that leave the second frame have infinite cost.
-    pub(crate) fn new(level: &'a Level, motion: &AffineMotion, model: CostModel) -> Comparison<'a> {
-        let photometric = Photometric::default();
+    pub(crate) fn new(level: &'a PairLevel, motion: &AffineMotion, model: RobustKernel) -> Comparison<'a> {
+        let photometric = GainBias::default();
         Comparison { level, scaled: level.scaled(motion), photometric, model, outside: f32::INFINITY }
     }
 
@@ -173,7 +173,7 @@ pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
 
 /// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
 /// (1.4826 × median absolute deviation), between that of rounding and the largest one of the model.
-pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
+pub(crate) fn noise(level: &PairLevel, motion: &AffineMotion) -> f32 {
     let level = &level.thinned();
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
@@ -203,7 +203,7 @@ mod tests {
     use crate::random::Random;
     use crate::view::level::build;
 
-    fn level() -> Level {
+    fn level() -> PairLevel {
         let mut random = Random::from_seed(5);
         let mut noise = || Plane::from_fn(70, 50, |_, _| random.uniform(0.0, 255.0) as f32);
         let (first, second) = (noise(), noise());
@@ -215,9 +215,9 @@ mod tests {
     #[test]
     fn the_cost_of_an_area_is_that_part_of_the_whole() {
         let level = level();
-        let whole = cost(&level, &MOTION, CostModel::labels(level.model));
+        let whole = cost(&level, &MOTION, RobustKernel::labels(level.model));
         let area = Area { columns: 3..68, rows: 7..31 };
-        let part = cost_within(&level, &area, &MOTION, CostModel::labels(level.model));
+        let part = cost_within(&level, &area, &MOTION, RobustKernel::labels(level.model));
         assert_eq!((part.width(), part.height()), (65, 24));
         for (k, y) in area.rows.clone().enumerate() {
             for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
@@ -229,8 +229,8 @@ mod tests {
     #[test]
     fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
         let level = level();
-        let whole = cost(&level, &MOTION, CostModel::estimation(level.model));
-        let sample = cost(&level.thinned(), &MOTION, CostModel::estimation(level.model));
+        let whole = cost(&level, &MOTION, RobustKernel::estimation(level.model));
+        let sample = cost(&level.thinned(), &MOTION, RobustKernel::estimation(level.model));
         assert_eq!((sample.width(), sample.height()), (35, 25));
         for (a, b) in sample.values().iter().zip(whole.thinned(2).values()) {
             assert!((a - b).abs() < 1e-3, "{a}, {b}");
@@ -243,7 +243,7 @@ mod tests {
             |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
         let levels = build(frame(0.0), frame(0.2), 16);
         let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
-        let comparison = Comparison::new(&levels[0], &motion, CostModel::labels(levels[0].model));
+        let comparison = Comparison::new(&levels[0], &motion, RobustKernel::labels(levels[0].model));
         let plane = comparison.plane(&levels[0].area());
         for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
             let mut part = vec![f32::NAN; count];

@@ -18,7 +18,7 @@ const NOISE_CORRELATION_HALVED: f32 = 28.0 / 70.0;
 
 /// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
 #[derive(Clone, Debug)]
-pub(crate) struct Level {
+pub(crate) struct PairLevel {
     /// 0 for the working size.
     pub(crate) index: u32,
     pub(crate) first: Rc<Plane>,
@@ -33,14 +33,14 @@ pub(crate) struct Level {
     pub(crate) energy: Rc<Plane>,
     /// Standard deviation of the residual of a correct motion in flat areas, grey levels (see `noise`).
     pub(crate) noise: f32,
-    /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](Level::thinned).
+    /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](PairLevel::thinned).
     pub(crate) stride: usize,
     pub(crate) model: &'static Model,
 }
 
-impl Level {
-    fn new(index: u32, first: &FrameLevel, second: &FrameLevel, model: &'static Model) -> Level {
-        Level {
+impl PairLevel {
+    fn new(index: u32, first: &FrameLevel, second: &FrameLevel, model: &'static Model) -> PairLevel {
+        PairLevel {
             index,
             first: first.luminance.clone(),
             second: second.luminance.clone(),
@@ -80,10 +80,10 @@ impl Level {
 
     /// The level with a sample of the pixels of the first frame, every second one of every second row, and the whole second frame; all of
     /// them on a small level.
-    pub(crate) fn thinned(&self) -> Level {
+    pub(crate) fn thinned(&self) -> PairLevel {
         let stride = self.thinning();
         let sample = |plane: &Rc<Plane>| if stride == 1 { plane.clone() } else { Rc::new(plane.thinned(stride)) };
-        Level {
+        PairLevel {
             index: self.index,
             first: sample(&self.first),
             second: self.second.clone(),
@@ -126,13 +126,13 @@ impl Level {
 }
 
 /// The levels of a pair, from the working size down. All pyramids are those of frames of one size.
-pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], model: &'static Model) -> Vec<Level> {
-    first.iter().zip(second).zip(0..).map(|((first, second), k)| Level::new(k, first, second, model)).collect()
+pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], model: &'static Model) -> Vec<PairLevel> {
+    first.iter().zip(second).zip(0..).map(|((first, second), k)| PairLevel::new(k, first, second, model)).collect()
 }
 
 /// [`levels`] of planes of luminance that need no blur.
 #[cfg(test)]
-pub(crate) fn build(first: Plane, second: Plane, smallest: usize) -> Vec<Level> {
+pub(crate) fn build(first: Plane, second: Plane, smallest: usize) -> Vec<PairLevel> {
     let [first, second] = [first, second].map(|plane| levels_of(plane, smallest));
     levels(&first, &second, &Model::DEFAULT)
 }

@@ -49,8 +49,8 @@ struct Rules {
 /// The layer while it is made, at full size.
 struct Draft {
     labels: Vec<u8>,
-    /// Odds of the objects that have the pixels.
-    odds: Vec<f32>,
+    /// Log-odds of the objects that have the pixels.
+    log_odds: Vec<f32>,
     /// Pixels that keep the object they have.
     is_held: Vec<bool>,
 }
@@ -74,10 +74,10 @@ impl Composition<'_> {
         self.absorb_rims(&rules, &mut draft);
         self.paint(&rules, &mut draft);
         self.give_nothing_back(&rules, &mut draft);
-        let (old, most) = (layer.map(|layer| clip.odds_of(layer)), 2.0 * model().certain);
+        let (old, most) = (layer.map(|layer| clip.log_odds_of(layer)), 2.0 * model().certain);
         clip.layer_of(&draft.labels, &|p, at| match draft.is_held[p] {
             true => old.as_ref().map_or(0.0, |old| old.values()[at]),
-            false => draft.odds[p].min(most),
+            false => draft.log_odds[p].min(most),
         })
     }
 
@@ -107,7 +107,7 @@ impl Composition<'_> {
             _ => UNLABELLED,
         };
         let labels = layer.iter().zip(&is_held).map(label).collect();
-        Draft { labels, odds: vec![0.0; layer.len()], is_held }
+        Draft { labels, log_odds: vec![0.0; layer.len()], is_held }
     }
 
     /// Whether the object that was found at a pixel is one that does not change.
@@ -120,17 +120,17 @@ impl Composition<'_> {
     fn propose(&self, rules: &Rules, draft: &mut Draft) {
         for (object, proposal) in self.proposals {
             let mask = self.mask(rules, *object, proposal.as_ref());
-            let odds = |p: usize| {
-                let odds = |of: &Proposal| of.odds_at(self.pixel(p), self.features.size[0]);
-                proposal.as_ref().map_or(0.0, odds).max(f32::MIN_POSITIVE)
+            let log_odds = |p: usize| {
+                let log_odds = |of: &Proposal| of.log_odds_at(self.pixel(p), self.features.size[0]);
+                proposal.as_ref().map_or(0.0, log_odds).max(f32::MIN_POSITIVE)
             };
             // The ground of a label map stays ground, but for objects that were there.
             let is_free =
                 |p: usize| !draft.is_held[p] && (rules.painted.get(p) != Some(&0) || rules.layer[p] == *object);
             for p in (0..mask.len()).filter(|&p| mask[p] > 0 && is_free(p)) {
-                let odds = odds(p);
-                if odds > draft.odds[p] {
-                    (draft.odds[p], draft.labels[p]) = (odds, *object);
+                let log_odds = log_odds(p);
+                if log_odds > draft.log_odds[p] {
+                    (draft.log_odds[p], draft.labels[p]) = (log_odds, *object);
                 }
             }
         }
@@ -214,7 +214,7 @@ impl Composition<'_> {
                 label => !self.changes(label),
             };
             if !is_kept && !is_others {
-                (draft.odds[p], draft.labels[p], draft.is_held[p]) = (2.0 * model().certain, label, false);
+                (draft.log_odds[p], draft.labels[p], draft.is_held[p]) = (2.0 * model().certain, label, false);
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::frame::lab::lab;
 use crate::frame::picture::{Picture, colours};
 use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, Plane};
-use crate::labelling::terms::smoothness::Borders;
+use crate::labelling::terms::smoothness::EdgeWeights;
 use crate::model::Model;
 use crate::view::cost::SMALLEST_NOISE;
 
@@ -36,8 +36,8 @@ pub(super) struct FrameFeatures {
     pub(super) fine: [Plane; 3],
     /// … and at a quarter of the size.
     pub(super) coarse: [Plane; 3],
-    /// Prices of borders, in units of the smoothness.
-    pub(super) borders: Borders,
+    /// Weights of edges, in units of the smoothness.
+    pub(super) borders: EdgeWeights,
 }
 
 impl FrameFeatures {
@@ -51,7 +51,7 @@ impl FrameFeatures {
         let colours =
             (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = Borders::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
+        let borders = EdgeWeights::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
         FrameFeatures { size, scaling, colours, fine, coarse, borders }
     }
 }

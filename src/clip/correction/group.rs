@@ -4,10 +4,10 @@ use super::features::FrameFeatures;
 use super::placement::Placement;
 use super::plan::Members;
 use super::propagator::{Observation, Prediction};
-use super::proposal::{Proposal, odds_at};
+use super::proposal::{Proposal, log_odds_at};
 use super::track::Track;
 use crate::clip::annotation::{Direction, Seed, Spread};
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::order::sort_few;
@@ -22,7 +22,7 @@ pub(super) struct Scene<'a> {
     /// Labels found automatically.
     pub(super) found: &'a [u8],
     /// From this frame to the one before in the direction of the propagation, and from that one to this.
-    pub(super) flows: Option<[&'a Flow; 2]>,
+    pub(super) flows: Option<[&'a LayeredMotion; 2]>,
 }
 
 #[derive(Clone, Debug)]
@@ -108,28 +108,28 @@ impl Group {
     }
 }
 
-/// The odds of each object against everything else: the others are part of that.
+/// The log-odds of each object against everything else: the others are part of that.
 fn compete(predictions: &mut [Option<Prediction>], width: usize) {
     // Where a hidden one is to appear again, no other grows.
     let awaited: Vec<Option<Plane>> = predictions.iter().flatten().map(|of| of.awaited.clone()).collect();
     for (k, of) in predictions.iter_mut().flatten().enumerate() {
         for (_, awaited) in awaited.iter().enumerate().filter(|(j, _)| *j != k) {
             let Some(awaited) = awaited else { continue };
-            let pixels = of.odds.iter_mut().zip(of.area.pixels(width));
-            pixels.for_each(|(odds, p)| *odds -= model().certain * awaited.values()[p]);
+            let pixels = of.log_odds.iter_mut().zip(of.area.pixels(width));
+            pixels.for_each(|(log_odds, p)| *log_odds -= model().certain * awaited.values()[p]);
         }
     }
-    let alone: Vec<_> = predictions.iter().flatten().map(|of| (of.area.clone(), of.odds.clone())).collect();
+    let alone: Vec<_> = predictions.iter().flatten().map(|of| (of.area.clone(), of.log_odds.clone())).collect();
     for (k, of) in predictions.iter_mut().flatten().enumerate() {
-        for (j, (area, odds)) in alone.iter().enumerate().filter(|(_, (area, _))| area.touches(&of.area)) {
+        for (j, (area, log_odds)) in alone.iter().enumerate().filter(|(_, (area, _))| area.touches(&of.area)) {
             if j == k {
                 continue;
             }
             for (at, p) in of.area.pixels(width).enumerate() {
-                let rival = odds_at(area, odds, p, width);
+                let rival = log_odds_at(area, log_odds, p, width);
                 let own = alone[k].1[at];
                 if rival > 0.0 {
-                    of.odds[at] = of.odds[at].min(own - rival);
+                    of.log_odds[at] = of.log_odds[at].min(own - rival);
                 }
             }
         }
@@ -264,7 +264,7 @@ mod tests {
             let features = features(t);
             let seeds = |number: u8| (t == 0).then(|| (of_object(&truth, number), Spread::Both));
             // As pairs of frames measure it: to the frame before, and from there.
-            let flow = |t: usize, step: f64| Flow {
+            let flow = |t: usize, step: f64| LayeredMotion {
                 width: SIZE[0],
                 labels: (0..features.pixels()).map(|p| u8::from(owner(t, p % SIZE[0], p / SIZE[0]) == 1)).collect(),
                 motions: vec![AffineMotion::STATIC, AffineMotion::translation(step, 0.0)],

@@ -2,7 +2,7 @@
 
 use super::features::FrameFeatures;
 use super::template::{Shift, Template};
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::order::median;
@@ -102,7 +102,7 @@ impl Whole {
 
     /// Where the object is in a frame; none for one that is too small. `flow` leads to that frame from the one before it. Objects in front
     /// of it have the pixels that are `covered`.
-    pub(super) fn place(&self, features: &FrameFeatures, flow: &Flow, covered: &[bool]) -> Option<Placement> {
+    pub(super) fn place(&self, features: &FrameFeatures, flow: &LayeredMotion, covered: &[bool]) -> Option<Placement> {
         let [width, height] = features.size;
         let inside: Vec<usize> = (0..features.pixels()).filter(|&p| self.template.mask.values()[p] > 0.5).collect();
         if (inside.len() as f32) < model().pixels as f32 {
@@ -171,7 +171,7 @@ mod tests {
     }
 
     fn place(whole: &Whole, features: &FrameFeatures) -> Option<Placement> {
-        whole.place(features, &Flow::still(SIZE), &vec![false; features.pixels()])
+        whole.place(features, &LayeredMotion::still(SIZE), &vec![false; features.pixels()])
     }
 
     #[test]

@@ -23,7 +23,7 @@ use super::label_evidence::LabelEvidence;
 use super::proposal::{CERTAIN, cut, logit};
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Click, Prompt};
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::clip::segmented_clip::SegmentedClip;
 use crate::components::{Connectivity, components};
@@ -52,8 +52,8 @@ struct View<'a> {
 struct Beginning {
     /// Where the object may be.
     area: Area,
-    /// Odds of the object at every pixel, nats.
-    odds: Vec<f32>,
+    /// Log-odds of the object at every pixel, nats.
+    log_odds: Vec<f32>,
     /// 0 for the object, 1 for ground, 2 for what is open.
     sides: Vec<u8>,
 }
@@ -74,7 +74,7 @@ pub(super) fn outline(
     if !prompt.points() {
         return labels;
     }
-    let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(features.size).labels);
+    let flow = |kept: Option<LayeredMotion>| kept.filter(|of| of.measured).map(|of| of.enlarged(features.size).labels);
     let own = clip.found_at(index, features.size);
     let found = [Some(own), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
     let step = features.scaling.step;
@@ -216,14 +216,14 @@ impl View<'_> {
             let soft = gaussian(&features.plane(&|p| mask[p] > 0), model().border);
             let prior = soft.values().iter().map(|share| model().beginning * (2.0 * share - 1.0));
             let sign = if inside { 1.0 } else { -1.0 };
-            let odds = prior.zip(&from.odds).map(|(prior, part)| sign * (sign * prior).max(*part)).collect();
+            let log_odds = prior.zip(&from.log_odds).map(|(prior, part)| sign * (sign * prior).max(*part)).collect();
             let side = |(&mask, &part): (&u8, &u8)| match part {
                 0 => u8::from(!inside),
                 2 if (mask > 0) != inside => 2,
                 _ => 1 - mask,
             };
             let sides = mask.iter().zip(&from.sides).map(side).collect();
-            self.fitted(Beginning { area, odds, sides }, &seen)
+            self.fitted(Beginning { area, log_odds, sides }, &seen)
         };
         self.change(&fit, click, inside)
     }
@@ -241,7 +241,7 @@ impl View<'_> {
         all.iter().zip(&parts.of).map(|(is_in, part)| is_in & u8::from(*part == parts.of[click])).collect()
     }
 
-    /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
+    /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The log-odds fall from its
     /// middle with the squared distance, to none at `even`.
     fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
         let object = 1.0 - model().rim;
@@ -250,7 +250,7 @@ impl View<'_> {
         for p in area.pixels(self.features.size[0]).filter(|&p| squares[p] < ground * ground) {
             sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
-        Beginning { area, sides, odds: squares.iter().map(|square| model().beginning * (even - square)).collect() }
+        Beginning { area, sides, log_odds: squares.iter().map(|square| model().beginning * (even - square)).collect() }
     }
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
@@ -267,7 +267,7 @@ impl View<'_> {
         Some(Beginning {
             area: Area { columns: left..right + 1, rows: top..bottom + 1 },
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
-            odds: gaussian(&self.features.plane(&inside), model().border)
+            log_odds: gaussian(&self.features.plane(&inside), model().border)
                 .values()
                 .iter()
                 .map(|share| model().beginning * (2.0 * share - 1.0))
@@ -278,7 +278,7 @@ impl View<'_> {
     /// Learns from a mask what the object looks like in an area, cuts the next mask, and so on.
     fn fitted(&self, from: Beginning, seen: &Area) -> Vec<u8> {
         let (features, width) = (self.features, self.features.size[0]);
-        let Beginning { area, odds: prior, mut sides } = from;
+        let Beginning { area, log_odds: prior, mut sides } = from;
         sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
         for _ in 0..model().prompt_rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
@@ -292,7 +292,7 @@ impl View<'_> {
             let remembered = appearance.read(features, &area, [0.0; 2]);
             let evidence: Vec<LabelEvidence> =
                 self.found.iter().map(|found| LabelEvidence::of(found, &sides, seen, width)).collect();
-            let odds = |(p, remembered): (usize, f32)| {
+            let log_odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
                 match self.sure[p] {
                     0 => CERTAIN,
@@ -300,8 +300,8 @@ impl View<'_> {
                     _ => prior[p] + logit(remembered) + found,
                 }
             };
-            let odds: Vec<f32> = area.pixels(width).zip(remembered).map(odds).collect();
-            let mask = cut(features, &area, &odds);
+            let log_odds: Vec<f32> = area.pixels(width).zip(remembered).map(log_odds).collect();
+            let mask = cut(features, &area, &log_odds);
             if !mask.contains(&1) {
                 break;
             }

@@ -1,7 +1,7 @@
 //! Propagation of one object from frame to frame in one direction: predict, cut, update.
 //!
 //! ```text
-//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + evidence      odds of the object against everything else, nats
+//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + evidence      log-odds of the object against everything else, nats
 //! ```
 //! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
 //! probability of the pixel's colour at its place by the appearance model; `p_A` are the labels of the annotated frame where the pixel was
@@ -16,7 +16,7 @@ use super::proposal::{Proposal, Signs, centre_of, logit};
 use super::strokes;
 use super::trace::Trace;
 use crate::clip::annotation::Seed;
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -30,7 +30,7 @@ pub(super) struct Observation<'a> {
     /// Labels found automatically.
     pub(super) found: &'a [u8],
     /// From this frame to the one before in the direction of the propagation, and from that one to this.
-    pub(super) flows: Option<[&'a Flow; 2]>,
+    pub(super) flows: Option<[&'a LayeredMotion; 2]>,
     pub(super) seeds: Option<&'a [Seed]>,
     /// 1 where a person has seen the object when strokes were drawn.
     pub(super) seen: Option<&'a [u8]>,
@@ -47,7 +47,7 @@ pub(super) struct Observation<'a> {
 /// The expectation of an object in the next frame.
 pub(super) struct Prediction {
     pub(super) area: Area,
-    pub(super) odds: Vec<f32>,
+    pub(super) log_odds: Vec<f32>,
     signs: Signs,
     centre: [f32; 2],
     placement: Option<Placement>,
@@ -78,8 +78,8 @@ pub(super) struct Propagator {
 }
 
 impl Observation<'_> {
-    /// Odds of the object because a person has seen where it is, nats.
-    fn odds_seen(&self, p: usize) -> f32 {
+    /// Log-odds of the object because a person has seen where it is, nats.
+    fn log_odds_seen(&self, p: usize) -> f32 {
         match self.seen {
             Some(seen) if seen[p] > 0 => model().seen,
             Some(_) => -model().seen,
@@ -155,7 +155,7 @@ impl Propagator {
             true => -model().found,
             false => -2.0 * model().certain,
         };
-        let mut odds: Vec<f32> = (0..features.pixels()).map(unannotated).collect();
+        let mut log_odds: Vec<f32> = (0..features.pixels()).map(unannotated).collect();
         let shown = shown(features, of.seeds, of.found, object);
         let partly = of.seeds.is_none_or(|seeds| seeds.contains(&Seed::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
@@ -173,12 +173,14 @@ impl Propagator {
                 appearance.learn(features, centre, Source::Recent, model().unannotated, &ground);
             }
             let remembered = appearance.read(features, &area, centre);
-            for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(appearance.trusts(features)) {
-                *odds = trust[usize::from(*odds < 0.0)] * *odds + model().bias + model().memory * logit(remembered);
+            for ((log_odds, remembered), trust) in log_odds.iter_mut().zip(remembered).zip(appearance.trusts(features))
+            {
+                *log_odds =
+                    trust[usize::from(*log_odds < 0.0)] * *log_odds + model().bias + model().memory * logit(remembered);
             }
         }
-        odds.iter_mut().enumerate().for_each(|(p, odds)| *odds += of.odds_seen(p));
-        let proposal = Proposal::solved(features, area, odds, of.seeds);
+        log_odds.iter_mut().enumerate().for_each(|(p, log_odds)| *log_odds += of.log_odds_seen(p));
+        let proposal = Proposal::solved(features, area, log_odds, of.seeds);
         let mask = proposal.plane(features);
         let centre = centre_of(&mask).unwrap_or(centre);
         let whole = Whole::new(&mask, features, centre, !partly);
@@ -196,7 +198,7 @@ impl Propagator {
     /// Where the object is in the next frame, behind others that have the pixels `covered`.
     pub(super) fn place(&self, of: &Observation<'_>, covered: &[bool]) -> Option<Placement> {
         let reached = self.reached.as_ref()?;
-        let still = Flow::still(of.features.size);
+        let still = LayeredMotion::still(of.features.size);
         let [_, from] = of.flows.unwrap_or([&still, &still]);
         reached.whole.place(of.features, from, covered)
     }
@@ -212,7 +214,7 @@ impl Propagator {
     pub(super) fn predict(&mut self, of: &Observation<'_>, placement: Option<Placement>) -> Option<Prediction> {
         let reached = self.reached.as_ref()?;
         let (features, [width, height]) = (of.features, of.features.size);
-        let still = Flow::still(features.size);
+        let still = LayeredMotion::still(features.size);
         let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&reached.mask, model().blur);
         let all = gaussian(&reached.whole.template.mask, model().blur);
@@ -255,11 +257,11 @@ impl Propagator {
         }
         let remembered = self.appearance.as_ref().map(|appearance| appearance.read(features, &area, centre));
         let traced = self.trace.as_mut().map(|trace| trace.follow(features, flows, &area));
-        let odds = area.pixels(width).enumerate().map(|(k, p)| {
+        let log_odds = area.pixels(width).enumerate().map(|(k, p)| {
             let traced = traced.as_ref().map_or(0.0, |of| of[k]);
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             let evidence = self.label_evidence.ratio(of.found[p]);
-            let z = of.odds_seen(p)
+            let z = of.log_odds_seen(p)
                 + model().bias
                 + weight * logit(carried.values()[p])
                 + model().memory * memory
@@ -273,7 +275,7 @@ impl Propagator {
             };
             z.clamp(-model().certain, most)
         });
-        let odds = odds.collect();
+        let log_odds = log_odds.collect();
         let mut looks = vec![0.0; features.pixels()];
         for (k, p) in area.pixels(width).enumerate() {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
@@ -282,14 +284,14 @@ impl Propagator {
         let change = self.change.as_ref().map(|change| gaussian(change, model().blur));
         let change = change.map(|change| (0..width * height).map(|p| along(&change, p)).collect());
         let signs = Signs { looks, change };
-        Some(Prediction { area, odds, signs, centre, placement, awaited })
+        Some(Prediction { area, log_odds, signs, centre, placement, awaited })
     }
 
     /// Cuts the next frame by its prediction and its seeds, and goes on from there.
     pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction, object: u8) -> Proposal {
         let features = of.features;
-        let Prediction { area, odds, signs, centre, placement, .. } = prediction;
-        let solve = |seeds| Proposal::solved(features, area.clone(), odds.clone(), seeds);
+        let Prediction { area, log_odds, signs, centre, placement, .. } = prediction;
+        let solve = |seeds| Proposal::solved(features, area.clone(), log_odds.clone(), seeds);
         let contradicts = |proposal: &Proposal, seeds: &[Seed]| {
             let mut pixels = proposal.area.pixels(features.size[0]).zip(&proposal.mask);
             pixels.any(|(p, &inside)| inside > 0 && seeds[p] == Seed::Other)

@@ -1,4 +1,4 @@
-//! The mask that an object proposes for a frame, and its odds.
+//! The mask that an object proposes for a frame, and its log-odds.
 
 use super::features::FrameFeatures;
 use crate::clip::annotation::Seed;
@@ -7,15 +7,15 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::labelling::solver::Solver;
 
-/// Odds of a seed, nats: more than all borders of a pixel cost.
+/// Log-odds of a seed, nats: more than all borders of a pixel cost.
 pub(super) const CERTAIN: f32 = 99.0;
 
 /// Where an object may be in a frame, and how likely.
 #[derive(Clone, Debug)]
 pub(super) struct Proposal {
     pub(super) area: Area,
-    /// Odds of the object against everything else at the pixels of the area, nats.
-    pub(super) odds: Vec<f32>,
+    /// Log-odds of the object against everything else at the pixels of the area, nats.
+    pub(super) log_odds: Vec<f32>,
     /// 1 for the object.
     pub(super) mask: Vec<u8>,
     /// What the pixels of the frame tell of changes of the object.
@@ -25,7 +25,7 @@ pub(super) struct Proposal {
 /// What the pixels of a frame tell of changes of an object: a value for each of the frame's features, none if nothing is known.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Signs {
-    /// Log-odds of the object by its appearance, and by where the pixels were in a frame whose mask is a person's, nats.
+    /// Log-log-odds of the object by its appearance, and by where the pixels were in a frame whose mask is a person's, nats.
     pub(super) looks: Vec<f32>,
     /// How much of each pixel annotations have changed, as it comes from the frame before, 0…1; none if they are about all of the object.
     pub(super) change: Option<Vec<f32>>,
@@ -33,32 +33,33 @@ pub(super) struct Signs {
 
 impl Proposal {
     /// The mask of least energy, with the seeds of the frame if it has any.
-    pub(super) fn solved(features: &FrameFeatures, area: Area, odds: Vec<f32>, seeds: Option<&[Seed]>) -> Proposal {
+    pub(super) fn solved(features: &FrameFeatures, area: Area, log_odds: Vec<f32>, seeds: Option<&[Seed]>) -> Proposal {
         let Some(seeds) = seeds else {
-            let mask = cut(features, &area, &odds);
-            return Proposal { area, odds, mask, signs: Signs::default() };
+            let mask = cut(features, &area, &log_odds);
+            return Proposal { area, log_odds, mask, signs: Signs::default() };
         };
-        let odds: Vec<f32> = (0..features.pixels())
+        let log_odds: Vec<f32> = (0..features.pixels())
             .map(|p| match seeds[p] {
-                Seed::Nothing => odds_at(&area, &odds, p, features.size[0]),
+                Seed::Nothing => log_odds_at(&area, &log_odds, p, features.size[0]),
                 Seed::Other | Seed::Dropped => -CERTAIN,
                 Seed::Object => CERTAIN,
             })
             .collect();
         let area = features.area();
         let mask = if seeds.contains(&Seed::Nothing) {
-            cut(features, &area, &odds)
+            cut(features, &area, &log_odds)
         } else {
-            odds.iter().map(|&z| u8::from(z > 0.0)).collect()
+            log_odds.iter().map(|&z| u8::from(z > 0.0)).collect()
         };
-        Proposal { area, odds, mask, signs: Signs::default() }
+        Proposal { area, log_odds, mask, signs: Signs::default() }
     }
 
-    /// The odds of two proposals, by the weights of each.
+    /// The log-odds of two proposals, by the weights of each.
     pub(super) fn joined(features: &FrameFeatures, proposals: [&Proposal; 2], weights: [f32; 2]) -> Proposal {
         let (area, width) = (proposals[0].area.with(&proposals[1].area), features.size[0]);
         let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
-        let odds: Vec<f32> = area.pixels(width).map(|p| mean(proposals.map(|of| of.odds_at(p, width)))).collect();
+        let log_odds: Vec<f32> =
+            area.pixels(width).map(|p| mean(proposals.map(|of| of.log_odds_at(p, width)))).collect();
         let signs = Signs {
             looks: (0..features.pixels()).map(|p| mean(proposals.map(|of| of.signs.looks_at(p)))).collect(),
             change: match proposals.map(|of| &of.signs.change) {
@@ -66,8 +67,8 @@ impl Proposal {
                 _ => None,
             },
         };
-        let mask = cut(features, &area, &odds);
-        Proposal { area, odds, mask, signs }
+        let mask = cut(features, &area, &log_odds);
+        Proposal { area, log_odds, mask, signs }
     }
 
     /// The mask of the whole frame.
@@ -83,9 +84,9 @@ impl Proposal {
         features.plane(&|p| mask[p] > 0)
     }
 
-    /// Odds at a pixel.
-    pub(super) fn odds_at(&self, p: usize, width: usize) -> f32 {
-        odds_at(&self.area, &self.odds, p, width)
+    /// Log-odds at a pixel.
+    pub(super) fn log_odds_at(&self, p: usize, width: usize) -> f32 {
+        log_odds_at(&self.area, &self.log_odds, p, width)
     }
 }
 
@@ -95,17 +96,17 @@ impl Signs {
     }
 }
 
-/// Odds at a pixel that need not be in the area of which they are known.
-pub(super) fn odds_at(area: &Area, odds: &[f32], p: usize, width: usize) -> f32 {
+/// Log-odds at a pixel that need not be in the area of which they are known.
+pub(super) fn log_odds_at(area: &Area, log_odds: &[f32], p: usize, width: usize) -> f32 {
     let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
-    if inside { odds[area.index_of(p, width)] } else { -2.0 * model().certain }
+    if inside { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
 /// The mask of least energy.
-pub(super) fn cut(features: &FrameFeatures, area: &Area, odds: &[f32]) -> Vec<u8> {
+pub(super) fn cut(features: &FrameFeatures, area: &Area, log_odds: &[f32]) -> Vec<u8> {
     let (width, height) = (area.width(), area.height());
     let borders = features.borders.cropped(area, model().smoothness);
-    let object = Plane::from_vec(width, height, odds.iter().map(|&z| -z).collect());
+    let object = Plane::from_vec(width, height, log_odds.iter().map(|&z| -z).collect());
     borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
 }
 
@@ -121,7 +122,7 @@ pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     (moments[0] > 0.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
 }
 
-/// Odds of a probability, nats.
+/// Log-odds of a probability, nats.
 pub(super) fn logit(p: f32) -> f32 {
     libm::logf((p + model().doubt) / (1.0 - p + model().doubt))
 }

@@ -167,7 +167,7 @@ impl Template {
     }
 }
 
-/// The shift of least cost in steps around a middle, and its cost; to be away from the one expected has a price.
+/// The shift of least cost in steps around a middle, and its cost; to be away from the one expected has a penalty.
 fn best_of(
     reach: isize,
     step: f32,

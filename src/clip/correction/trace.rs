@@ -7,7 +7,7 @@
 use super::features::FrameFeatures;
 use super::proposal::logit;
 use super::template::{at, difference};
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -34,8 +34,13 @@ impl Trace {
         Trace { mask: gaussian(mask, model().blur), colours: features.fine.clone(), places, was_seen }
     }
 
-    /// Goes on to a frame by the flows to the one before and from there. Returns the odds of the object at the pixels of an area, nats.
-    pub(super) fn follow(&mut self, features: &FrameFeatures, [to, from]: [&Flow; 2], area: &Area) -> Vec<f32> {
+    /// Goes on to a frame by the flows to the one before and from there. Returns the log-odds of the object at the pixels of an area, nats.
+    pub(super) fn follow(
+        &mut self,
+        features: &FrameFeatures,
+        [to, from]: [&LayeredMotion; 2],
+        area: &Area,
+    ) -> Vec<f32> {
         let (size @ [width, _], pixels) = (features.size, features.pixels());
         let places: Vec<[f32; 2]> = (0..pixels).map(|p| self.place_before(to, [p % width, p / width], size)).collect();
         self.places = [0, 1].map(|k| features.plane_of(&|p| places[p][k]));
@@ -57,11 +62,11 @@ impl Trace {
             area.pixels(width).zip(smooth.values()).for_each(|(p, step)| places.values_mut()[p] += step);
         }
         let disagreement = self.disagreement(features, area, [0, 0]);
-        area.pixels(width).zip(disagreement.values()).map(|(p, &d)| self.odds(p, d, size)).collect()
+        area.pixels(width).zip(disagreement.values()).map(|(p, &d)| self.log_odds(p, d, size)).collect()
     }
 
     /// Where a pixel of the next frame was. Beyond the border it goes on as there.
-    fn place_before(&self, to: &Flow, [x, y]: [usize; 2], size: [usize; 2]) -> [f32; 2] {
+    fn place_before(&self, to: &LayeredMotion, [x, y]: [usize; 2], size: [usize; 2]) -> [f32; 2] {
         let [u, v] = to.at(x, y);
         let before = [x as f32 + u as f32, y as f32 + v as f32];
         let footprint = Footprint::new(before[0], before[1], size[0], size[1]);
@@ -83,17 +88,17 @@ impl Trace {
         gaussian(&Plane::from_vec(area.width(), area.height(), differences), model().border)
     }
 
-    fn odds(&self, p: usize, disagreement: f32, [width, height]: [usize; 2]) -> f32 {
+    fn log_odds(&self, p: usize, disagreement: f32, [width, height]: [usize; 2]) -> f32 {
         let place = self.places.each_ref().map(|places| places.values()[p]);
-        let odds = logit(Footprint::new(place[0], place[1], width, height).sample(self.mask.values()));
+        let log_odds = logit(Footprint::new(place[0], place[1], width, height).sample(self.mask.values()));
         let weight = (1.0 - 2.0 * disagreement).max(0.0);
         // What came into sight was behind the object, if it seems to have been there.
-        weight * if self.was_seen[p] { odds } else { odds.min(0.0) }
+        weight * if self.was_seen[p] { log_odds } else { log_odds.min(0.0) }
     }
 }
 
 /// The pixel of the frame before that a pixel was, if that one comes here.
-fn source(to: &Flow, from: &Flow, [x, y]: [usize; 2]) -> Option<usize> {
+fn source(to: &LayeredMotion, from: &LayeredMotion, [x, y]: [usize; 2]) -> Option<usize> {
     let (step, [px, py]) = (to.at(x, y), to.destination(x, y)?);
     let back = from.at(px, py);
     let length = |of: [f64; 2]| (of[0] * of[0] + of[1] * of[1]).sqrt();
@@ -131,9 +136,9 @@ mod tests {
     }
 
     /// As a pair of frames measures it.
-    fn flow(t: usize, step: f64) -> Flow {
+    fn flow(t: usize, step: f64) -> LayeredMotion {
         let is_moving = |p: usize| [&CAR, &SHADOW].iter().any(|of| is_at(of, t, p % SIZE[0], p / SIZE[0]));
-        Flow {
+        LayeredMotion {
             width: SIZE[0],
             labels: (0..SIZE[0] * SIZE[1]).map(|p| u8::from(is_moving(p))).collect(),
             motions: vec![AffineMotion::STATIC, AffineMotion::translation(step, 0.0)],
@@ -145,12 +150,12 @@ mod tests {
     fn pixels_are_followed_to_the_annotated_frame() {
         let first = features(0);
         let mut trace = Trace::new(&first.plane(&|p| is_at(&CAR, 0, p % SIZE[0], p / SIZE[0])), &first);
-        let mut odds = Vec::new();
+        let mut log_odds = Vec::new();
         for t in 1..=20 {
             let here = features(t);
-            odds = trace.follow(&here, [&flow(t, -2.0), &flow(t - 1, 2.0)], &here.area());
+            log_odds = trace.follow(&here, [&flow(t, -2.0), &flow(t - 1, 2.0)], &here.area());
         }
-        let at = |x: usize, y: usize| odds[y * SIZE[0] + x];
+        let at = |x: usize, y: usize| log_odds[y * SIZE[0] + x];
         assert!(at(40 + 32, 28) > 3.0, "the car, {}", at(72, 28));
         assert!(at(40 + 32, 43) < -3.0, "its shadow, {}", at(72, 43));
         assert!(at(110, 28) < -3.0, "ground, {}", at(110, 28));

@@ -1,7 +1,7 @@
 //! An object as last seen, and where it is expected.
 
 use super::sight::{Sight, mean_motion, moves};
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
 use crate::clip::record::Record;
 use crate::labelling::BACKGROUND;
@@ -34,7 +34,7 @@ pub(crate) struct Apart {
 
 impl Apart {
     /// One frame more.
-    pub(crate) fn add(&mut self, along: &Flow, one: &[usize], other: &[usize]) {
+    pub(crate) fn add(&mut self, along: &LayeredMotion, one: &[usize], other: &[usize]) {
         let [u, v] = mean_motion(along, one);
         let [r, s] = mean_motion(along, other);
         self.moved = [self.moved[0] + r - u, self.moved[1] + s - v];

@@ -1,6 +1,6 @@
 //! A set of pixels of one frame, in figures.
 
-use crate::clip::evidence::Flow;
+use crate::clip::evidence::LayeredMotion;
 use crate::clip::record::Record;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
@@ -38,12 +38,12 @@ impl Sight {
 
 /// The pair that tells how the pixels of a frame move: that with the next frame or, at the end of a scene or where the next frame repeats
 /// this one, that with the frame before.
-pub(crate) fn telling(record: &Record) -> Option<&Flow> {
+pub(crate) fn telling(record: &Record) -> Option<&LayeredMotion> {
     record.onward.as_ref().filter(|onward| !onward.is_still()).or(record.back.as_ref()).or(record.onward.as_ref())
 }
 
 /// Mean displacement of some pixels along a flow.
-pub(crate) fn mean_motion(along: &Flow, pixels: &[usize]) -> [f64; 2] {
+pub(crate) fn mean_motion(along: &LayeredMotion, pixels: &[usize]) -> [f64; 2] {
     let (n, width) = (pixels.len().max(1) as f64, along.width);
     let sums = pixels.iter().fold([0.0, 0.0], |[a, b], &p| {
         let [u, v] = along.at(p % width, p / width);

@@ -16,7 +16,7 @@ use crate::measurements::Measurements;
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Entries of a motion; groups of fewer pixels propose none.
 const ENTRIES: usize = 6;
@@ -30,7 +30,7 @@ pub(crate) struct Unexplained {
 
 /// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
 pub(crate) fn from_algebra(
-    level: &Level,
+    level: &PairLevel,
     dominant: &AffineMotion,
     flow: &LocalFlow,
     degrees: usize,
@@ -51,7 +51,7 @@ pub(crate) fn from_algebra(
 
 /// At most `most` pixels to which [`from_algebra`] fits polynomials; none where they are too few.
 pub(crate) fn unexplained(
-    level: &Level,
+    level: &PairLevel,
     dominant: &AffineMotion,
     flow: &LocalFlow,
     most: usize,
@@ -136,10 +136,10 @@ fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64
     group(&readings, data.measurements.positions(), close, 2 * degree + 1, model)
 }
 
-/// Flow of a measurement, read off the polynomial by differentiation.
+/// LayeredMotion of a measurement, read off the polynomial by differentiation.
 #[derive(Clone, Copy, Default)]
 struct Reading {
-    /// Flow of the factor that vanishes there, in units of `algebra_unit` pixels.
+    /// LayeredMotion of the factor that vanishes there, in units of `algebra_unit` pixels.
     flow: [f64; 2],
     /// |∂p/∂y|.
     slope: f64,

@@ -9,9 +9,9 @@ use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::{each_with, whole};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
-/// Flow relative to the dominant motion, pixels of the base level, with its certainty.
+/// LayeredMotion relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
     pub(crate) u: Plane,
     pub(crate) v: Plane,
@@ -28,7 +28,7 @@ pub(crate) struct Samples {
 }
 
 /// Mean gradients and intensity difference along the dominant motion plus a flow.
-pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Plane) -> Samples {
+pub(crate) fn samples(level: &PairLevel, dominant: &AffineMotion, u: &Plane, v: &Plane) -> Samples {
     let (width, height) = (level.width(), level.height());
     let scaled = level.scaled(dominant);
     let plane = || Plane::filled(width, height, 0.0);
@@ -75,7 +75,7 @@ struct Windows {
     yr: Plane,
 }
 
-fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
+fn windows(level: &PairLevel, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
     let (robustness, position) = (1.0 / level.model.robustness_loose, level.model.position_variance());
     let mut weight = s.residual.clone();
@@ -97,7 +97,7 @@ fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
 }
 
 /// Local flow at level `base`, estimated from the coarsest level down.
-pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize) -> LocalFlow {
+pub(crate) fn local_flow(levels: &[PairLevel], dominant: &AffineMotion, base: usize) -> LocalFlow {
     let coarsest = &levels[levels.len() - 1];
     let mut u = Plane::filled(coarsest.width(), coarsest.height(), 0.0);
     let mut v = u.clone();

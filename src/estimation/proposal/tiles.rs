@@ -4,10 +4,15 @@ use super::local_flow::LocalFlow;
 use super::{Proposal, distinct, translated};
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// At most `most` motions: the dominant one plus a translation.
-pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Vec<AffineMotion> {
+pub(crate) fn from_tiles(
+    level: &PairLevel,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    most: usize,
+) -> Vec<AffineMotion> {
     let (model, stride) = (level.model, level.model.tile_stride);
     let [columns, rows] = [level.width(), level.height()].map(|size| size.div_ceil(stride));
     let mut certainties = Vec::with_capacity(columns * rows);

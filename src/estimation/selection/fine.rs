@@ -8,10 +8,10 @@ use crate::frame::filter::gaussian;
 use crate::frame::warp::Footprint;
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// At most `most` local corrections of the selected motions, the most promising first.
-pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usize) -> Vec<AffineMotion> {
+pub(crate) fn fine_proposals(level: &PairLevel, selected: &[ScoredMotion], most: usize) -> Vec<AffineMotion> {
     let (width, height) = (level.width(), level.height());
     let (model, stride, flat) = (level.model, level.model.tile_stride, level.model.flow_flat);
     let winners = winners(selected);
@@ -52,7 +52,7 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usi
 }
 
 /// Products of gradients and residual along each pixel's cheapest motion, divided by the variance and averaged over windows.
-fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [Plane; 5] {
+fn window_sums(level: &PairLevel, selected: &[ScoredMotion], winners: &[usize]) -> [Plane; 5] {
     let (width, height) = (level.width(), level.height());
     let scaled: Vec<AffineMotion> = selected.iter().map(|l| level.scaled(&l.motion)).collect();
     let noise = level.noise * level.noise;

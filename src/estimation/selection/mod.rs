@@ -1,20 +1,20 @@
 //! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
 //! levels.
 
-pub(crate) mod deflation;
 mod fine;
+pub(crate) mod greedy;
 mod refit;
 
-pub(crate) use deflation::{Deflation, add_motions, prune};
 pub(crate) use fine::fine_proposals;
+pub(crate) use greedy::{GreedySelection, add_motions, prune};
 pub(crate) use refit::refit;
 
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cost};
-use crate::view::level::Level;
+use crate::view::cost::{RobustKernel, cost};
+use crate::view::level::PairLevel;
 
 /// A motion and its cost at every pixel of a level, averaged over windows.
 #[derive(Clone, Debug)]
@@ -26,11 +26,11 @@ pub(crate) struct ScoredMotion {
 impl ScoredMotion {
     /// Computes the cost of a motion on a level.
     #[inline(never)]
-    pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
+    pub(crate) fn new(level: &PairLevel, motion: AffineMotion) -> ScoredMotion {
         ScoredMotion {
             motion,
             cost: gaussian(
-                &cost(level, &motion, CostModel::estimation(level.model)),
+                &cost(level, &motion, RobustKernel::estimation(level.model)),
                 level.model.cost_window / level.stride as f32,
             ),
         }

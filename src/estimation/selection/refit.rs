@@ -6,11 +6,11 @@ use crate::frame::Plane;
 use crate::frame::filter::eroded;
 use crate::lanes::each_with;
 use crate::model::Model;
-use crate::view::brightness::Photometric;
-use crate::view::level::Level;
+use crate::view::brightness::GainBias;
+use crate::view::level::PairLevel;
 
 /// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
-pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize, convergence: Convergence) {
+pub(crate) fn refit(level: &PairLevel, selected: &mut [ScoredMotion], rounds: usize, convergence: Convergence) {
     let model = level.model;
     for _ in 0..rounds {
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k, level.model)).collect();
@@ -18,7 +18,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize,
             let Some(region) = region else { continue };
             let how = Alignment::of_region(model.region_iterations, ridge_of_label(k, model), model).until(convergence);
             let motion =
-                align(level, &scored.motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
+                align(level, &scored.motion, &Support::weighted(&region, model), &mut GainBias::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
                 *scored = refined;

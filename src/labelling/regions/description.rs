@@ -12,7 +12,7 @@ use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, across_borders};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Entries of a motion; no motion is described with fewer pixels.
 const ENTRIES: usize = 6;
@@ -20,28 +20,28 @@ const ENTRIES: usize = 6;
 const TOO_SMALL: f64 = -1e9;
 
 /// Nats for the six parameters of a motion with so many pixels: (6/2) ln N (Schwarz, Annals of Statistics 6(2), 1978).
-pub(crate) fn price_of_motion(pixels: usize) -> f64 {
+pub(crate) fn motion_penalty(pixels: usize) -> f64 {
     0.5 * ENTRIES as f64 * libm::log(pixels.max(ENTRIES) as f64)
 }
 
 /// Nats by which two motions with so many pixels each need more parameters than one with all of them.
-pub(super) fn price_of_two(pixels: [usize; 2]) -> f64 {
-    pixels.iter().map(|&n| price_of_motion(n)).sum::<f64>() - price_of_motion(pixels.iter().sum())
+pub(super) fn second_motion_penalty(pixels: [usize; 2]) -> f64 {
+    pixels.iter().map(|&n| motion_penalty(n)).sum::<f64>() - motion_penalty(pixels.iter().sum())
 }
 
 /// Nats for a border of some pixels.
-pub(super) fn price_of_border(pixels: usize, model: &Model) -> f64 {
-    model.border_price * pixels as f64
+pub(super) fn border_penalty(pixels: usize, model: &Model) -> f64 {
+    model.border_penalty * pixels as f64
 }
 
 /// Weight of a pixel of a level, in working pixels.
-pub(crate) fn weight_of_pixel(level: &Level) -> f32 {
+pub(crate) fn weight_of_pixel(level: &PairLevel) -> f32 {
     level.pixel() as f32
 }
 
-/// The same as [`price_of_motion`], in summed costs of the pixels of a level.
-pub(crate) fn price_on(level: &Level) -> f64 {
-    2.0 * price_of_motion(level.width() * level.height()) / f64::from(weight_of_pixel(level))
+/// The same as [`motion_penalty`], in summed costs of the pixels of a level.
+pub(crate) fn motion_penalty_on(level: &PairLevel) -> f64 {
+    2.0 * motion_penalty(level.width() * level.height()) / f64::from(weight_of_pixel(level))
 }
 
 /// Description length in nats of both frames by motions and labels: residuals, six parameters per motion, borders. Rest needs no
@@ -52,13 +52,13 @@ pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], wid
     let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
     let pixels = counts(labels, motions.len());
     let moving = motions.iter().zip(pixels).filter(|(motion, _)| **motion != AffineMotion::STATIC);
-    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels)).sum();
+    let parameters: f64 = moving.map(|(_, pixels)| motion_penalty(pixels)).sum();
     // Every pair of neighbours is counted by both of its labels.
     let borders = border_lengths(labels, motions.len(), width).iter().sum::<usize>() / 2;
-    0.5 * left_over + parameters + price_of_border(borders, model)
+    0.5 * left_over + parameters + border_penalty(borders, model)
 }
 
-/// Nats that each object saves beyond its price, its parameters and its border; infinite for the dominant motion, element 0.
+/// Nats that each object saves beyond its penalty, its parameters and its border; infinite for the dominant motion, element 0.
 ///
 /// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
 pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize, model: &Model) -> Vec<f64> {
@@ -73,9 +73,9 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize, model: &Model) -
             if (counts[k] as f64) < model.smallest_share * labels.len() as f64 {
                 return TOO_SMALL + counts[k] as f64;
             }
-            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]]);
+            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - second_motion_penalty([counts[k], counts[m]]);
             let others = (0..raw.len()).filter(|&m| m != k);
-            others.map(lost).fold(f64::INFINITY, f64::min) - price_of_border(borders[k], model)
+            others.map(lost).fold(f64::INFINITY, f64::min) - border_penalty(borders[k], model)
         })
         .collect()
 }

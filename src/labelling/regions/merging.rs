@@ -5,15 +5,15 @@
 //! which leaves the true background motion to count as another object. To decide whether one motion is enough, one is refined on
 //! both regions together.
 
-use super::description::{between, counts, price_of_border, price_of_two, sums, weight_of_pixel};
+use super::description::{between, border_penalty, counts, second_motion_penalty, sums, weight_of_pixel};
 use super::splitting::aligned_on;
 use crate::estimation::alignment::ridge_of_label;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::labelling::{BACKGROUND, pixels};
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cost_within};
-use crate::view::level::Level;
+use crate::view::cost::{RobustKernel, cost_within};
+use crate::view::level::PairLevel;
 
 /// Two labels that are one body, the smaller first, and its motion.
 pub(crate) struct Merger {
@@ -23,7 +23,7 @@ pub(crate) struct Merger {
 
 /// The two touching regions whose description a common motion shortens most; none if two motions are always better. `raw` as in
 /// [`worth`](super::description::worth).
-pub(crate) fn best_merger(level: &Level, motions: &[AffineMotion], raw: &[Plane], labels: &[u8]) -> Option<Merger> {
+pub(crate) fn best_merger(level: &PairLevel, motions: &[AffineMotion], raw: &[Plane], labels: &[u8]) -> Option<Merger> {
     let width = level.width();
     let pixel = weight_of_pixel(level);
     let between = between(labels, motions.len(), width);
@@ -42,9 +42,9 @@ pub(crate) fn best_merger(level: &Level, motions: &[AffineMotion], raw: &[Plane]
         let motion =
             aligned_on(level, &motions[better], &mask, level.model.region_iterations, ridge_of_label(a, level.model));
         let area = Area::of(&region, width);
-        let cost = cost_within(level, &area, &motion, CostModel::estimation(level.model));
+        let cost = cost_within(level, &area, &motion, RobustKernel::estimation(level.model));
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();
-        let saved = price_of_two([counts[a], counts[b]]) + price_of_border(between[a][b], level.model);
+        let saved = second_motion_penalty([counts[a], counts[b]]) + border_penalty(between[a][b], level.model);
         let gain = 0.5 * (sums[a][a] + sums[b][b] - together) + saved;
         if gain > best.as_ref().map_or(0.0, |(most, _)| *most) {
             best = Some((gain, Merger { labels: [a, b], motion }));
@@ -64,7 +64,7 @@ mod tests {
     const SIZE: [usize; 2] = [96, 64];
 
     /// A square that moves by `object` on a background at rest, and which pixels are the square's.
-    fn level(object: [f64; 2]) -> (Level, Vec<u8>) {
+    fn level(object: [f64; 2]) -> (PairLevel, Vec<u8>) {
         let mut random = Random::from_seed(11);
         let mut texture = || {
             let noise = Plane::from_fn(SIZE[0] + 8, SIZE[1] + 8, |_, _| random.uniform(0.0, 255.0) as f32);
@@ -83,8 +83,8 @@ mod tests {
         (build(frame(0, 0), second, 24).remove(0), labels)
     }
 
-    fn merger(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {
-        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation(level.model))).collect();
+    fn merger(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {
+        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, RobustKernel::estimation(level.model))).collect();
         best_merger(level, motions, &raw, labels)
     }
 

@@ -1,6 +1,6 @@
 //! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in two parts.
 
-use super::description::{price_of_border, price_of_two, weight_of_pixel};
+use super::description::{border_penalty, second_motion_penalty, weight_of_pixel};
 use crate::components::{Connectivity, components};
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label};
 use crate::frame::Plane;
@@ -9,9 +9,9 @@ use crate::frame::filter::gaussian;
 use crate::labelling::{objects, pixels};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::brightness::Photometric;
-use crate::view::cost::{CostModel, cost_within};
-use crate::view::level::Level;
+use crate::view::brightness::GainBias;
+use crate::view::cost::{RobustKernel, cost_within};
+use crate::view::level::PairLevel;
 
 fn smallest_part(pixels: usize, model: &Model) -> usize {
     model.fewest.max((model.smallest_share * pixels as f64) as usize)
@@ -19,19 +19,19 @@ fn smallest_part(pixels: usize, model: &Model) -> usize {
 
 /// A motion refined on the pixels of a mask.
 pub(super) fn aligned_on(
-    level: &Level,
+    level: &PairLevel,
     motion: &AffineMotion,
     mask: &Plane,
     iterations: usize,
     ridge: f64,
 ) -> AffineMotion {
     let how = Alignment::of_region(iterations, ridge, level.model);
-    align(level, motion, &Support::weighted(mask, level.model), &mut Photometric::default(), how)
+    align(level, motion, &Support::weighted(mask, level.model), &mut GainBias::default(), how)
 }
 
 /// Splits objects into two bodies where that shortens the description. Whether the largest of the parts that are not connected is one is
 /// tried first. Then motions are fitted to the halves along the long axis, and pixels reassigned to the better one.
-pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
+pub(crate) fn split_bodies(level: &PairLevel, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
     for label in objects(motions.len()) {
         if motions.len() >= most {
@@ -59,7 +59,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
 /// Two motions that shorten the description of a region, and which of its pixels belong to the second. Pixels are reassigned in so many
 /// rounds.
 fn two_bodies(
-    level: &Level,
+    level: &PairLevel,
     (label, motion): (usize, &AffineMotion),
     region: &[usize],
     mut second: Vec<bool>,
@@ -79,7 +79,10 @@ fn two_bodies(
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
             *motion = aligned_on(level, motion, &mask, model.region_iterations, ridge_of_label(label, model));
-            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.cost_window));
+            costs.push(gaussian(
+                &cost_within(level, &around, motion, RobustKernel::estimation(model)),
+                model.cost_window,
+            ));
         }
         if round == rounds {
             break;
@@ -94,7 +97,7 @@ fn two_bodies(
         }
     }
     let [one, two @ ..] =
-        [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::estimation(model)));
+        [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, RobustKernel::estimation(model)));
     let mut gain = 0.0;
     for (&p, &s) in region.iter().zip(&second) {
         let place = around.index_of(p, width);
@@ -102,8 +105,8 @@ fn two_bodies(
     }
     gain *= f64::from(weight_of_pixel(level));
     let of_second = second.iter().filter(|s| **s).count();
-    let price = price_of_two([region.len() - of_second, of_second])
-        + price_of_border(inner_border(region, &second, width, height), model);
+    let price = second_motion_penalty([region.len() - of_second, of_second])
+        + border_penalty(inner_border(region, &second, width, height), model);
     (gain > price).then_some((pair, second))
 }
 

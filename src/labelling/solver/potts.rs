@@ -10,9 +10,9 @@ pub(super) const FORBIDDEN: f32 = 1e7;
 pub(crate) struct Potts<'a> {
     /// One plane per label, `costs[l].at(x, y)` = D_p(l); all of one size.
     pub(crate) costs: &'a [Plane],
-    /// `horizontal.at(x, y)` ≥ 0 is the price of different labels at (x, y) and (x + 1, y); the last column is not read.
+    /// `horizontal.at(x, y)` ≥ 0 is the penalty of different labels at (x, y) and (x + 1, y); the last column is not read.
     pub(crate) horizontal: &'a Plane,
-    /// `vertical.at(x, y)` ≥ 0 is the price of different labels at (x, y) and (x, y + 1); the last row is not read.
+    /// `vertical.at(x, y)` ≥ 0 is the penalty of different labels at (x, y) and (x, y + 1); the last row is not read.
     pub(crate) vertical: &'a Plane,
 }
 

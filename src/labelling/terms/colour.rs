@@ -16,7 +16,7 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8],
     let trust = trust(palette, labels, &weights, n, model);
     let mut prices = posterior(palette, labels, &weights, n, model);
     let largest = model.largest_cost();
-    prices.iter_mut().for_each(|p| *p = (-model.colour_price * trust * trust * libm::logf(*p)).min(largest));
+    prices.iter_mut().for_each(|p| *p = (-model.colour_weight * trust * trust * libm::logf(*p)).min(largest));
     for (label, cost) in costs.iter_mut().enumerate() {
         cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices[palette.index(p) * n + label]);
     }

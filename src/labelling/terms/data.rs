@@ -8,26 +8,26 @@ use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_var
 use crate::lanes::{each, each_with, lower};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cheapest, cost_where_seen};
-use crate::view::level::Level;
+use crate::view::cost::{RobustKernel, cheapest, cost_where_seen};
+use crate::view::level::PairLevel;
 
 /// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
 pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
 
 /// Compares the frames along motions, except those that are compared already.
-pub(crate) fn compare(level: &Level, motions: &[AffineMotion], mut known: Compared) -> Compared {
+pub(crate) fn compare(level: &PairLevel, motions: &[AffineMotion], mut known: Compared) -> Compared {
     let plane = |motion: &AffineMotion| match known.iter().position(|(other, _)| other == motion) {
         Some(k) => known.swap_remove(k).1,
-        None => cost_where_seen(level, motion, CostModel::labels(level.model)),
+        None => cost_where_seen(level, motion, RobustKernel::labels(level.model)),
     };
     let planes: Vec<Plane> = motions.iter().map(plane).collect();
     motions.iter().copied().zip(planes).collect()
 }
 
 /// Estimation costs of every motion, from the same comparisons: `1/ρ = 1/e + 1/T` for both largest costs T.
-pub(crate) fn estimation_costs(level: &Level, compared: &Compared) -> Vec<Plane> {
-    let (model, weight) = (CostModel::estimation(level.model), weight_of_pixel(level));
-    let less = 1.0 / CostModel::labels(level.model).truncation - 1.0 / model.truncation;
+pub(crate) fn estimation_costs(level: &PairLevel, compared: &Compared) -> Vec<Plane> {
+    let (model, weight) = (RobustKernel::estimation(level.model), weight_of_pixel(level));
+    let less = 1.0 / RobustKernel::labels(level.model).truncation - 1.0 / model.truncation;
     let outside = model.outside();
     let plane = |(_, cost): &(AffineMotion, Plane)| {
         let mut plane = cost.clone();
@@ -44,7 +44,7 @@ pub(crate) fn estimation_costs(level: &Level, compared: &Compared) -> Vec<Plane>
 /// objects do not win pixels by moving them out of the frame.
 ///
 /// They are computed row by row, so that the only intermediate plane is that of the smallest costs.
-pub(crate) fn label_costs(level: &Level, compared: &Compared, options: LabellingOptions) -> Vec<Plane> {
+pub(crate) fn label_costs(level: &PairLevel, compared: &Compared, options: LabellingOptions) -> Vec<Plane> {
     let mut costs: Vec<Plane> = compared.iter().map(|(_, cost)| cost.clone()).collect();
     let mut inflation = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
     let [mut inflation_row, mut seen] = [vec![0.0; level.width()], vec![0.0; level.width()]];
@@ -59,7 +59,7 @@ pub(crate) fn label_costs(level: &Level, compared: &Compared, options: Labelling
             to_label_costs(label, cost.row_mut(y), &seen, options, level.model);
         }
     }
-    costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, options));
+    costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_penalty(cost, options));
     costs
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn label_costs(level: &Level, compared: &Compared, options: Labelling
 /// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
 fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], options: LabellingOptions, model: &Model) {
-    let neutral = CostModel::labels(model).outside();
+    let neutral = RobustKernel::labels(model).outside();
     let (least, most, object_bias) = match label {
         BACKGROUND => (f32::NEG_INFINITY, neutral, 0.0),
         _ => (neutral, f32::INFINITY, options.object_bias),
@@ -79,8 +79,8 @@ fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], options: Labell
     });
 }
 
-/// Adds the price of an object's pixels on the frame's border, for each of the borders that they lie on.
-fn add_frame_border_price(cost: &mut Plane, options: LabellingOptions) {
+/// Adds the penalty of an object's pixels on the frame's border, for each of the borders that they lie on.
+fn add_frame_border_penalty(cost: &mut Plane, options: LabellingOptions) {
     let price = 0.5 * options.smoothness;
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
@@ -99,7 +99,7 @@ mod tests {
     use crate::labelling::options::LabellingOptions;
     use crate::view::level::build;
 
-    fn costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    fn costs(level: &PairLevel, motions: &[AffineMotion]) -> Vec<Plane> {
         label_costs(level, &compare(level, motions, Vec::new()), LabellingOptions::OF_TESTS)
     }
 
@@ -127,7 +127,7 @@ mod tests {
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
         let unseen = costs(same, &[nowhere, nowhere]);
-        assert_eq!(unseen[0].at(30, 30), CostModel::labels(&Model::DEFAULT).outside());
+        assert_eq!(unseen[0].at(30, 30), RobustKernel::labels(&Model::DEFAULT).outside());
         assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - LabellingOptions::OF_TESTS.object_bias).abs() < 1e-6);
     }
 }

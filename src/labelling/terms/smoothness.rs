@@ -1,4 +1,4 @@
-//! The smoothness term: the price of a border between two labels, lower along the edges of the image.
+//! The smoothness term: the penalty of a border between two labels, lower along the edges of the image.
 
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -9,16 +9,16 @@ use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
 use crate::model::Model;
 
-/// Prices of borders between neighbours.
+/// Weights of edges between neighbours.
 #[derive(Clone, Debug)]
-pub(crate) struct Borders {
+pub(crate) struct EdgeWeights {
     horizontal: Plane,
     vertical: Plane,
 }
 
-impl Borders {
-    /// The prices with a λ along the edges of a picture with this noise, grey levels.
-    pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> Borders {
+impl EdgeWeights {
+    /// The penalties with a λ along the edges of a picture with this noise, grey levels.
+    pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> EdgeWeights {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
         let price = Price::new(noise, smoothness, model);
         let mut borders = Self::uniform(width, height, smoothness);
@@ -31,27 +31,27 @@ impl Borders {
         borders
     }
 
-    /// The same prices, multiplied by a factor.
-    pub(crate) fn times(&self, factor: f32) -> Borders {
+    /// The same penalties, multiplied by a factor.
+    pub(crate) fn times(&self, factor: f32) -> EdgeWeights {
         let mut borders = self.clone();
         let planes = [&mut borders.horizontal, &mut borders.vertical];
         planes.into_iter().flat_map(|plane| plane.values_mut()).for_each(|price| *price *= factor);
         borders
     }
 
-    /// The prices within an area, multiplied by a factor.
-    pub(crate) fn cropped(&self, area: &Area, factor: f32) -> Borders {
+    /// The penalties within an area, multiplied by a factor.
+    pub(crate) fn cropped(&self, area: &Area, factor: f32) -> EdgeWeights {
         let [horizontal, vertical] = [&self.horizontal, &self.vertical].map(|plane| {
             let (left, top) = (area.columns.start, area.rows.start);
             Plane::from_fn(area.width(), area.height(), |x, y| factor * plane.at(left + x, top + y))
         });
-        Borders { horizontal, vertical }
+        EdgeWeights { horizontal, vertical }
     }
 
-    /// Borders that cost the same everywhere.
-    pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> Borders {
+    /// EdgeWeights that cost the same everywhere.
+    pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> EdgeWeights {
         let everywhere = Plane::filled(width, height, smoothness);
-        Borders { horizontal: everywhere.clone(), vertical: everywhere }
+        EdgeWeights { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
     /// The labels of least energy found.
@@ -60,7 +60,7 @@ impl Borders {
     }
 }
 
-/// The price of a border as a function of the step across it.
+/// The penalty of a border as a function of the step across it.
 struct Price {
     smoothness: f32,
     /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
@@ -76,7 +76,7 @@ impl Price {
         Price { smoothness, per_step, edge_share: model.edge_share, colour_share: 1.0 / 3.0f32.sqrt() }
     }
 
-    /// Prices between the pixels of two runs; ends with the shorter one.
+    /// Penalties between the pixels of two runs; ends with the shorter one.
     fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
         let Price { edge_share, colour_share, .. } = *self;
         for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
@@ -123,8 +123,9 @@ mod tests {
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
         let coloured =
             Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
-        let borders = Borders::new(&bright, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT);
-        for borders in [&borders, &Borders::new(&coloured, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT)]
+        let borders = EdgeWeights::new(&bright, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT);
+        for borders in
+            [&borders, &EdgeWeights::new(&coloured, 1.0, LabellingOptions::OF_TESTS.smoothness, &Model::DEFAULT)]
         {
             assert_eq!(borders.horizontal.at(10, 10), LabellingOptions::OF_TESTS.smoothness);
             assert!(

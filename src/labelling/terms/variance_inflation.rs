@@ -9,7 +9,7 @@ use crate::frame::Plane;
 use crate::frame::filter::RowFilter;
 use crate::lanes::{each, each_with};
 use crate::model::Model;
-use crate::view::cost::CostModel;
+use crate::view::cost::RobustKernel;
 
 /// Mean cost of noise alone: E[e/(1 + e/T)] for e of one degree of freedom and T = 2.
 const NOISE_ALONE: f32 = 0.484;
@@ -26,7 +26,7 @@ pub(crate) struct VarianceInflation {
 impl VarianceInflation {
     /// `smallest` is infinite where all motions move a pixel out of the second frame.
     pub(crate) fn new(mut smallest: Plane, model: &'static Model) -> VarianceInflation {
-        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels(model).outside() });
+        each(smallest.values_mut(), |c| if c.is_finite() { c } else { RobustKernel::labels(model).outside() });
         let window = RowFilter::gaussian(smallest.width(), model.window_of_fit());
         VarianceInflation { smallest, model, window }
     }
@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn what_is_saturated_or_unseen_stays_so() {
         let mut costs = [
-            Plane::filled(20, 20, CostModel::labels(&Model::DEFAULT).truncation),
+            Plane::filled(20, 20, RobustKernel::labels(&Model::DEFAULT).truncation),
             Plane::filled(20, 20, f32::INFINITY),
         ];
         let before = costs.clone();

@@ -6,14 +6,14 @@ use crate::frame::warp::warp;
 use crate::labelling::{BACKGROUND, is_background, mask_of, objects};
 use crate::lanes::each_with;
 use crate::motion::AffineMotion;
-use crate::view::level::Level;
+use crate::view::level::PairLevel;
 
 /// Costs in which a motion pays no more than `Model::hidden_cost` for pixels that it moves behind another object.
 ///
 /// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
 /// grow into the background around others.
 pub(crate) fn with_visibility(
-    level: &Level,
+    level: &PairLevel,
     motions: &[AffineMotion],
     costs: &[Plane],
     labels: &[u8],
@@ -35,18 +35,18 @@ pub(crate) fn with_visibility(
 }
 
 /// Pixels labelled dominant that the dominant motion moves behind an object.
-pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
+pub(crate) fn hidden(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
     let covered = covered(level, &motions[BACKGROUND], &landed(level, motions, labels), BACKGROUND);
     covered.values().iter().zip(labels).map(|(&covered, &label)| is_background(label) && covered > 0.5).collect()
 }
 
 /// The masks of all objects where they are in the second frame, with their labels.
-fn landed(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
+fn landed(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
     objects(motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
 }
 
 /// How far the position that a motion moves each pixel to is covered by objects other than `own`, 0…1.
-fn covered(level: &Level, motion: &AffineMotion, landed: &[(usize, Plane)], own: usize) -> Plane {
+fn covered(level: &PairLevel, motion: &AffineMotion, landed: &[(usize, Plane)], own: usize) -> Plane {
     let mut cover = Plane::filled(level.width(), level.height(), 0.0);
     for (_, mask) in landed.iter().filter(|(other, _)| *other != own) {
         each_with(cover.values_mut(), [mask.values()], |c, [m]| if m > c { m } else { c });
@@ -55,7 +55,7 @@ fn covered(level: &Level, motion: &AffineMotion, landed: &[(usize, Plane)], own:
 }
 
 /// The eroded mask of an object, moved to its place in the second frame.
-fn moved_mask(level: &Level, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
+fn moved_mask(level: &PairLevel, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
     let mask = eroded(&mask_of(labels, label as u8, level.width(), level.height()));
     match level.scaled(motion).inverse() {
         Some(back) => warp(&mask, &back),

@@ -13,8 +13,8 @@
 //! measurement on others.
 
 use crate::frame::Plane;
+use crate::labelling::BACKGROUND;
 use crate::model::Model;
-use crate::pair::figure::GROUND;
 use crate::pair::groups::shares_on_frame;
 
 /// Smallest and largest P that are told apart. A safeguard.
@@ -32,7 +32,7 @@ pub(super) fn doubt_objects(
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
     let on_border = shares_on_frame(labels, groups.len(), width);
-    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != GROUND) {
+    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != BACKGROUND) {
         let constant =
             model.doubt_constant - model.doubt_frame_border * libm::sqrt(on_border[k]) - model.doubt_misfit * misfit;
         for p in plane.values_mut() {

@@ -2,7 +2,7 @@
 
 use crate::answer::Candidate;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{length, price_of_motion, worth};
+use crate::labelling::regions::description::{length, motion_penalty, worth};
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::data::{compare, estimation_costs, label_costs};
 use crate::motion::AffineMotion;
@@ -32,7 +32,7 @@ pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Cand
     let mut candidates = vec![Candidate { motions: n, score: length(&motions, &raw, &labels, width, level.model) }];
     if n < MAX_MOTIONS {
         // A motion without pixels costs its six parameters.
-        let unused = candidates[0].score + price_of_motion(labels.len());
+        let unused = candidates[0].score + motion_penalty(labels.len());
         candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
     }
     while raw.len() > 1 {

@@ -20,7 +20,7 @@ pub struct Junction {
     pub border: usize,
 }
 
-/// The junctions of the motions in `order`, whose place there is their label in the report, by labels. Borders that are too short to
+/// The junctions of the motions in `order`, whose place there is their label in the report, by labels. EdgeWeights that are too short to
 /// decide on groups are left out. Each pixel of the labels is `step` pixels of the frame wide.
 pub(super) fn junctions(mut regions: Regions<'_>, step: usize, order: &[usize]) -> Vec<Junction> {
     let mut found = Vec::new();

@@ -1,5 +1,6 @@
 //! Statistics of every motion, and the numbers of the groups.
 
+use crate::labelling::BACKGROUND;
 use serde::Serialize;
 
 use crate::frame::Plane;
@@ -7,7 +8,6 @@ use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::lanes::{each_with, lane_sum};
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::pair::figure::GROUND;
 
 /// One motion of a [`Segmentation`](crate::Segmentation).
 #[non_exhaustive]
@@ -109,8 +109,8 @@ fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plan
 
 /// Groups numbered by decreasing number of pixels, after that of the ground.
 fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
-    let mut totals: Vec<(usize, usize)> = vec![(GROUND, usize::MAX)];
-    for (&group, &size) in grouping.iter().zip(sizes).filter(|(group, _)| **group != GROUND) {
+    let mut totals: Vec<(usize, usize)> = vec![(BACKGROUND, usize::MAX)];
+    for (&group, &size) in grouping.iter().zip(sizes).filter(|(group, _)| **group != BACKGROUND) {
         match totals.iter_mut().find(|t| t.0 == group) {
             Some(t) => t.1 += size,
             None => totals.push((group, size)),

@@ -5,7 +5,7 @@ use crate::frame::filter::gaussian;
 use crate::frame::warp::{Footprint, RowPath};
 use crate::labelling::terms::visibility::hidden;
 use crate::pair::labels::LabelledPair;
-use crate::view::cost::{CostModel, cost};
+use crate::view::cost::{RobustKernel, cost};
 
 /// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
 /// whose label is more likely wrong than right.
@@ -16,7 +16,7 @@ pub(super) fn unknown(labelled: &LabelledPair, probabilities: &[Plane]) -> Vec<b
     let no_texture = model.no_texture * level.noise * level.noise;
     let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
     for (k, motion) in labelled.motions.iter().enumerate() {
-        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.cost_window);
+        let own = gaussian(&cost(level, motion, RobustKernel::labels(model)), model.cost_window);
         let scaled = level.scaled(motion);
         for y in 0..level.height() {
             let path = RowPath::new(&scaled, 0, y);

@@ -10,12 +10,12 @@ use crate::lanes::{LANES, each_with};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::view::brightness::Photometric;
-use crate::view::level::Level;
+use crate::view::brightness::GainBias;
+use crate::view::level::PairLevel;
 
 /// When to add a motion, and how many proposals to try.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Deflation {
+pub(crate) struct GreedySelection {
     /// Gain (cost summed over pixels) that pays for a motion.
     pub(crate) price: f64,
     /// Largest number of motions.
@@ -76,7 +76,7 @@ pub(crate) struct RoughCosts(Vec<Plane>);
 
 impl RoughCosts {
     /// `thinned` has every `thinning`-th pixel of every `thinning`-th row of a level.
-    pub(crate) fn new(thinned: &Level, thinning: usize, proposals: &[AffineMotion]) -> RoughCosts {
+    pub(crate) fn new(thinned: &PairLevel, thinning: usize, proposals: &[AffineMotion]) -> RoughCosts {
         let block = BLOCK / thinning;
         RoughCosts(proposals.iter().map(|&motion| blocks(&ScoredMotion::new(thinned, motion).cost, block)).collect())
     }
@@ -93,16 +93,16 @@ impl RoughCosts {
     }
 }
 
-/// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
+/// Adds proposed motions to `selected` as long as each gains more than its penalty. Returns the best motion that was rejected; there is
 /// none if nothing was proposed.
 ///
 /// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
 /// all pixels.
 pub(crate) fn add_motions(
-    level: &Level,
+    level: &PairLevel,
     selected: &mut Vec<ScoredMotion>,
     proposals: &[AffineMotion],
-    how: Deflation,
+    how: GreedySelection,
 ) -> Option<AffineMotion> {
     let model = level.model;
     let thinning = level.thinning();
@@ -131,7 +131,7 @@ pub(crate) fn add_motions(
                 &thinned,
                 &current_sample,
                 proposals[k],
-                Deflation { window: how.window / thinning as f32, ..how },
+                GreedySelection { window: how.window / thinning as f32, ..how },
             );
             most[k] = gain;
             if best.as_ref().is_none_or(|b| gain > b.0) {
@@ -146,7 +146,7 @@ pub(crate) fn add_motions(
 }
 
 /// Refines a proposal in a few rounds on the region where it beats the current motions. Returns its gain and the motion.
-fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflation) -> (f64, ScoredMotion) {
+fn refined(level: &PairLevel, current: &Plane, proposal: AffineMotion, how: GreedySelection) -> (f64, ScoredMotion) {
     let mut scored = ScoredMotion::new(level, proposal);
     let mut improved = improvement(current, &scored.cost, how.window);
     let model = level.model;
@@ -156,7 +156,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
         let support = Support::weighted(&region, model);
         let affine = Alignment::of_region(model.region_iterations, model.ridge_object, model).until(how.convergence);
         let mut motion = scored.motion;
-        let none = &mut Photometric::default();
+        let none = &mut GainBias::default();
         if round == 0 {
             motion = align(level, &motion, &support, none, Alignment { freedom: Freedom::Translation, ..affine });
         }
@@ -192,7 +192,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32)
     Some(Plane::from_vec(width, height, values))
 }
 
-/// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.
+/// Removes motions whose absence costs less than their penalty, the cheapest first. The first motion always stays.
 pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
     while selected.len() > 1 {
         let with_all = smallest_cost(selected).total();
