@@ -201,3 +201,8 @@ pub(crate) fn flow(found: FrameMotions) -> LayeredMotion {
     let FrameMotions { labels, motions, probabilities, .. } = found;
     LayeredMotion { width: probabilities[0].width(), labels, motions, measured: true }
 }
+
+/// Whether any pixel is more likely an object's than the background's.
+pub(crate) fn shows_object(log_odds: &Plane) -> bool {
+    log_odds.values().iter().any(|&log_odds| log_odds > 0.0)
+}

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::evidence::log_odds;
+use super::evidence::{log_odds, shows_object};
 use super::options::model;
 use super::record::PendingFrame;
 use crate::frame::Plane;
@@ -73,9 +73,4 @@ impl Farther {
         self.reach = (2 * self.reach).min(FARTHEST);
         None
     }
-}
-
-/// Whether any pixel is more likely an object's than the background's.
-pub(super) fn shows_object(log_odds: &Plane) -> bool {
-    log_odds.values().iter().any(|&log_odds| log_odds > 0.0)
 }

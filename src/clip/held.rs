@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::farther::shows_object;
+use super::evidence::shows_object;
 use super::record::Record;
 use crate::frame::Plane;
 

@@ -2,8 +2,7 @@
 
 use std::rc::Rc;
 
-use super::evidence::LayeredMotion;
-use super::farther::shows_object;
+use super::evidence::{LayeredMotion, shows_object};
 use super::options::model;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::{Appearance, FramePyramid};

@@ -2,8 +2,8 @@
 
 use std::rc::Rc;
 
-use super::evidence::{LayeredMotion, Pairs};
-use super::farther::{FARTHEST, Farther, FartherPair, shows_object};
+use super::evidence::{LayeredMotion, Pairs, shows_object};
+use super::farther::{FARTHEST, Farther, FartherPair};
 use super::foreground::{Foreground, Round};
 use super::held::HeldFrames;
 use super::identity::{Identities, Parting};
