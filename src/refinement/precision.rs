@@ -1,8 +1,9 @@
 //! The precision of a motion: the covariance of its entries, and the rank of their constraints.
 
-use super::mixture::Normal;
+use nalgebra::Matrix6;
+
+use super::mixture::{Normal, cholesky};
 use super::samples::Samples;
-use super::symmetric::{Matrix6, cholesky, inverse};
 
 /// A direction in the space of the six entries is determined if the mean squared gradient along it exceeds this multiple of σ² …
 const ABOVE_NOISE: f64 = 2.0;
@@ -15,8 +16,8 @@ const SWEEPS: usize = 12;
 
 /// `σ² H⁻¹` with `H = Σ w J Jᵀ`, the covariance of the entries with the labels taken as known. Directions that are not determined have a
 /// large but finite variance.
-pub(crate) fn covariance(normal: &Normal, sigma: f64) -> Matrix6 {
-    inverse(&cholesky(&normal.ridged())).map(|row| row.map(|entry| entry * sigma * sigma))
+pub(crate) fn covariance(normal: &Normal, sigma: f64) -> Matrix6<f64> {
+    cholesky(normal.ridged()).inverse() * (sigma * sigma)
 }
 
 /// The numerical rank of the constraints on the six entries, 0 to 6. The eigenvalues of H relative to the flow energy `Σ X Xᵀ`,
@@ -39,7 +40,7 @@ pub(crate) fn determined(normal: &Normal, samples: &Samples, own: impl Iterator<
         for (c, entry) in row.iter_mut().enumerate() {
             for p in 0..3 {
                 for q in 0..3 {
-                    let between = normal.matrix[r / 3 * 3 + p][c / 3 * 3 + q];
+                    let between = normal.matrix[(r / 3 * 3 + p, c / 3 * 3 + q)];
                     *entry += whitening[p][r % 3] * between * whitening[q][c % 3];
                 }
             }
