@@ -1,5 +1,7 @@
 //! [`Method::Best`](crate::Method::Best): the maximum likelihood mixture of motions.
 
+use nalgebra::Matrix6;
+
 use crate::answer::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::error::Result;
 use crate::factorisation::algebraic_start;
@@ -9,7 +11,7 @@ use crate::options::{FitOptions, MAX_MOTIONS, MotionCount};
 use crate::order::sort_few;
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
-use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determined, select};
+use crate::refinement::{Mixture, Samples, Search, covariance, determined, select};
 
 const STAGES: &[&str] = &["search", "labels"];
 
@@ -109,21 +111,12 @@ fn labelled_motions(
 
 /// The covariance `L C Lᵀ` of the entries in the coordinates of the input. Restoring a motion is linear; column k of its matrix L is the
 /// restored k-th unit motion.
-fn restored_covariance(normalised: &Matrix6, normalisation: &Normalisation) -> Matrix6 {
+fn restored_covariance(normalised: &Matrix6<f64>, normalisation: &Normalisation) -> [[f64; 6]; 6] {
     let columns: [[f64; 6]; 6] = std::array::from_fn(|k| {
         let mut unit = [0.0; 6];
         unit[k] = 1.0;
         normalisation.restore(&AffineMotion::new(unit)).matrix
     });
-    std::array::from_fn(|r| {
-        std::array::from_fn(|c| {
-            let mut sum = 0.0;
-            for p in 0..6 {
-                for q in 0..6 {
-                    sum += columns[p][r] * normalised[p][q] * columns[q][c];
-                }
-            }
-            sum
-        })
-    })
+    let restore = Matrix6::from(columns);
+    (restore * normalised * restore.transpose()).into()
 }

@@ -1,7 +1,7 @@
 //! Seeded random numbers with the same bits on every platform.
-//!
-//! The generator is part of this crate because results depend on its sequence. A library may change its sequence in a new version,
-//! and the same seed would then give other masks.
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// The generator xoshiro256++ of Blackman and Vigna (ACM TOMS 47(4), 2021), seeded by SplitMix64.
 ///
@@ -18,40 +18,20 @@
 /// ```
 #[derive(Clone, Debug)]
 pub struct Random {
-    state: [u64; 4],
+    generator: Xoshiro256PlusPlus,
 }
 
 impl Random {
     /// A generator whose sequence is determined by `seed`.
     #[inline(never)]
     pub fn from_seed(seed: u64) -> Self {
-        let mut z = seed;
-        let state = std::array::from_fn(|_| {
-            z = z.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut s = z;
-            s = (s ^ (s >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            s = (s ^ (s >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            s ^ (s >> 31)
-        });
-        Random { state }
-    }
-
-    fn next_u64(&mut self) -> u64 {
-        let s = &mut self.state;
-        let result = s[0].wrapping_add(s[3]).rotate_left(23).wrapping_add(s[0]);
-        let t = s[1] << 17;
-        s[2] ^= s[0];
-        s[3] ^= s[1];
-        s[1] ^= s[2];
-        s[0] ^= s[3];
-        s[2] ^= t;
-        s[3] = s[3].rotate_left(45);
-        result
+        Random { generator: Xoshiro256PlusPlus::seed_from_u64(seed) }
     }
 
     /// A uniform number in [0, 1) with 53 random bits.
+    #[inline(never)]
     pub fn unit(&mut self) -> f64 {
-        (self.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        (self.generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
     /// A uniform number in [low, high).

@@ -3,6 +3,8 @@
 //! In the truth 0 is the background, [`VOID`] is not known and left out everywhere, every other number is an object. In what was found
 //! every number is a label, and [`VOID`] is none. The background label is the label with most pixels of the whole clip.
 
+use veronese::factorisation::assignment::assign;
+
 use crate::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
@@ -217,23 +219,18 @@ impl Contingency {
         })
     }
 
-    /// The largest sum of `value(object, label)` over one-to-one assignments, an object without a label counting `alone(object)`, by
-    /// dynamic programming over the sets of objects that have one.
+    /// The largest sum of `value(object, label)` over one-to-one assignments, an object without a label counting `alone(object)`.
     fn best_sum(&self, alone: impl Fn(usize) -> f64, value: impl Fn(usize, usize) -> f64) -> f64 {
         let objects = self.objects();
-        let left: Vec<f64> = (1..=objects).map(alone).collect();
-        let mut best = vec![f64::NEG_INFINITY; 1 << objects];
-        best[0] = 0.0;
-        for &label in &self.labels {
-            let values: Vec<f64> = (1..=objects).map(|object| value(object, label)).collect();
-            for taken in (0..best.len()).rev() {
-                for k in (0..objects).filter(|k| taken & (1 << k) != 0) {
-                    best[taken] = best[taken].max(best[taken & !(1 << k)] + values[k]);
-                }
-            }
-        }
-        let rest = |taken: usize| (0..objects).filter(|k| taken & (1 << k) == 0).map(|k| left[k]).sum::<f64>();
-        best.iter().enumerate().map(|(taken, sum)| sum + rest(taken)).fold(0.0, f64::max)
+        // Behind the labels a place without one for each object, and rows that take what is left.
+        let size = self.labels.len() + objects;
+        let row = |object: usize| {
+            let labels = self.labels.iter().map(|&label| -value(object, label));
+            labels.chain(std::iter::repeat_n(-alone(object), objects)).collect()
+        };
+        let mut costs: Vec<Vec<f64>> = (1..=objects).map(row).collect();
+        costs.resize(size, vec![0.0; size]);
+        -assign(&costs).into_iter().enumerate().map(|(row, place)| costs[row][place]).sum::<f64>()
     }
 }
 

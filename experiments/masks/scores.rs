@@ -4,6 +4,7 @@
 //! is the background.
 
 use serde::Serialize;
+use veronese::factorisation::assignment::assign;
 
 use crate::boundary::Grid;
 
@@ -72,19 +73,16 @@ impl Contingency {
         (0..self.found.len()).filter(|&f| self.found[f] != VOID)
     }
 
-    /// The largest sum of `value(t, f)` over one-to-one assignments of true to found labels, by dynamic programming over the
-    /// sets of true labels that are taken.
-    fn best_sum(&self, value: impl Fn(usize, usize) -> f64) -> f64 {
-        let mut best = vec![f64::NEG_INFINITY; 1 << self.truth.len()];
-        best[0] = 0.0;
-        for f in self.labels() {
-            for taken in (0..best.len()).rev() {
-                for t in (0..self.truth.len()).filter(|t| taken & (1 << t) != 0) {
-                    best[taken] = best[taken].max(best[taken & !(1 << t)] + value(t, f));
-                }
-            }
-        }
-        best.into_iter().fold(0.0, f64::max)
+    /// The largest sum of overlaps over one-to-one assignments of true to found labels.
+    fn best_sum(&self) -> f64 {
+        let labels: Vec<usize> = self.labels().collect();
+        let size = self.truth.len().max(labels.len());
+        let overlap = |t: usize, k: usize| match labels.get(k) {
+            Some(&f) if t < self.truth.len() => self.overlap(t, f),
+            _ => 0.0,
+        };
+        let costs: Vec<Vec<f64>> = (0..size).map(|t| (0..size).map(|k| -overlap(t, k)).collect()).collect();
+        assign(&costs).into_iter().enumerate().map(|(t, k)| overlap(t, k)).sum()
     }
 
     fn overlap(&self, t: usize, f: usize) -> f64 {
@@ -103,7 +101,7 @@ impl Contingency {
     }
 }
 
-/// All figures. `truth` has at most 16 labels.
+/// All figures.
 pub fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
     let table = Contingency::new(truth, found);
     let total = table.total();
@@ -111,7 +109,7 @@ pub fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
     let known: Vec<bool> = truth.iter().map(|&t| t != VOID).collect();
     let grid = Grid { width, known: &known };
     let mut result = Scores {
-        miou: table.best_sum(|t, f| table.overlap(t, f)) / table.truth.len() as f64,
+        miou: table.best_sum() / table.truth.len() as f64,
         j_oracle: None,
         j_background: None,
         boundary: None,

@@ -3,6 +3,7 @@
 //! Positions are uniform in [−1, 1]², the six entries of each motion uniform in [−1, 1]. Labels alternate. `y` is uniform on the unit
 //! circle orthogonal to `A x`, plus noise uniform in [−p, p] on every component. The `y` of an outlier is uniform on the unit sphere.
 
+use veronese::factorisation::assignment::assign;
 use veronese::{AffineMotion, Measurements, Random, Result};
 
 /// Parameters of a problem.
@@ -192,26 +193,10 @@ impl Problem {
         if found.len() != self.motions.len() {
             return (f64::INFINITY, f64::INFINITY);
         }
-        let n = found.len();
-        let cost: Vec<Vec<f64>> =
+        let costs: Vec<Vec<f64>> =
             self.motions.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
-        // The best assignment by dynamic programming over sets of assigned motions.
-        let mut best = vec![(f64::INFINITY, 0.0_f64); 1 << n];
-        best[0] = (0.0, 0.0);
-        for used in 0..1_usize << n {
-            let row = used.count_ones() as usize;
-            if row == n {
-                continue;
-            }
-            for i in (0..n).filter(|i| used & (1 << i) == 0) {
-                let sum = best[used].0 + cost[row][i];
-                if sum < best[used | (1 << i)].0 {
-                    best[used | (1 << i)] = (sum, best[used].1.max(cost[row][i]));
-                }
-            }
-        }
-        let (sum, largest) = best[(1 << n) - 1];
-        (sum / n as f64, largest)
+        let errors = assign(&costs).into_iter().zip(&costs).map(|(k, row)| row[k]);
+        errors.fold((0.0, 0.0), |(mean, largest), error| (mean + error / found.len() as f64, error.max(largest)))
     }
 }
 

@@ -14,8 +14,9 @@
 //! small σ freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves a pass
 //! over the data per iteration. Near convergence the prediction is exact.
 
+use nalgebra::{Cholesky, Const, Matrix6, Vector6};
+
 use super::samples::{BLOCK, Block, Row, Samples};
-use super::symmetric::{Matrix6, cholesky, quadratic_form, solve};
 use crate::exponential::power_of_two;
 
 /// Density of an outlier's distance, for derivatives of unit length.
@@ -153,9 +154,9 @@ struct Sums {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Normal {
     /// `Σ w J Jᵀ`.
-    pub(crate) matrix: Matrix6,
+    pub(crate) matrix: Matrix6<f64>,
     /// `Σ w J d`.
-    pub(crate) gradient: [f64; 6],
+    pub(crate) gradient: Vector6<f64>,
     /// `Σ w`.
     pub(crate) weight: f64,
     /// `Σ w d²`.
@@ -250,28 +251,43 @@ impl EmBuffers {
 
 impl Normal {
     /// The Gauss-Newton step, bounded by [`LONGEST_STEP`], and the sum of squares after it as predicted by the quadratic model.
-    fn step(&self) -> ([f64; 6], f64) {
-        let right: [f64; 6] = std::array::from_fn(|k| -self.gradient[k]);
-        let mut step = solve(&cholesky(&self.ridged()), &right);
-        let longest = step.iter().fold(0.0_f64, |a, s| a.max(s.abs()));
+    fn step(&self) -> (Vector6<f64>, f64) {
+        let mut step = cholesky(self.ridged()).solve(&-self.gradient);
+        let longest = step.amax();
         if longest > LONGEST_STEP {
-            step.iter_mut().for_each(|s| *s *= LONGEST_STEP / longest);
+            step *= LONGEST_STEP / longest;
         }
-        let slope: f64 = (0..6).map(|k| self.gradient[k] * step[k]).sum();
-        let left = self.squares + 2.0 * slope + quadratic_form(&self.matrix, &step);
+        let left = self.squares + 2.0 * self.gradient.dot(&step) + step.dot(&(self.matrix * step));
         // The prediction is not accurate enough for a reduction of d by more than two digits.
         (step, left.max(1e-4 * self.squares))
     }
 
     /// The normal matrix with a ridge that makes it positive definite for all data.
-    pub(crate) fn ridged(&self) -> Matrix6 {
+    pub(crate) fn ridged(&self) -> Matrix6<f64> {
         let mut matrix = self.matrix;
-        let trace: f64 = (0..6).map(|k| matrix[k][k]).sum();
-        for (k, row) in matrix.iter_mut().enumerate() {
-            row[k] += 1e-9 * trace / 6.0 + 1e-12;
-        }
+        let ridge = 1e-9 * matrix.trace() / 6.0 + 1e-12;
+        (0..6).for_each(|k| matrix[(k, k)] += ridge);
         matrix
     }
+}
+
+/// The Cholesky decomposition of a symmetric matrix. Pivots are raised to the smallest positive number, so that there always is one.
+#[inline(never)]
+pub(crate) fn cholesky(mut matrix: Matrix6<f64>) -> Cholesky<f64, Const<6>> {
+    for j in 0..6 {
+        for k in 0..j {
+            let factor = matrix[(j, k)];
+            for i in j..6 {
+                matrix[(i, j)] -= factor * matrix[(i, k)];
+            }
+        }
+        let root = matrix[(j, j)].max(f64::MIN_POSITIVE).sqrt();
+        matrix[(j, j)] = root;
+        for i in j + 1..6 {
+            matrix[(i, j)] /= root;
+        }
+    }
+    Cholesky::pack_dirty(matrix)
 }
 
 /// The factors of the coordinates of a block's measurements in the sums of one motion.
@@ -350,19 +366,19 @@ impl Sums {
         let [uu, uv, vv] = [&self.uu, &self.uv, &self.vv].map(|part| part.map(|sum| add_up(&sum)));
         // Index in the six sums (xx, xy, x, yy, y, 1) of the entry (row, column) of a 3 × 3 matrix.
         const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
-        let mut matrix = [[0.0; 6]; 6];
+        let mut matrix = Matrix6::zeros();
         for r in 0..3 {
             for c in 0..3 {
                 let place = PLACE[r][c];
-                matrix[r][c] = uu[place];
-                matrix[r][c + 3] = uv[place];
-                matrix[r + 3][c] = uv[place];
-                matrix[r + 3][c + 3] = vv[place];
+                matrix[(r, c)] = uu[place];
+                matrix[(r, c + 3)] = uv[place];
+                matrix[(r + 3, c)] = uv[place];
+                matrix[(r + 3, c + 3)] = vv[place];
             }
         }
         Normal {
             matrix,
-            gradient: self.gradient.map(|sum| add_up(&sum)),
+            gradient: self.gradient.map(|sum| add_up(&sum)).into(),
             weight: add_up(&self.weight),
             squares: add_up(&self.squares),
         }

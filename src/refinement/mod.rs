@@ -12,7 +12,6 @@ mod samples;
 mod score;
 mod selection;
 mod subset;
-mod symmetric;
 mod untangling;
 
 pub(crate) use estimator::Search;
@@ -21,4 +20,3 @@ pub(crate) use precision::{covariance, determined};
 pub use report::{Report, Termination};
 pub(crate) use samples::Samples;
 pub(crate) use selection::select;
-pub(crate) use symmetric::Matrix6;

@@ -10,9 +10,10 @@
 //! `log(1/σ)`. The determinant grows with `6 log(1/σ)` and compensates that; `log N` does not depend on σ. With 20 % outliers, BIC finds
 //! the number of motions in 60 to 95 % of the trials at 2 % noise and in none without noise; this score finds it in all (measured).
 
-use super::mixture::{EmBuffers, Mixture};
+use nalgebra::Matrix6;
+
+use super::mixture::{EmBuffers, Mixture, cholesky};
 use super::samples::Samples;
-use super::symmetric::{cholesky, log_determinant};
 
 /// Lower bound of σ, in units of the root mean square length of the derivatives. Without it, the score of exact data is infinite.
 const LEAST_SIGMA: f64 = 1e-4;
@@ -28,10 +29,9 @@ pub(super) fn score(samples: &Samples, scale: f64, buffers: &mut EmBuffers, fit:
     let information = s * s / (fit.sigma * fit.sigma);
     let mut score = -2.0 * fit.log_likelihood;
     for (i, normal) in normals.iter().enumerate() {
-        let mut matrix = normal.matrix.map(|row| row.map(|entry| entry * information));
-        (0..6).for_each(|k| matrix[k][k] += 1.0);
+        let matrix = normal.matrix * information + Matrix6::identity();
         let size: f64 = fit.motions[i].iter().map(|a| a * a).sum();
-        score += log_determinant(&cholesky(&matrix)) + 7.0 * libm::log(1.0 + size / (6.0 * s * s));
+        score += cholesky(matrix).ln_determinant() + 7.0 * libm::log(1.0 + size / (6.0 * s * s));
         score += libm::log(samples.len().max(1) as f64) - 2.0 * libm::log((i + 1) as f64) + MARGIN;
     }
     score
