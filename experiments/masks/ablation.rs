@@ -7,10 +7,12 @@ use experiments::parallel::in_parallel;
 use veronese::Model;
 
 /// The rows of the table, in its order.
-const LEFT_OUT: [Row; 16] = [
+const LEFT_OUT: [Row; 18] = [
     ("nothing", &[]),
     ("gain and bias", &[("largest_gain", 1.0)]),
     ("algebraic candidates", &[("degrees", 0.0)]),
+    ("all windows but 6", &[("tiles", 6.0), ("tiles_fast", 3.0)]),
+    ("algebraic candidates and all windows but 6", &[("degrees", 0.0), ("tiles", 6.0), ("tiles_fast", 3.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
     ("second solution at rest", &[("solves_at_rest", 0.0)]),
     ("detail pass", &[("adds_detail", 0.0)]),
