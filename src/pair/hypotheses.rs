@@ -101,14 +101,14 @@ pub(super) fn carry_on(
 /// Whether the pixels of the background are described in fewer nats at rest, which needs no parameters. A dominant motion that was fitted
 /// across objects on plain ground is recognised here, once the objects have motions of their own.
 fn rest_is_shorter(LabelledPair { pair, motions, labels, .. }: &LabelledPair) -> bool {
-    let level = pair.finest();
+    let (level, labels) = (&pair.levels[pair.draft], pair.draft_scaling().thinned(labels));
     let of_background = |plane: &Plane| -> f64 {
-        let pixels = plane.values().iter().zip(labels).filter(|(_, label)| is_background(**label));
+        let pixels = plane.values().iter().zip(&labels).filter(|(_, label)| is_background(**label));
         pixels.map(|(cost, _)| f64::from(*cost)).sum()
     };
     let costs = estimation_costs(level, &compare(level, &[AffineMotion::STATIC, motions[BACKGROUND]], Vec::new()));
     let [at_rest, moving] = [&costs[0], &costs[1]].map(of_background);
-    0.5 * (at_rest - moving) < motion_penalty(counts(labels, 1)[BACKGROUND])
+    0.5 * (at_rest - moving) < motion_penalty(counts(&labels, 1)[BACKGROUND])
 }
 
 /// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans
