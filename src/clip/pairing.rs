@@ -1,4 +1,4 @@
-//! The ways to pair a frame of a clip with the one before.
+//! How a frame of a clip is paired with the previous one.
 
 use super::carry::continued_labels;
 use super::evidence::{LayeredMotion, Pairs, flow, log_odds};
@@ -8,7 +8,7 @@ use crate::options::SegmentOptions;
 use crate::pair::frame_motions::{Expected, FrameMotions, Prior};
 use crate::pair::settings::Settings;
 
-/// In a whole clip a frame has a pair with each of its neighbours.
+/// In a whole clip, a frame is solved in pairs with both neighbours.
 pub(super) fn of_whole_clip(last: &PendingFrame, newest: &PendingFrame, settings: &Settings) -> Pairs {
     let onward = last.motions_to(&newest.pyramid, settings, Expected::Nothing);
     let inverse = flow(onward.clone()).continued();
@@ -20,13 +20,13 @@ pub(super) fn of_whole_clip(last: &PendingFrame, newest: &PendingFrame, settings
     Pairs { onward: Some(evidence(onward)), back: Some(evidence(back)), prior: None }
 }
 
-/// The two frames of a clip that has no others are looked at more closely, as those of a pair are.
+/// The only two frames of a clip are solved more thoroughly, as a pair is.
 pub(super) fn of_lone_pair(first: &PendingFrame, last: &PendingFrame, options: &SegmentOptions) -> Pairs {
     of_whole_clip(first, last, &Settings::of_lone_pair(options, first.pyramid.scaling.full))
 }
 
-/// In a stream a frame has its pair with the frame before; a fast one follows what was found there. The first frame may wait for its pair
-/// with the next one.
+/// In a stream, a frame is solved in a pair with the previous frame; a fast stream starts from what was found there. The first frame may
+/// wait for its pair with the next one.
 pub(super) fn of_stream(
     last: &PendingFrame,
     newest: &PendingFrame,
@@ -48,8 +48,8 @@ pub(super) fn of_stream(
     Pairs { onward, back: Some(evidence(back)), prior }
 }
 
-/// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
-/// next pair is expected to be like the last one.
+/// A repeated frame, as where the frame rate was raised, has no motion, and log-odds of zero, because it does not show what moves. The
+/// expectation for the next pair stays as it is.
 pub(super) fn of_repeated(newest: &PendingFrame, prior: Option<&Prior>, waits: bool) -> Pairs {
     let size @ [width, height] = newest.pyramid.scaling.small;
     let still = || (Plane::filled(width, height, 0.0), LayeredMotion { measured: true, ..LayeredMotion::still(size) });

@@ -22,10 +22,10 @@ pub(crate) enum Freedom {
     Affine,
 }
 
-/// The entries that have to stand still before the iterations end.
+/// The entries that must converge before the iterations end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Convergence {
-    /// The translation. The prior slows the linear terms down, so that they may still be on their way.
+    /// The translation. The prior slows the linear terms down, so they may not have converged.
     Translation,
     /// Every entry, for which there are twice as many iterations.
     Every,
@@ -58,7 +58,7 @@ impl Alignment {
         }
     }
 
-    /// The same until this has converged.
+    /// The same alignment until the given entries have converged.
     pub(crate) fn until(self, convergence: Convergence) -> Alignment {
         Alignment { convergence, ..self }
     }
@@ -69,7 +69,7 @@ pub(crate) fn ridge_of_label(label: usize, model: &Model) -> f64 {
     if label > 0 { model.ridge_object } else { model.ridge_background }
 }
 
-/// A region with a border that is half a pixel soft.
+/// A region whose border is softened by half a pixel.
 pub(crate) fn softened(region: &Plane) -> Plane {
     gaussian(region, 0.5)
 }
@@ -295,7 +295,7 @@ impl RowBuffers {
                 None => given[..n].fill(1.0),
             }
             if given.iter().all(|&weight| weight <= smallest) {
-                // Nothing counts here, as in much of the box around a region.
+                // Nothing counts in this chunk, as in much of the box around a region.
                 (*weight, *residuals, *gx, *gy) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
                 continue;
             }

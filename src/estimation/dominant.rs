@@ -11,7 +11,7 @@ use crate::view::level::PairLevel;
 pub(crate) struct DominantSearch {
     /// Whether a change of brightness is estimated.
     pub(crate) brightness: bool,
-    /// The entries that have to converge.
+    /// The entries that must converge.
     pub(crate) convergence: Convergence,
 }
 

@@ -7,7 +7,7 @@ use crate::labelling::solver::Solver;
 pub(crate) struct LabellingOptions {
     /// λ: penalty of a border between two pixels of equal intensity, in costs.
     pub(crate) smoothness: f32,
-    /// Cost of every object pixel: it favours the dominant motion where the data cannot tell.
+    /// Cost of every object pixel: it favours the dominant motion where the data do not decide.
     pub(crate) object_bias: f32,
     /// Solver of the final labels. While motions are still added and removed it is [`Solver::FAST`].
     pub(crate) solver: Solver,

@@ -1,6 +1,6 @@
 //! Shadows that objects cast on the ground.
 //!
-//! A shadow moves with its object, so that the object's motion explains it. But only the light moves: the ground beneath keeps its place,
+//! A shadow moves with its object, so the object's motion explains it. But only the light moves: the ground beneath stays where it is, with
 //! its texture and its colours. A pixel of an object is given back to the background where a smooth change of light explains it and its
 //! colour is one of the ground.
 //!
@@ -9,7 +9,7 @@
 //! d̄(x)  = mean of d around x               the change of light, from pixels that it explains
 //! E(l)  = Σ ρ(own motion)                          over the pixels that stay with their object
 //!       + Σ ρ(d − d̄) + P + ln p(c | object)/p(c | ground)    over those given back
-//!       + borders
+//!       + edges
 //! ```
 //! p(c | object) is learned from the pixels of objects that no change of light explains. p(c | ground) is that of c or of the colour a step
 //! brighter, whichever is larger: the ground is darker in a shadow.
@@ -26,7 +26,7 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, cost};
 use crate::view::level::PairLevel;
 
-/// Cost that no pixel of the background pays.
+/// Cost that keeps every pixel of the background.
 const NEVER: f32 = 100.0;
 
 /// Gives shadows of objects, in labels of the working size, back to the background. `borders` are those of the labels.
@@ -58,7 +58,7 @@ pub(crate) fn return_shadows(
     }
 }
 
-/// Cost of the background's motion with a smooth change of light.
+/// Cost of the background's motion at every pixel, with a smooth change of light.
 fn cost_of_light(level: &PairLevel, background: &AffineMotion) -> Plane {
     let (model, window) = (RobustKernel::labels(level.model), level.model.light_window);
     let mut difference = warp(&level.second, &level.scaled(background));
@@ -82,7 +82,7 @@ fn cost_of_light(level: &PairLevel, background: &AffineMotion) -> Plane {
     costs
 }
 
-/// Log-likelihood ratio of object against ground of every colour, nats; none where there are too few pixels to learn from.
+/// Log-likelihood ratio of object against ground for every colour, nats; `None` where there are too few pixels to learn from.
 fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Vec<f32>> {
     let mut counts = vec![[0.0f32; 2]; COLOURS];
     let mut totals = [0.0f32; 2];

@@ -19,7 +19,7 @@ use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::view::level::PairLevel;
 
-/// Least noise, grey levels: rounding both frames makes √(1/12 + 1/12).
+/// Smallest noise, grey levels: rounding both frames makes √(1/12 + 1/12).
 pub(crate) const SMALLEST_NOISE: f32 = 0.408;
 
 /// The two constants of the cost.

@@ -1,7 +1,7 @@
-//! Appearance of an object and of the ground around it: how often each colour was seen at each place relative to the object's centre.
+//! Appearance of an object and of the ground around it: a histogram over colour and position relative to the object's centre.
 //!
-//! Two counts for every cell of place and colour, of the object's pixels and of others: those of corrected frames, which stay, and those of
-//! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
+//! Each cell of position and colour counts pixels of the object and of the ground. Counts of annotated frames stay, counts of the frames
+//! passed since then decay. Cells with few pixels back off to wider cells, and these to the colour's share over all positions.
 
 use super::features::{CHROMA, COLOURS, FrameFeatures, LIGHTNESS};
 use crate::clip::annotation::Seed;
@@ -9,41 +9,43 @@ use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
-/// Counts of pixels: object, ground.
+/// Weighted numbers of pixels, by [`Side`].
 type Counts = [f32; 2];
 
-/// Where pixels are learned from.
+/// Where counted pixels come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The seeds of annotations.
+    /// Seeds of annotations.
     Annotated,
-    /// The frames passed.
+    /// Frames that the propagation has passed.
     Recent,
     /// Frames in which the object was found automatically.
     Found,
 }
 
 #[derive(Clone, Debug)]
+/// The histogram: a grid of cells for each colour seen.
 pub(super) struct AppearanceModel {
     /// Columns and rows of cells.
     size: [usize; 2],
     /// Side of a cell, pixels.
     cell: f32,
-    /// One more than the place of each colour in the counts; 0 for one that was never seen.
+    /// For each colour, one more than its index in `seen`; 0 if it was not seen.
     places: Vec<u16>,
+    /// The colours seen, in the order of their first occurrence.
     seen: Vec<u16>,
-    /// Cells of all colours seen, from annotations and from recent frames.
+    /// Cells of all colours seen, counted in annotations and in recent frames.
     annotated: Vec<Counts>,
     recent: Vec<Counts>,
-    /// Cells of frames in which the object was found automatically; and of each colour, how often it was found and how often annotated.
-    /// Annotations silence what was found where they disagree.
+    /// Cells counted in frames in which the object was found automatically; and for each colour, how often it was found and how often
+    /// annotated. Where annotations disagree with what was found, that counts less.
     found: Vec<Counts>,
     found_of: Vec<Counts>,
     annotated_of: Vec<Counts>,
 }
 
 impl AppearanceModel {
-    /// Nothing yet, of an object as large as a mask.
+    /// An empty model for an object as large as a mask.
     pub(super) fn of(mask: &Plane) -> AppearanceModel {
         let (width, height) = (mask.width(), mask.height());
         let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
@@ -51,7 +53,7 @@ impl AppearanceModel {
         AppearanceModel::new(&around, model().cell * width.max(height) as f32)
     }
 
-    /// Nothing yet, of an object within an area.
+    /// An empty model for an object within an area, with cells of the given side in pixels.
     pub(super) fn new(area: &Area, cell: f32) -> AppearanceModel {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().cells_around;
         let size = [cells(area.width()), cells(area.height())];
@@ -72,16 +74,16 @@ impl AppearanceModel {
         self.size[0] * self.size[1]
     }
 
-    /// Place of pixel (x, y) in cells, for an object with the given centre.
+    /// Position of the pixel (x, y) in cells, for an object with the given centre.
     fn at(&self, x: usize, y: usize, centre: [f32; 2]) -> [f32; 2] {
         let place = |at: usize, centre: f32, size: usize| {
-            // Below the last cell, as the next one is read, too.
+            // Below the last cell, because the next one is read as well.
             ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).max(0.0).min(size as f32 - 1.001)
         };
         [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
     }
 
-    /// Recent counts fade.
+    /// Multiplies the recent counts by `left`, 0…1.
     pub(super) fn fade(&mut self, left: f32) {
         self.recent.iter_mut().flatten().for_each(|count| *count *= left);
     }
@@ -91,7 +93,7 @@ impl AppearanceModel {
         self.recent.fill([0.0; 2]);
     }
 
-    /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
+    /// Adds the pixels of a frame with a weight. `sides` gives the side of a pixel, `None` if it is not counted.
     pub(super) fn learn(
         &mut self,
         features: &FrameFeatures,
@@ -103,7 +105,7 @@ impl AppearanceModel {
         self.learn_within(features, &features.area(), centre, source, weight, sides);
     }
 
-    /// [`learn`](Self::learn) from an area. Not generic, as `learn`: each call would have a copy of its own.
+    /// [`learn`](Self::learn) from an area. Not generic, so that it is compiled only once.
     pub(super) fn learn_within(
         &mut self,
         features: &FrameFeatures,
@@ -138,7 +140,7 @@ impl AppearanceModel {
         }
     }
 
-    /// Learns the seeds of a frame.
+    /// Learns from the seeds of a frame.
     pub(super) fn learn_seeds(&mut self, features: &FrameFeatures, centre: [f32; 2], seeds: Option<&[Seed]>) {
         let Some(seeds) = seeds else { return };
         self.learn(features, centre, Source::Annotated, 1.0, &|p| match seeds[p] {
@@ -163,7 +165,7 @@ impl AppearanceModel {
         usize::from(*place) - 1
     }
 
-    /// Probability of the object at every pixel of an area, for an object with the given centre.
+    /// Probability of the object at every pixel of an area, 0…1, for an object with the given centre.
     pub(super) fn read(&self, features: &FrameFeatures, area: &Area, centre: [f32; 2]) -> Vec<f32> {
         let (cells, width) = (self.cells(), features.size[0]);
         let mut blurred: Vec<Counts> = self
@@ -185,7 +187,7 @@ impl AppearanceModel {
         }
         let mut line = vec![[0.0; 2]; self.size[0].max(self.size[1])];
         blurred.chunks_exact_mut(cells).for_each(|plane| self.blur(plane, &mut line));
-        // One plane of cells for each colour of the area, made when it first occurs.
+        // One grid of cells for each colour of the area, computed when the colour first occurs.
         let mut known = vec![0u16; COLOURS];
         let mut planes: Vec<Counts> = Vec::new();
         let mut wide: Vec<Counts> = Vec::new();
@@ -229,7 +231,8 @@ impl AppearanceModel {
         probabilities
     }
 
-    /// How far the labels found automatically are trusted for a colour, 0…1: that it is the object's, and that it is ground.
+    /// How far the labels found automatically are trusted for a colour, 0…1: that a pixel labelled as the object is the object, and that
+    /// one labelled as ground is ground.
     pub(super) fn trust(&self, colour: u16) -> Counts {
         let [mut annotated, mut found] = [[[0.0; 2]]; 2];
         self.gather(colour, &self.annotated_of, &mut annotated);
@@ -247,7 +250,7 @@ impl AppearanceModel {
         features.colours.iter().map(&mut of).collect()
     }
 
-    /// Adds the counts of a colour and of those beside it.
+    /// Adds the counts of a colour and of its neighbours in colour space, weighted.
     fn gather(&self, colour: u16, counts: &[Counts], plane: &mut [Counts]) {
         let colour = usize::from(colour);
         let [l, a, b] = [colour / (CHROMA * CHROMA), colour / CHROMA % CHROMA, colour % CHROMA];
@@ -304,7 +307,7 @@ mod tests {
         (64..88).contains(&x) && (36..60).contains(&y)
     }
 
-    /// The object, and a patch of some colour beside it.
+    /// The object, and a patch of a colour beside it.
     fn features(beside: [u8; 3]) -> FrameFeatures {
         let colour = |x, y| if is_object(x, y) { RED } else { beside };
         FrameFeatures::painted(SIZE, |x, y| if is_object(x, y) || is_beside(x, y) { colour(x, y) } else { GREY })
@@ -329,7 +332,7 @@ mod tests {
             assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9, "{source:?}");
             assert!(at(&appearance, &features, [76, 48], CENTRE) < 0.1, "{source:?}: the same colour elsewhere");
             assert!(at(&appearance, &features, [50, 48], CENTRE) < 0.1, "{source:?}: ground beside it");
-            // The place goes with the object.
+            // The cells move with the object.
             assert!(at(&appearance, &features, [76, 48], [76.0, 48.0]) > 0.9, "{source:?}");
             assert!(at(&appearance, &features, [32, 48], [-12.0, 48.0]) < 0.1, "{source:?}");
         }
@@ -350,7 +353,7 @@ mod tests {
         let red = features.colours[48 * SIZE[0] + 32];
         assert_eq!(appearance.trust(red), [1.0, 1.0]);
         assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9);
-        // Half of it is ground: so is what was found of the other half.
+        // Half of the object is annotated as ground, so what was found in the other half is not trusted either.
         appearance.learn(&features, CENTRE, Source::Annotated, 1.0, &|p| {
             if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
         });

@@ -1,10 +1,10 @@
-//! The evidence of labels found automatically for an object, as far as they agreed with it so far.
+//! For each label found automatically, the log-likelihood ratio of the object against the ground near it, learned from the frames so far.
 
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
-/// How many of the object's pixels, and of the ground near it, had each label.
+/// Counts of each label among the object's pixels and among the ground near it, and their log-likelihood ratios.
 #[derive(Clone, Debug)]
 pub(super) struct LabelEvidence {
     counts: Vec<[f32; 2]>,
@@ -18,19 +18,19 @@ impl Default for LabelEvidence {
 }
 
 impl LabelEvidence {
-    /// That of one frame, in which pixels have a side: 0 for the object, 1 for ground, else neither.
+    /// The ratios of one frame, given the side of each pixel, `None` if it is not counted.
     pub(super) fn of(found: &[u8], sides: &[u8], area: &Area, width: usize) -> LabelEvidence {
         let mut evidence = LabelEvidence::default();
         evidence.count([0.0, 1.0], found, area, width, &|p| usize::from(sides[p]));
         evidence
     }
 
-    /// Log-likelihood ratio of the object for a label.
+    /// Log-likelihood ratio of object against ground for a label, nats.
     pub(super) fn ratio(&self, found: u8) -> f32 {
         self.ratios[usize::from(found)]
     }
 
-    /// Takes a frame; the first one counts for itself.
+    /// Learns from a frame. If it `begins`, earlier counts are discarded.
     pub(super) fn learn(&mut self, found: &[u8], mask: &Plane, begins: bool) {
         let (width, height) = (mask.width(), mask.height());
         let inside: Vec<usize> = (0..found.len()).filter(|&p| mask.values()[p] > 0.5).collect();
@@ -43,7 +43,7 @@ impl LabelEvidence {
         self.count(shares, found, &area, width, &side);
     }
 
-    /// Counts labels with their sides; the counts are made of those before and these, by their shares.
+    /// Replaces the counts by the sum of the earlier ones and those of a frame, weighted by `[old, new]`.
     fn count(&mut self, [old, new]: [f32; 2], found: &[u8], area: &Area, width: usize, side: &dyn Fn(usize) -> usize) {
         let mut counts = vec![[0.0f32; 2]; 256];
         for p in area.pixels(width) {

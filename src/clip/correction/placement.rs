@@ -1,4 +1,5 @@
-//! An object as a whole: where it was last seen whole, and by which shift its pixels are found again, whatever the pairs know of its motion.
+//! Where the whole object is in a frame: the shift by which its pixels are found again since it was last fully visible. The pairs of frames
+//! need not have found its motion.
 
 use super::features::FrameFeatures;
 use super::template::{Shift, Template};
@@ -7,33 +8,33 @@ use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::order::median;
 
-/// The object where it was last seen whole.
+/// The last fully visible appearance of an object, and its motion since then.
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
     pub(super) template: Template,
     centre: [f32; 2],
-    /// From there to the frame that the sweep has reached, and how far it goes in a frame.
+    /// Shift from that frame to the current one, and its change per frame, working pixels.
     shift: Shift,
     velocity: Option<Shift>,
-    /// How many frames ago that was.
+    /// Number of frames since then.
     frames: usize,
-    /// Whether nearly all of it is seen now, and which share.
+    /// Whether the object is almost fully visible in the current frame, and the share of it that is visible, 0…1.
     pub(super) now: bool,
     pub(super) share: f32,
-    /// Pixels that it has.
+    /// Number of pixels of the whole object.
     pixels: f32,
-    /// Whether all of its mask was said once; else its pixels may be few because they were too many before.
+    /// Whether its whole mask was annotated once. If not, its mask may also shrink because it was too large before.
     known: bool,
 }
 
 /// Where an object is in a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Placement {
-    /// From where it was seen whole.
+    /// Shift since the frame in which it was fully visible.
     pub(super) shift: Shift,
-    /// Whether it is seen there; else it is taken to move on.
+    /// Whether it was found there; else the shift is extrapolated.
     found: bool,
-    /// Of an object that is hidden, which pixels look as it does there, and which ones it may have.
+    /// For a hidden object: how much each pixel looks like the object there, and where the object may be, both 0…1.
     pub(super) hidden: Option<[Plane; 2]>,
 }
 
@@ -52,7 +53,7 @@ impl Whole {
         }
     }
 
-    /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
+    /// The state one frame later. A partly hidden object keeps its template and moves on with its velocity.
     pub(super) fn gone_on(
         self,
         mask: &Plane,
@@ -74,7 +75,7 @@ impl Whole {
         let is_partly =
             self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().hidden) * expected;
         if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().shrinking * self.pixels {
-            // The deviation came about in all the frames since.
+            // The deviation has accumulated over all frames since then.
             let share = match self.velocity {
                 None => 1.0,
                 Some(_) if found && self.frames > 0 => 1.0 / (self.frames as f32 + 2.0),
@@ -89,19 +90,19 @@ impl Whole {
         Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, features, centre, self.known) }
     }
 
-    /// The object when the sweep turns: it goes back where it came from.
+    /// The state for propagation in the opposite direction: the velocity is reversed.
     pub(super) fn turned(&self) -> Whole {
         let velocity = self.velocity.map(|velocity| velocity.map(|speed| -speed));
         Whole { velocity, ..self.clone() }
     }
 
-    /// The centre of an object that is hidden.
+    /// The expected centre of a hidden object; `None` for a visible one.
     pub(super) fn expected_centre(&self, placed: Option<&Placement>) -> Option<[f32; 2]> {
         placed.filter(|_| !self.now).map(|placed| [0, 1].map(|k| self.centre[k] + placed.shift[k]))
     }
 
-    /// Where the object is in a frame; none for one that is too small. `flow` leads to that frame from the one before it. Objects in front
-    /// of it have the pixels that are `covered`.
+    /// Where the object is in a frame; `None` if it is too small. `flow` leads to that frame from the previous one. `covered` marks the
+    /// pixels of objects in front.
     pub(super) fn place(&self, features: &FrameFeatures, flow: &LayeredMotion, covered: &[bool]) -> Option<Placement> {
         let [width, height] = features.size;
         let inside: Vec<usize> = (0..features.pixels()).filter(|&p| self.template.mask.values()[p] > 0.5).collect();
@@ -143,12 +144,12 @@ mod tests {
 
     const SIZE: [usize; 2] = [128, 96];
 
-    /// A patch of coarse texture at a place, over grey ground.
+    /// A patch of coarse texture at a position, over grey ground.
     fn features(place: [usize; 2]) -> FrameFeatures {
         look_behind(place, SIZE[0])
     }
 
-    /// As [`features`], behind what begins at a column.
+    /// As [`features`], with an occluder from a column on.
     fn look_behind([left, top]: [usize; 2], column: usize) -> FrameFeatures {
         let mut random = Random::from_seed(3);
         let texture: Vec<[u8; 3]> =
@@ -186,7 +187,7 @@ mod tests {
         assert!(place(&Whole::new(&nothing, &first, [28.0, 32.0], true), &first).is_none());
     }
 
-    /// The object a frame later, whole.
+    /// The object one frame later, fully visible.
     fn moved_on(seen: &FrameFeatures, corner: [usize; 2]) -> Whole {
         let placed = place(&begun(), seen);
         let centre = corner.map(|at| at as f32 + 12.0);
@@ -198,7 +199,7 @@ mod tests {
         let (gone, seen) = (features([200, 200]), features([24, 24]));
         let mut whole = moved_on(&seen, [24, 24]);
         assert!(whole.now && whole.expected_centre(place(&whole, &seen).as_ref()).is_none());
-        // It comes behind something until two thirds of it are left, and then nothing.
+        // It moves behind the occluder until two thirds of it are visible, and then nothing.
         let covered = |p: usize| p % SIZE[0] >= 48;
         let partly = look_behind([32, 28], 48);
         let all = mask(&partly, [32, 28]);
@@ -212,7 +213,7 @@ mod tests {
             assert!(!whole.now);
             assert_eq!(whole.expected_centre(placed.as_ref()), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
         }
-        // Its looks are kept until it comes out again.
+        // The template is kept until the object reappears.
         assert_eq!(whole.template.mask, mask(&seen, [24, 24]));
         let corner = [24 + 32, 24 + 16];
         let out = features(corner);
@@ -226,7 +227,7 @@ mod tests {
     fn one_that_has_changed_is_not_hidden() {
         let seen = features([24, 24]);
         let whole = moved_on(&seen, [24, 24]);
-        // Two thirds of what it was, in another colour.
+        // Two thirds of its pixels, in another colour.
         let left = |p: usize| (32..48).contains(&(p % SIZE[0])) && (28..52).contains(&(p / SIZE[0]));
         let other =
             FrameFeatures::painted(SIZE, |x, y| if left(y * SIZE[0] + x) { [40, 200, 60] } else { [110, 120, 115] });

@@ -1,11 +1,11 @@
 //! Propagation of one object from frame to frame in one direction: predict, cut, update.
 //!
 //! ```text
-//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + evidence      log-odds of the object against everything else, nats
+//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + r      log-odds of the object against everything else, nats
 //! ```
-//! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
-//! probability of the pixel's colour at its place by the appearance model; `p_A` are the labels of the annotated frame where the pixel was
-//! there; the evidence is that of the labels found automatically. One cut gives the mask.
+//! `p_T` is the mask of the previous frame, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
+//! probability of the pixel's colour at its position by the appearance model; `p_A` is the mask of the annotated frame where the pixel was
+//! there; `r` is the log-likelihood ratio of the label found automatically. One cut gives the mask.
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
@@ -23,42 +23,42 @@ use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::Footprint;
 
-/// A frame, and all that is known there about an object.
+/// A frame, with all that is known about one object in it.
 #[derive(Clone, Copy)]
 pub(super) struct Observation<'a> {
     pub(super) features: &'a FrameFeatures,
     /// Labels found automatically.
     pub(super) found: &'a [u8],
-    /// From this frame to the one before in the direction of the propagation, and from that one to this.
+    /// Motion to the previous frame in the direction of propagation, and from that frame to this one.
     pub(super) flows: Option<[&'a LayeredMotion; 2]>,
     pub(super) seeds: Option<&'a [Seed]>,
-    /// 1 where a person has seen the object when strokes were drawn.
+    /// The mask that the frame showed right after strokes were drawn: 1 inside.
     pub(super) seen: Option<&'a [u8]>,
-    /// Whether the seeds are of an anchor of the object. Else they count only where they contradict its propagation.
+    /// Whether the frame is an anchor of the object. If not, its seeds count only where they contradict the propagated mask.
     pub(super) is_anchor: bool,
-    /// Whether the annotation spreads in this direction.
+    /// Whether the annotation spreads in the direction of propagation.
     pub(super) spreads: bool,
-    /// Whether the object's mask is a person's as a whole.
+    /// Whether a person has given the object's whole mask.
     pub(super) is_whole: bool,
-    /// Whether it spreads to all frames.
+    /// Whether the annotation spreads to all frames.
     pub(super) spreads_to_all: bool,
 }
 
-/// The expectation of an object in the next frame.
+/// The expected object in the next frame.
 pub(super) struct Prediction {
     pub(super) area: Area,
     pub(super) log_odds: Vec<f32>,
     signs: Signs,
     centre: [f32; 2],
     placement: Option<Placement>,
-    /// How much each pixel is awaited to be that of a hidden object.
+    /// Where a hidden object is expected to reappear: 0 or more, the higher the likelier.
     pub(super) awaited: Option<Plane>,
 }
 
-/// The object in the frame reached last.
+/// The object in the last frame reached.
 #[derive(Clone, Debug)]
 struct Reached {
-    /// 1 at the object's pixels.
+    /// 1 inside the object.
     mask: Plane,
     centre: [f32; 2],
     whole: Whole,
@@ -69,16 +69,16 @@ pub(super) struct Propagator {
     reached: Option<Reached>,
     appearance: Option<AppearanceModel>,
     label_evidence: LabelEvidence,
-    /// From the frame passed last in which the whole mask is a person's.
+    /// Leads back to the last frame passed whose whole mask a person has given.
     trace: Option<Trace>,
-    /// 1 where annotations have changed the object in the frame reached last; none if they are about all of it.
+    /// 1 where annotations have changed the object in the last frame reached; `None` if they are about all of it.
     change: Option<Plane>,
-    /// Whether it has learnt the annotations that spread to all frames.
+    /// Whether it has learned the annotations that spread to all frames.
     knows_annotations: bool,
 }
 
 impl Observation<'_> {
-    /// Log-odds of the object because a person has seen where it is, nats.
+    /// Log-odds of the object from the mask that a person saw after drawing strokes, nats.
     fn log_odds_seen(&self, p: usize) -> f32 {
         match self.seen {
             Some(seen) if seen[p] > 0 => model().seen,
@@ -93,7 +93,7 @@ impl Propagator {
         self.reached.is_some()
     }
 
-    /// The same in the other direction: annotations stay learnt, frames that were passed are forgotten.
+    /// The propagator for the opposite direction: it keeps what it learned from annotations, and forgets the frames passed.
     pub(super) fn turned(&self, features: &FrameFeatures, found: &[u8]) -> Propagator {
         let (mut appearance, mut label_evidence) = (self.appearance.clone(), LabelEvidence::default());
         if let (Some(appearance), Some(reached)) = (&mut appearance, &self.reached) {
@@ -141,12 +141,12 @@ impl Propagator {
         self.knows_annotations = true;
     }
 
-    /// Whether it has learnt the annotation of a frame already.
+    /// Whether it has learned the annotation of a frame already.
     fn knows(&self, of: &Observation<'_>) -> bool {
         self.knows_annotations && of.spreads_to_all
     }
 
-    /// Begins in an anchor of an object.
+    /// Begins at an anchor of an object.
     pub(super) fn begin(&mut self, of: &Observation<'_>, object: u8) -> Proposal {
         let features = of.features;
         let is_found = of.found.contains(&object);
@@ -190,12 +190,12 @@ impl Propagator {
         proposal
     }
 
-    /// The share of the object that was seen last.
+    /// The visible share of the object in the last frame reached, 0…1.
     pub(super) fn share(&self) -> f32 {
         self.reached.as_ref().map_or(0.0, |reached| reached.whole.share)
     }
 
-    /// Where the object is in the next frame, behind others that have the pixels `covered`.
+    /// Where the object is in the next frame; `covered` marks the pixels of objects in front.
     pub(super) fn place(&self, of: &Observation<'_>, covered: &[bool]) -> Option<Placement> {
         let reached = self.reached.as_ref()?;
         let still = LayeredMotion::still(of.features.size);
@@ -203,7 +203,7 @@ impl Propagator {
         reached.whole.place(of.features, from, covered)
     }
 
-    /// Marks where the object is expected.
+    /// Marks the pixels where the object is expected.
     pub(super) fn cover(&self, placement: &Placement, covered: &mut [bool]) {
         if let Some(reached) = &self.reached {
             reached.whole.template.cover(placement.shift, covered);
@@ -267,7 +267,8 @@ impl Propagator {
                 + model().memory * memory
                 + model().trace * traced
                 + evidence;
-            // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
+            // A pixel that did not belong to the hidden object and does not look like it at that position is not its own, whatever its
+            // colour.
             let most = if hidden.is_some() && carried.values()[p] < model().expected {
                 -model().undecided
             } else {
@@ -287,7 +288,7 @@ impl Propagator {
         Some(Prediction { area, log_odds, signs, centre, placement, awaited })
     }
 
-    /// Cuts the next frame by its prediction and its seeds, and goes on from there.
+    /// Cuts the mask of the next frame from its prediction and its seeds, and continues from there.
     pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction, object: u8) -> Proposal {
         let features = of.features;
         let Prediction { area, log_odds, signs, centre, placement, .. } = prediction;
@@ -296,7 +297,7 @@ impl Propagator {
             let mut pixels = proposal.area.pixels(features.size[0]).zip(&proposal.mask);
             pixels.any(|(p, &inside)| inside > 0 && seeds[p] == Seed::Other)
         };
-        // The proposal of this frame, and the one to go on from if that is another.
+        // The proposal of this frame, and the one to continue from if that is another.
         let (mut proposal, goes_on) = match of.seeds {
             None => (solve(None), None),
             Some(seeds) if of.is_anchor && of.spreads => (solve(Some(seeds)), None),
@@ -332,8 +333,9 @@ impl Propagator {
         proposal
     }
 
-    /// What annotations have changed of the object, after a frame with the mask `now`. Only what hangs together with its seeds, or with
-    /// what the change has become since an anchor, is part of it.
+    /// Where annotations have changed the object, after a frame with the mask `now`: 0…1. A connected change counts only if it contains
+    /// seeds, or pixels of the change that is propagated from an anchor. `None` without annotations, or if they are about all of the
+    /// object.
     fn changed(of: &Observation<'_>, object: u8, now: &[u8], signs: &Signs) -> Option<Plane> {
         let (features, width) = (of.features, of.features.size[0]);
         let seeds = of.seeds.filter(|_| of.is_anchor && of.spreads);
@@ -368,9 +370,9 @@ impl Propagator {
         Some(features.plane(&|p| is_changed[p]))
     }
 
-    /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
+    /// Continues from a frame. The appearance is learned from its mask if it `knows_little` of it.
     fn reach(&mut self, of: &Observation<'_>, reached: Reached, [knows_little, begins]: [bool; 2]) {
-        // Of an object that is partly hidden it would learn the one in front.
+        // From a partly hidden object it would learn the object in front.
         if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.whole.now) {
             appearance.fade(model().memory_decay);
             if knows_little {
@@ -383,7 +385,7 @@ impl Propagator {
     }
 }
 
-/// The object in an anchor: where it was annotated, and elsewhere where it was found.
+/// The object in an anchor: its annotated pixels and, where there is no annotation, those found automatically.
 fn shown(features: &FrameFeatures, seeds: Option<&[Seed]>, found: &[u8], object: u8) -> Plane {
     features.plane(&|p| match seeds.map_or(Seed::Nothing, |seeds| seeds[p]) {
         Seed::Nothing => found[p] == object,

@@ -1,4 +1,4 @@
-//! A region of the foreground shared among the objects that lead to it.
+//! A region of the foreground, shared among several objects.
 
 use super::sight::telling;
 use crate::clip::options::model;
@@ -6,8 +6,9 @@ use crate::clip::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
 
-/// Shares a region among `numbers`: each pixel stays with its own, and pixels of one motion stay together. What comes into sight from
-/// behind an object is often carried from that object; a pixel that moves as most of another one does is not held to its own.
+/// Shares a region among `numbers`. Pixels stay with the object from which they are carried, and pixels of one motion stay together. Pixels
+/// that come into sight from behind an object are often carried from that object; those with the main motion of another object are
+/// therefore free to change.
 pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: &[u8], labels: &mut [u8]) {
     let [width, height] = record.size();
     let motions = telling(record).map(|flow| &flow.labels);

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
-/// LayeredMotion relative to the dominant motion, pixels of the base level, with its certainty.
+/// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
     pub(crate) u: Plane,
     pub(crate) v: Plane,

@@ -1,5 +1,5 @@
-//! Greedy deflation: the motion that explains most of what is still unexplained is refined on its own region and added, until no
-//! further motion would pay for itself.
+//! Greedy selection: the motion that explains most of what is still unexplained is refined on its own region and added, until no further
+//! motion gains more than its penalty.
 
 use super::{ScoredMotion, smallest_cost};
 use crate::components::{Connectivity, components};
@@ -13,10 +13,10 @@ use crate::order::descending;
 use crate::view::brightness::GainBias;
 use crate::view::level::PairLevel;
 
-/// When to add a motion, and how many proposals to try.
+/// When a motion is added, and how many proposals are tried.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GreedySelection {
-    /// Gain (cost summed over pixels) that pays for a motion.
+    /// Gain that a motion must exceed, cost summed over pixels.
     pub(crate) price: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
@@ -24,7 +24,7 @@ pub(crate) struct GreedySelection {
     pub(crate) tries: usize,
     /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
-    /// The entries that have to converge when a proposal is refined.
+    /// The entries that must converge when a proposal is refined.
     pub(crate) convergence: Convergence,
 }
 
@@ -108,7 +108,7 @@ pub(crate) fn add_motions(
     let thinning = level.thinning();
     let thinned = level.thinned();
     let rough = RoughCosts::new(&thinned, thinning, proposals);
-    // Of those tried before: beside more motions, a proposal gains no more.
+    // The gains of proposals tried before: in addition to more motions, a proposal gains no more.
     let mut most = vec![f64::INFINITY; proposals.len()];
     loop {
         let current = smallest_cost(selected);

@@ -95,7 +95,7 @@ mod tests {
     use crate::frame::Frame;
     use crate::frame::scaling::Scaling;
 
-    /// Left and right half of the frame have a motion each; only every third column knows which.
+    /// Left and right half of the frame have a motion each; only every third column determines which.
     fn costs(width: usize, height: usize) -> ([Plane; 2], Vec<u8>) {
         let cost = |label: bool| {
             Plane::from_fn(width, height, |x, _| if x % 3 == 0 && (x < width / 2) == label { 2.0 } else { 0.0 })

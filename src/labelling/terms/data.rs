@@ -1,4 +1,4 @@
-//! The data term: the cost of every motion at every pixel, made into the cost of its label.
+//! The data term: the cost of every motion at every pixel, and the cost of its label that follows.
 
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
@@ -11,10 +11,11 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, cheapest, cost_where_seen};
 use crate::view::level::PairLevel;
 
-/// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
+/// Motions and their costs at every pixel, infinite where a motion moves the pixel out of the frame. Label and estimation costs follow from
+/// them.
 pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
 
-/// Compares the frames along motions, except those that are compared already.
+/// Compares the frames along motions, except those in `known`.
 pub(crate) fn compare(level: &PairLevel, motions: &[AffineMotion], mut known: Compared) -> Compared {
     let plane = |motion: &AffineMotion| match known.iter().position(|(other, _)| other == motion) {
         Some(k) => known.swap_remove(k).1,

@@ -9,7 +9,7 @@ use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
 use crate::model::Model;
 
-/// Weights of edges between neighbours.
+/// The penalties of different labels at neighbouring pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeWeights {
     horizontal: Plane,
@@ -17,7 +17,7 @@ pub(crate) struct EdgeWeights {
 }
 
 impl EdgeWeights {
-    /// The penalties with a λ along the edges of a picture with this noise, grey levels.
+    /// The penalties with a weight λ, lower along the edges of a picture with the given noise, grey levels.
     pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> EdgeWeights {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
         let price = Price::new(noise, smoothness, model);
@@ -48,7 +48,7 @@ impl EdgeWeights {
         EdgeWeights { horizontal, vertical }
     }
 
-    /// EdgeWeights that cost the same everywhere.
+    /// The same penalty everywhere.
     pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> EdgeWeights {
         let everywhere = Plane::filled(width, height, smoothness);
         EdgeWeights { horizontal: everywhere.clone(), vertical: everywhere }
@@ -60,7 +60,7 @@ impl EdgeWeights {
     }
 }
 
-/// The penalty of a border as a function of the step across it.
+/// The penalty of a border as a function of the intensity step across it.
 struct Price {
     smoothness: f32,
     /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
