@@ -78,7 +78,7 @@ pub(crate) fn segment_clip(
         _ if whole => None,
         _ => Some(MAX_LOOK_AHEAD),
     };
-    let said = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
+    let annotations = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
     let worker = Worker::<Kept>::start()?;
     worker
         .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
@@ -87,7 +87,7 @@ pub(crate) fn segment_clip(
         source,
         progress,
         mark_unknown,
-        options: Some(Options { said, state }),
+        options: Some(Options { annotations, state }),
         size: None,
         place: if whole {
             Place::Unsegmented
@@ -102,7 +102,7 @@ pub(crate) fn segment_clip(
 
 /// The options of a whole clip.
 struct Options {
-    said: FrameAnnotations,
+    annotations: FrameAnnotations,
     state: Option<Vec<u8>>,
 }
 
@@ -187,24 +187,24 @@ impl Clip {
     }
 
     /// Annotates frames of a whole clip by label maps, strokes and prompts. Returns the indices of the frames that change.
-    #[pyo3(signature = (*said))]
-    fn correct(&mut self, py: Python<'_>, said: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        self.say(py, &Given { corrections: Some(said), ..Given::default() })
+    #[pyo3(signature = (*annotations))]
+    fn correct(&mut self, py: Python<'_>, annotations: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
+        self.apply(py, &Given { corrections: Some(annotations), ..Given::default() })
     }
 
     /// Locks these objects: no annotation changes their pixels. All others are unlocked.
     fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.say(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
+        self.apply(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
     }
 
     /// Names these objects: like annotated objects, they change only by annotations of themselves.
     fn name(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.say(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
+        self.apply(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
     }
 
     /// Accepts these frames as correct. Returns the indices of those that change.
     fn accept(&mut self, py: Python<'_>, frames: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
-        self.say(py, &Given { accepted: Some(frames), ..Given::default() })
+        self.apply(py, &Given { accepted: Some(frames), ..Given::default() })
     }
 
     /// Merges objects under the number of the first. Returns the indices of the frames that change.
@@ -429,7 +429,7 @@ impl Clip {
         self.tracks.dropped = summary.dropped;
         self.place = Place::Segmented { length: summary.length, next: 0 };
         // The source may have failed before it reached an annotated frame.
-        self.annotate(py, options.said.of_first(summary.length)).map(drop)
+        self.annotate(py, options.annotations.of_first(summary.length)).map(drop)
     }
 
     /// Solves all pairs. If the source fails, the frames before form the clip.
@@ -437,7 +437,7 @@ impl Clip {
         let mut index = 0;
         while let Some(frame) = self.read_or_fail(py, index)? {
             if let (0, Some(size)) = (index, self.size) {
-                options.said.check(size)?;
+                options.annotations.check(size)?;
             }
             self.report(py, "pairs", index)?;
             self.call(py, move |kept| kept.push(frame))?;
@@ -456,16 +456,16 @@ impl Clip {
         }
         if found > 0 {
             self.size = Some(summary.size);
-            options.said.check(summary.size)?;
+            options.annotations.check(summary.size)?;
         }
         Ok(summary)
     }
 
-    fn say(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
+    fn apply(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
         self.prepare(py)?;
-        let said = FrameAnnotations::of(given, self.length())?;
-        said.check(self.size.unwrap_or_default())?;
-        self.annotate(py, said.annotations)
+        let given = FrameAnnotations::of(given, self.length())?;
+        given.check(self.size.unwrap_or_default())?;
+        self.annotate(py, given.annotations)
     }
 
     fn renumber(&mut self, py: Python<'_>, objects: &[u8], number: u8) -> PyResult<Vec<usize>> {

@@ -33,19 +33,19 @@ pub(crate) fn alone<R: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(Progress<'_>) -> Result<R, Failure> + Send + 'static,
 ) -> PyResult<R> {
-    let (tell, said) = channel();
+    let (sender, messages) = channel();
     spawn(move || {
         let mut listener = |stage| {
-            if tell.send(Message::Stage(stage)).is_err() {
+            if sender.send(Message::Stage(stage)).is_err() {
                 resume_unwind(Box::new(Abandoned));
             }
         };
         if let Some(done) = caught(|| work(&mut listener)) {
             // The other thread may have stopped waiting.
-            let _ = tell.send(Message::Done(done));
+            let _ = sender.send(Message::Done(done));
         }
     })?;
-    answer(py, said, |Stage { name, index, of, .. }| match progress {
+    answer(py, messages, |Stage { name, index, of, .. }| match progress {
         Some(progress) => progress.call1((name, index, of)).map(|_| ()),
         None => Ok(()),
     })
@@ -84,15 +84,15 @@ impl<T: Default + 'static> Worker<T> {
             let message = "a clip stays in the process that began it".into();
             return Err(Failure { code: "worker-failed", message }.into());
         }
-        let (tell, said) = channel();
+        let (sender, messages) = channel();
         let job = move |kept: &mut T| {
             let done = caught(|| work(kept));
             let goes_on = !matches!(done, None | Some(Err(Failure { code: "internal", .. })));
-            let _ = done.is_none_or(|done| tell.send(Message::Done(done)).is_ok());
+            let _ = done.is_none_or(|done| sender.send(Message::Done(done)).is_ok());
             goes_on
         };
         self.jobs.send(Box::new(job)).map_err(|_| lost())?;
-        answer(py, said, |_| Ok(()))
+        answer(py, messages, |_| Ok(()))
     }
 
     /// Runs some work without waiting for it, before any later work.
@@ -139,13 +139,13 @@ fn sentence(thrown: &(dyn Any + Send)) -> String {
 /// Waits for the result without holding the interpreter.
 fn answer<R: Send>(
     py: Python<'_>,
-    mut said: Receiver<Message<R>>,
+    mut messages: Receiver<Message<R>>,
     mut on_stage: impl FnMut(Stage) -> PyResult<()>,
 ) -> PyResult<R> {
     loop {
-        let (heard, waiting) = py.detach(move || (said.recv_timeout(PATIENCE), said));
-        said = waiting;
-        match heard {
+        let (received, waiting) = py.detach(move || (messages.recv_timeout(PATIENCE), messages));
+        messages = waiting;
+        match received {
             Ok(Message::Stage(stage)) => on_stage(stage)?,
             Ok(Message::Done(done)) => return Ok(done?),
             Err(RecvTimeoutError::Timeout) => {}

@@ -238,12 +238,12 @@ fn indices(indices: &[usize]) -> JsValue {
 
 /// The progress of a job; the first `known` of its changed frames were returned before.
 fn news(clip: &SegmentedClip, job: &ClipJob, known: usize) -> JsValue {
-    let told = Record::new().set("changed", &indices(&job.changed()[known..]));
+    let progress = Record::new().set("changed", &indices(&job.changed()[known..]));
     match job.wanted() {
-        Some(index) => told.count("wanted", index),
+        Some(index) => progress.count("wanted", index),
         None => {
             let objects = clip.objects();
-            told.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
+            progress.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
         }
     }
     .into_value()

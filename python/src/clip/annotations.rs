@@ -63,7 +63,7 @@ impl FrameAnnotations {
         let accepted = given.accepted.map(|accepted| reader.accepted(accepted)).transpose()?;
         let locked = given.locked.map(|locked| objects("locked", locked)).transpose()?;
         let named = given.named.map(|named| objects("named", named)).transpose()?;
-        Ok(reader.said(Annotations { locked, named, accepted, ..Annotations::default() }))
+        Ok(reader.finished(Annotations { locked, named, accepted, ..Annotations::default() }))
     }
 
     /// Checks that labels fill frames of this size, and that prompts lie within them.
@@ -191,7 +191,7 @@ impl Reader {
     }
 
     /// The annotations. Those without a direction of their own spread as the label map of their frame.
-    fn said(self, rest: Annotations) -> FrameAnnotations {
+    fn finished(self, rest: Annotations) -> FrameAnnotations {
         let maps = self.masks.iter().chain(&self.corrections).filter(|(painted, _)| painted.object.is_none());
         let ways: BTreeMap<usize, Spread> = maps.filter_map(|(map, spread)| Some((map.frame, (*spread)?))).collect();
         let of_frame = |frame: usize| ways.get(&frame).copied().unwrap_or_default();
