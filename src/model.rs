@@ -139,7 +139,7 @@ model! {
     largest_linear: f64 = 0.4;
     /// Squared residual, in variances, at which the weight of a pixel has fallen to a quarter in the alignment of a region; also the
     /// largest cost of a pixel when motions are estimated. The fit must be sensitive to pixels at two deviations. Generated.
-    robustness: f32 = 4.0;
+    truncation: f32 = 4.0;
     /// Prior against linear terms of the dominant motion, relative to the information about the translation. Generated.
     ridge_background: f64 = 1e-4;
     /// The same for an object: small regions determine linear terms badly. Generated.
@@ -148,7 +148,7 @@ model! {
     /// Reach of the search for a start at the coarsest level, pixels of that level.
     reach: i32 = 3;
     /// `truncation` where pixels may belong to other motions: the first translation of a frame, the local flow of a window. Generated.
-    robustness_loose: f32 = 9.0;
+    truncation_loose: f32 = 9.0;
 
     /// Information added to every window, 1/pixel², so that the flow of flat windows is zero. Generated.
     flow_flat: f32 = 0.02;
@@ -344,7 +344,7 @@ model! {
     /// Step of a and b of L*a*b* between colours of the appearance; that of L is twice as large.
     colour_step: f32 = 6.0;
     /// Largest number of pixels found automatically that one pixel annotated otherwise outweighs.
-    silences: f32 = 40.0;
+    outweighed: f32 = 40.0;
     /// Squared difference of colours at which it is truncated, L*a*b*.
     truncation: f32 = 600.0;
     /// Penalty of a shift of a whole object, for each coarse pixel away from the expected one, truncated differences. Fit to real clips.
@@ -457,7 +457,7 @@ impl Model {
     /// Largest cost of a pixel when it is labelled: half of the one in estimation, as labels must not follow single pixels. Generated,
     /// with true motions; real.
     pub(crate) fn largest_cost(&self) -> f32 {
-        0.5 * self.robustness
+        0.5 * self.truncation
     }
 
     /// Largest longer side of the base level, pixels. There the dominant motion is found and others are proposed.

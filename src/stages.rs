@@ -58,7 +58,7 @@ pub struct Background {
     /// The candidates, in the order in which they were proposed.
     pub candidates: Vec<CandidateMotion>,
     /// The gain that a motion needs to be selected.
-    pub price: f64,
+    pub penalty: f64,
     /// The motions after greedy selection; the first is the dominant one.
     pub selected: Vec<SelectedMotion>,
     /// The selected motion that explains each pixel best, without regard to its neighbours.

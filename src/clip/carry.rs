@@ -1,6 +1,6 @@
 //! Log-odds and labels carried from frame to frame along the motions of the pixels.
 
-use super::evidence::LayeredMotion;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};

@@ -3,6 +3,7 @@
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
+use crate::side::Side;
 
 /// Numbers of pixels of each quantised colour, on objects and on the background.
 #[derive(Clone, Debug)]
@@ -20,7 +21,7 @@ impl ColourCounts {
         for (p, &log_odds) in
             log_odds.values().iter().enumerate().filter(|(_, log_odds)| log_odds.abs() > model().undecided)
         {
-            counts.0[usize::from(log_odds < 0.0)][palette.index(p)] += 1.0;
+            counts.0[Side::favoured_by(log_odds)][palette.index(p)] += 1.0;
         }
         counts
     }
@@ -36,9 +37,12 @@ impl ColourCounts {
         if totals.iter().any(|&total| total < model().pixels as f32) {
             return vec![0.0; COLOURS];
         }
-        let share = |side: usize, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
+        let share = |side: Side, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
         (0..COLOURS)
-            .map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-model().certain, model().certain))
+            .map(|colour| {
+                libm::logf(share(Side::Object, colour) / share(Side::Ground, colour))
+                    .clamp(-model().certain, model().certain)
+            })
             .collect()
     }
 }

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::evidence::LayeredMotion;
 use super::options::model;
+use super::pairs::LayeredMotion;
 use crate::answer::UNLABELLED;
 use crate::frame::Plane;
 use crate::frame::scaling::Scaling;

@@ -7,8 +7,8 @@
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::evidence::log_odds;
 use super::options::model;
+use super::pairs::log_odds;
 use super::record::PendingFrame;
 use crate::frame::Plane;
 use crate::frame::pyramid::FramePyramid;

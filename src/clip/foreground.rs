@@ -100,12 +100,13 @@ impl Round {
             self.colours.pop_front();
         }
         let ratios = colours.ratios();
-        let price = |(p, log_odds): (usize, &f32)| {
+        let penalty = |(p, log_odds): (usize, &f32)| {
             model().automatic * (log_odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
         };
         let [width, height] = record.size();
-        let ground = Plane::from_vec(width, height, log_odds.values().iter().enumerate().map(price).collect());
-        let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
+        let ground = Plane::from_vec(width, height, log_odds.values().iter().enumerate().map(penalty).collect());
+        let mask =
+            record.edge_weights(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
         Some(Foreground { record, own, log_odds, mask })
     }
 

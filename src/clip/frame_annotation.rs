@@ -200,12 +200,12 @@ impl FrameAnnotation {
             let old = before.seeds(object);
             let inside: Vec<u8> = now.iter().map(|&label| u8::from(label == object)).collect();
             let parts = components(&inside, width, Connectivity::Eight);
-            let mut is_said = vec![false; parts.list.len()];
+            let mut is_annotated = vec![false; parts.list.len()];
             // First and last column and row of the new strokes in each component.
             let mut strokes = vec![[usize::MAX, usize::MAX, 0, 0]; parts.list.len()];
             for p in 0..now.len() {
                 let part = parts.of[p] as usize;
-                is_said[part] |= seeds[p] == Seed::Object;
+                is_annotated[part] |= seeds[p] == Seed::Object;
                 if seeds[p] == Seed::Other && old.as_ref().is_none_or(|old| old[p] != Seed::Other) {
                     let ([x, y], [left, top, right, bottom]) = ([p % width, p / width], strokes[part]);
                     strokes[part] = [left.min(x), top.min(y), right.max(x), bottom.max(y)];
@@ -215,7 +215,7 @@ impl FrameAnnotation {
             let goes = |part: usize| {
                 let (Component { label, size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
                 let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
-                if label == 0 || is_said[part] || drawn[0] > drawn[2] {
+                if label == 0 || is_annotated[part] || drawn[0] > drawn[2] {
                     return false;
                 }
                 // A short stroke in a large piece may be about part of it; a stroke across the piece is about all of it.

@@ -1,8 +1,8 @@
 //! A frame of a segmented clip: the labels found automatically, a person's annotation, and the layer that follows from all annotations.
 
-use super::evidence::KeptLayeredMotion;
 use super::frame_annotation::FrameAnnotation;
 use super::layer::Layer;
+use super::pairs::KeptLayeredMotion;
 use super::saved::saved;
 use super::tracker::Tracked;
 

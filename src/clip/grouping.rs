@@ -4,8 +4,8 @@
 //! of a longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,
 //! leftmost pixel.
 
-use super::evidence::LayeredMotion;
 use super::identity::MAX_OBJECTS;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::labelling::BACKGROUND;
 use crate::order::sort_few;

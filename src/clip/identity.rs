@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::order::{descending, sort_few};
 use object::{Apart, Object};
 use sharing::share;
-use sight::{Sight, telling};
+use sight::{Sight, shown_motion};
 
 /// Largest number of an object: 255 is kept for unlabelled pixels.
 pub(crate) const MAX_OBJECTS: usize = 254;
@@ -121,7 +121,7 @@ impl Identities {
     /// from there; but it moves independently, as a hidden object did, and its colours are more like those of the hidden object. It then
     /// counts as carried from the hidden object. Returns the numbers of these objects.
     fn emerge(&self, record: &Record, mask: &[u8], smallest: usize, carried: &mut [u8]) -> Vec<u8> {
-        let Some(along) = telling(record) else { return Vec::new() };
+        let Some(along) = shown_motion(record) else { return Vec::new() };
         let moving: Vec<u8> =
             mask.iter().zip(&along.labels[..]).map(|(&m, &k)| if m > 0 { k + 1 } else { 0 }).collect();
         let pieces = regions(&components(&moving, along.width, Connectivity::Eight), smallest);

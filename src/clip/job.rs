@@ -75,7 +75,7 @@ impl ClipJob {
     fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
         annotations.frames().try_for_each(|frame| clip.check_index(frame))?;
         annotations.check(clip.size())?;
-        if let Some(object) = said_of_locked(clip, &annotations) {
+        if let Some(object) = annotated_locked_object(clip, &annotations) {
             return Err(Error::ObjectLocked { object });
         }
         let locks = locked_last(clip, &annotations);
@@ -203,8 +203,8 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (
         match of_frame.iter_mut().find(|before| before.object == painted.object) {
             None => of_frame.push(painted.clone()),
             Some(mask) => {
-                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNLABELLED);
-                said.for_each(|(mask, label)| *mask = *label);
+                let annotated = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNLABELLED);
+                annotated.for_each(|(mask, label)| *mask = *label);
                 mask.spread = painted.spread;
             }
         }
@@ -225,7 +225,7 @@ fn locked_last(clip: &SegmentedClip, annotations: &Annotations) -> Vec<u8> {
 }
 
 /// An object that was locked before and stays locked, and that the annotations would change.
-fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
+fn annotated_locked_object(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
     let Annotations { corrections, prompts, locked, numbers, .. } = annotations;
     let stays_locked = |object: &u8| match locked {
         Some(locked) => locked.contains(object),

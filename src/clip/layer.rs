@@ -1,6 +1,6 @@
 //! Labels of a frame with their log-odds: those found automatically, and those that annotations lay over them.
 
-use super::evidence::KeptLogOdds;
+use super::pairs::KeptLogOdds;
 use super::runs::Runs;
 use super::saved::saved;
 use crate::frame::Plane;

@@ -1,7 +1,7 @@
 //! How a frame of a clip is paired with the previous one.
 
 use super::carry::continued_labels;
-use super::evidence::{LayeredMotion, Pairs, flow, log_odds};
+use super::pairs::{LayeredMotion, Pairs, layered_motion, log_odds};
 use super::record::PendingFrame;
 use crate::frame::Plane;
 use crate::options::SegmentOptions;
@@ -11,13 +11,13 @@ use crate::pair::settings::Settings;
 /// In a whole clip, a frame is solved in pairs with both neighbours.
 pub(super) fn of_whole_clip(last: &PendingFrame, newest: &PendingFrame, settings: &Settings) -> Pairs {
     let onward = last.motions_to(&newest.pyramid, settings, Expected::Nothing);
-    let inverse = flow(onward.clone()).continued();
+    let inverse = layered_motion(onward.clone()).continued();
     let labels = continued_labels(&inverse);
     let back = newest.motions_to(&last.pyramid, settings, Expected::Inverse { motions: &inverse.motions, labels });
     if onward.is_cut() && back.is_cut() {
         return Pairs::default();
     }
-    Pairs { onward: Some(evidence(onward)), back: Some(evidence(back)), prior: None }
+    Pairs { onward: Some(log_odds_and_motion(onward)), back: Some(log_odds_and_motion(back)), prior: None }
 }
 
 /// The only two frames of a clip are solved more thoroughly, as a pair is.
@@ -43,9 +43,9 @@ pub(super) fn of_stream(
     if back.is_cut() {
         return Pairs::default();
     }
-    let onward = waits.then(|| evidence(last.motions_to(&newest.pyramid, settings, Expected::Nothing)));
+    let onward = waits.then(|| log_odds_and_motion(last.motions_to(&newest.pyramid, settings, Expected::Nothing)));
     let prior = back.prior();
-    Pairs { onward, back: Some(evidence(back)), prior }
+    Pairs { onward, back: Some(log_odds_and_motion(back)), prior }
 }
 
 /// A repeated frame, as where the frame rate was raised, has no motion, and log-odds of zero, because it does not show what moves. The
@@ -56,6 +56,6 @@ pub(super) fn of_repeated(newest: &PendingFrame, prior: Option<&Prior>, waits: b
     Pairs { onward: waits.then(still), back: Some(still()), prior: prior.cloned() }
 }
 
-fn evidence(solution: FrameMotions) -> (Plane, LayeredMotion) {
-    (log_odds(&solution), flow(solution))
+fn log_odds_and_motion(solution: FrameMotions) -> (Plane, LayeredMotion) {
+    (log_odds(&solution), layered_motion(solution))
 }

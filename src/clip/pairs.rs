@@ -100,7 +100,7 @@ impl KeptLayeredMotion {
         KeptLayeredMotion { labels: Runs::of(&flow.labels), motions: flow.motions.clone(), measured: flow.measured }
     }
 
-    pub(crate) fn flow(&self, width: usize) -> LayeredMotion {
+    pub(crate) fn layered_motion(&self, width: usize) -> LayeredMotion {
         LayeredMotion { width, labels: self.labels.values(), motions: self.motions.clone(), measured: self.measured }
     }
 
@@ -169,7 +169,7 @@ impl Pairs {
 impl KeptPairs {
     pub(crate) fn pairs(&self, [width, height]: [usize; 2]) -> Pairs {
         let view = |kept: &Option<(KeptLogOdds, KeptLayeredMotion)>| {
-            kept.as_ref().map(|(log_odds, flow)| (log_odds.log_odds(width, height), flow.flow(width)))
+            kept.as_ref().map(|(log_odds, flow)| (log_odds.log_odds(width, height), flow.layered_motion(width)))
         };
         Pairs { onward: view(&self.onward), back: view(&self.back), prior: self.prior.clone() }
     }
@@ -197,7 +197,7 @@ pub(crate) fn log_odds(found: &FrameMotions) -> Plane {
 }
 
 /// The motion of every pixel.
-pub(crate) fn flow(found: FrameMotions) -> LayeredMotion {
+pub(crate) fn layered_motion(found: FrameMotions) -> LayeredMotion {
     let FrameMotions { labels, motions, probabilities, .. } = found;
     LayeredMotion { width: probabilities[0].width(), labels, motions, measured: true }
 }

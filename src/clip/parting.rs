@@ -1,6 +1,6 @@
 //! Objects that part were two from the start: their pixels are followed back through the frames in which they had one number.
 
-use super::evidence::LayeredMotion;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::components::absorb_small;
 

@@ -2,9 +2,9 @@
 
 use std::rc::Rc;
 
-use super::evidence::LayeredMotion;
 use super::farther::shows_object;
 use super::options::model;
+use super::pairs::LayeredMotion;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
@@ -121,7 +121,7 @@ impl Record {
     }
 
     /// The edge weights for a smoothness.
-    pub(crate) fn borders(&self, smoothness: f32) -> EdgeWeights {
+    pub(crate) fn edge_weights(&self, smoothness: f32) -> EdgeWeights {
         self.unit_weights.times(smoothness)
     }
 }

@@ -3,10 +3,10 @@
 use std::cmp::Ordering;
 
 use super::annotation::{Direction, ObjectSet};
-use super::evidence::LayeredMotion;
 use super::frame_state::FrameState;
 use super::layer::Layer;
 use super::options::ClipOptions;
+use super::pairs::LayeredMotion;
 use super::saved::{Format, saved};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -225,11 +225,11 @@ impl SegmentedClip {
 
     /// Motion to the next frame of the scene; `None` after its last frame.
     pub(super) fn onward(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
+        self.frames[index].onward.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
     }
 
     /// Motion to the previous frame; `None` before the first frame of a scene.
     pub(super) fn back(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].back.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
+        self.frames[index].back.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
     }
 }

@@ -1,11 +1,11 @@
 //! Segmentation of a whole clip, frame by frame.
 
 use super::description::{ClipFrame, WorkingFrame};
-use super::evidence::{KeptPairs, Pairs};
 use super::frame_state::FrameState;
 use super::grouping::Census;
 use super::identity::{Identities, Parting};
 use super::options::ClipOptions;
+use super::pairs::{KeptPairs, Pairs};
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
@@ -178,7 +178,7 @@ impl ClipSegmenter {
         for &Parting { frame, from, new } in self.tracker.parted().iter().rev() {
             for t in (0..frame).rev() {
                 let [Some(here), Some(later)] = [t, t + 1].map(|t| self.frames.get(t)) else { break };
-                let Some(onward) = here.onward.as_ref().map(|flow| flow.flow(width)) else { break };
+                let Some(onward) = here.onward.as_ref().map(|flow| flow.layered_motion(width)) else { break };
                 let mut labels = here.found.labels.values();
                 if !divide(&mut labels, &later.found.labels.values(), &onward, from, new) {
                     break;
@@ -192,7 +192,7 @@ impl ClipSegmenter {
     fn group(&mut self, width: usize) {
         let mut census = Census::new();
         for frame in &self.frames {
-            let onward = frame.onward.as_ref().map(|flow| flow.flow(width));
+            let onward = frame.onward.as_ref().map(|flow| flow.layered_motion(width));
             census.add(&frame.found.labels.values(), width, onward.as_ref(), frame.back.is_none());
         }
         let numbers = census.final_numbers();

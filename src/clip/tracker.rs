@@ -2,13 +2,13 @@
 
 use std::rc::Rc;
 
-use super::evidence::{LayeredMotion, Pairs};
 use super::farther::{FARTHEST, Farther, FartherPair, shows_object};
 use super::foreground::{Foreground, Round};
 use super::held::HeldFrames;
 use super::identity::{Identities, Parting};
 use super::options::{ClipOptions, MAX_LOOK_AHEAD, model};
 use super::pairing;
+use super::pairs::{LayeredMotion, Pairs};
 use super::record::{PendingFrame, Record};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};

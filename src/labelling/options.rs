@@ -16,5 +16,6 @@ pub(crate) struct LabellingOptions {
 #[cfg(test)]
 impl LabellingOptions {
     pub(crate) const OF_TESTS: LabellingOptions =
+        // As for frames at their original size.
         LabellingOptions { smoothness: 8.0, object_bias: 0.05, solver: Solver::BEST };
 }

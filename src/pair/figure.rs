@@ -115,10 +115,10 @@ impl Known {
             .into_iter()
             .map(|distance| distance.map(|distance| libm::log(NEAR + distance)))
             .collect();
-        let told: Vec<(f64, f64)> =
+        let measured: Vec<(f64, f64)> =
             planes.iter().zip(&areas).filter_map(|(plane, area)| plane.zip(Some(*area))).collect();
-        let area = told.iter().map(|(_, area)| area).sum::<f64>();
-        let mean = told.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
+        let area = measured.iter().map(|(_, area)| area).sum::<f64>();
+        let mean = measured.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
         let (mut borders, mut jumps) = (vec![0.0; n * n], vec![0.0; n * n]);
         for k in 0..n * n {
             let pair = [k / n, k % n];

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn all_evidence_counts() {
+    fn all_features_count() {
         let within = likelihood(1.0, 1.0, [10..30, 10..30]);
         assert!(likelihood(1.0, 2.0, [10..30, 10..30]) < within, "a larger jump");
         let [wide, high] = [likelihood(1.0, 1.0, [0..30, 10..30]), likelihood(1.0, 1.0, [10..30, 0..30])];

@@ -20,14 +20,14 @@ use crate::view::level::PairLevel;
 impl Settings {
     /// The penalty of a motion on a level, in summed costs; small if the number of motions is given, so that every motion that helps is
     /// added.
-    fn price(&self, level: &PairLevel) -> f64 {
+    fn penalty(&self, level: &PairLevel) -> f64 {
         if self.least > 1 { 1.0 } else { motion_penalty_on(level) }
     }
 
     /// How motions are added on a level.
-    fn deflation(&self, level: &PairLevel) -> GreedySelection {
+    fn greedy(&self, level: &PairLevel) -> GreedySelection {
         GreedySelection {
-            price: self.price(level),
+            penalty: self.penalty(level),
             most: self.most,
             tries: self.tries,
             window: self.model.cost_window,
@@ -52,7 +52,7 @@ impl Settings {
     /// Removes motions whose gain is below their penalty, unless the number of motions is given.
     fn prune(&self, level: &PairLevel, selected: &mut Vec<ScoredMotion>) {
         if self.least == 1 {
-            prune(selected, self.price(level));
+            prune(selected, self.penalty(level));
         }
     }
 }
@@ -76,8 +76,8 @@ pub(super) fn select(
     observer.stage_begins("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
-    observer.proposed(pair, &selected[0], &proposals, settings.deflation(level));
-    let rejected = add_motions(level, &mut selected, &proposals, settings.deflation(level));
+    observer.proposed(pair, &selected[0], &proposals, settings.greedy(level));
+    let rejected = add_motions(level, &mut selected, &proposals, settings.greedy(level));
     observer.selected(pair, &selected);
     settings.refit(level, &mut selected);
     (selected, rejected)
@@ -103,7 +103,7 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
 
 /// Adds motions that only show on a thinned level, and refines all motions. Returns the best proposal that was rejected.
 fn add_fine(level: &PairLevel, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
-    let how = GreedySelection { tries: settings.model.tries_fast, ..settings.deflation(level) };
+    let how = GreedySelection { tries: settings.model.tries_fast, ..settings.greedy(level) };
     let proposals = fine_proposals(level, selected, settings.tiles);
     let rejected = add_motions(level, selected, &proposals, how);
     settings.refit(level, selected);
@@ -171,6 +171,6 @@ pub(super) fn add_missing(pair: &Pair, motions: &mut Vec<AffineMotion>, most: us
     let flow = local_flow(&pair.levels, dominant, pair.base);
     let proposals = from_tiles(&pair.levels[pair.base], dominant, &flow, settings.tiles);
     let mut selected = scored_on(level, motions);
-    add_motions(level, &mut selected, &proposals, GreedySelection { most, ..settings.deflation(level) });
+    add_motions(level, &mut selected, &proposals, GreedySelection { most, ..settings.greedy(level) });
     motions.extend(selected[motions.len()..].iter().map(|one| one.motion));
 }

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+mod candidates;
 mod doubt;
-mod evidence;
 mod junctions;
 mod statistics;
 mod unknown;
@@ -81,7 +81,7 @@ pub(super) fn report(
     let pair = &labelled.pair;
     let level = pair.finest();
     let (size, model) = ([level.width(), level.height()], level.model);
-    let candidates = evidence::evidence(&labelled, settings);
+    let candidates = candidates::scored_candidates(&labelled, settings);
     let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
         costs(level, &labelled.motions, RobustKernel::labels(model))

@@ -71,7 +71,7 @@ impl Observer for Recorder {
             local_flow,
             measured: measured(level, &dominant, flow, settings, scale),
             candidates: candidates(level, &dominant, flow, settings, pair.scaling.step as f64),
-            price: 0.0,
+            penalty: 0.0,
             selected: Vec::new(),
             selection: Labelling::default(),
             refined: Vec::new(),
@@ -84,7 +84,7 @@ impl Observer for Recorder {
     /// Scores the candidates. Those that the hypothesis did not begin with were known before.
     fn proposed(&mut self, pair: &Pair, dominant: &ScoredMotion, proposals: &[AffineMotion], how: GreedySelection) {
         let Some(hypothesis) = self.hypotheses.last_mut() else { return };
-        hypothesis.price = how.price;
+        hypothesis.penalty = how.penalty;
         let candidates = &mut hypothesis.candidates;
         let known = proposals.iter().skip(candidates.len());
         let known = known.map(|motion| candidate(motion, CandidateSource::Hypothesis, pair.scaling.step as f64));

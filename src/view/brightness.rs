@@ -67,7 +67,7 @@ impl GainBias {
     /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.
     fn step(self, level: &PairLevel, sample: impl Fn(usize, usize) -> Option<f32>) -> GainBias {
         let variance = f64::from(level.noise * level.noise);
-        let robustness = f64::from(level.model.robustness);
+        let truncation = f64::from(level.model.truncation);
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in 0..level.first.values().len() {
             let (x, y) = (p % level.width(), p / level.width());
@@ -75,7 +75,7 @@ impl GainBias {
             let first = level.first.values()[p];
             let i = f64::from(first) / GREY;
             let r = f64::from(value) - f64::from(first) - self.bias - self.gain * i;
-            let robust = robustness / (robustness + r * r / variance);
+            let robust = truncation / (truncation + r * r / variance);
             let w = robust * robust;
             q += w;
             qi += w * i;

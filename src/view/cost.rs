@@ -35,7 +35,7 @@ impl RobustKernel {
     /// For estimating motions.
     #[inline(always)]
     pub(crate) fn estimation(model: &Model) -> RobustKernel {
-        RobustKernel { truncation: model.robustness, position_sigma: model.position_sigma }
+        RobustKernel { truncation: model.truncation, position_sigma: model.position_sigma }
     }
 
     /// For labelling pixels.

@@ -8,6 +8,7 @@ use crate::clip::annotation::Seed;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
+use crate::side::Side;
 
 /// Weighted numbers of pixels, by [`Side`].
 type Counts = [f32; 2];
@@ -100,7 +101,7 @@ impl AppearanceModel {
         centre: [f32; 2],
         source: Source,
         weight: f32,
-        sides: &dyn Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> Option<Side>,
     ) {
         self.learn_within(features, &features.area(), centre, source, weight, sides);
     }
@@ -113,15 +114,12 @@ impl AppearanceModel {
         centre: [f32; 2],
         source: Source,
         weight: f32,
-        sides: &dyn Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> Option<Side>,
     ) {
         let width = features.size[0];
         for y in area.rows.clone() {
             for x in area.columns.clone() {
-                let side = sides(y * width + x);
-                if side > 1 {
-                    continue;
-                }
+                let Some(side) = sides(y * width + x) else { continue };
                 let place = self.place_of(features.colours[y * width + x]);
                 let [u, v] = self.at(x, y, centre);
                 let cell = place * self.cells() + (v + 0.5) as usize * self.size[0] + (u + 0.5) as usize;
@@ -144,9 +142,9 @@ impl AppearanceModel {
     pub(super) fn learn_seeds(&mut self, features: &FrameFeatures, centre: [f32; 2], seeds: Option<&[Seed]>) {
         let Some(seeds) = seeds else { return };
         self.learn(features, centre, Source::Annotated, 1.0, &|p| match seeds[p] {
-            Seed::Object => 0,
-            Seed::Other => 1,
-            Seed::Nothing | Seed::Dropped => 2,
+            Seed::Object => Some(Side::Object),
+            Seed::Other => Some(Side::Ground),
+            Seed::Nothing | Seed::Dropped => None,
         });
     }
 
@@ -172,18 +170,18 @@ impl AppearanceModel {
             .annotated
             .iter()
             .zip(&self.recent)
-            .map(|(annotated, recent)| [annotated[0] + recent[0], annotated[1] + recent[1]])
+            .map(|(annotated, recent)| Side::BOTH.map(|side| annotated[side] + recent[side]))
             .collect();
         for (place, &colour) in self.seen.iter().enumerate() {
             let trust = self.trust(colour);
             let cells = place * cells..(place + 1) * cells;
             for (sum, found) in blurred[cells.clone()].iter_mut().zip(&self.found[cells]) {
-                *sum = [sum[0] + trust[0] * found[0], sum[1] + trust[1] * found[1]];
+                *sum = Side::BOTH.map(|side| sum[side] + trust[side] * found[side]);
             }
         }
         let mut total = [0.0f32; 2];
         for counts in &blurred {
-            total = [total[0] + counts[0], total[1] + counts[1]];
+            total = Side::BOTH.map(|side| total[side] + counts[side]);
         }
         let mut line = vec![[0.0; 2]; self.size[0].max(self.size[1])];
         blurred.chunks_exact_mut(cells).for_each(|plane| self.blur(plane, &mut line));
@@ -203,9 +201,9 @@ impl AppearanceModel {
                     wide.extend_from_slice(&planes[from..]);
                     (0..2).for_each(|_| self.blur(&mut wide[from..], &mut line));
                     let mut sum = [0.0f32; 2];
-                    planes[from..].iter().for_each(|counts| sum = [sum[0] + counts[0], sum[1] + counts[1]]);
-                    let [object, ground] = [0, 1].map(|k| sum[k] / total[k].max(1e-6) + 1e-5);
-                    shares.push(object / (object + ground));
+                    planes[from..].iter().for_each(|counts| sum = Side::BOTH.map(|side| sum[side] + counts[side]));
+                    let of = Side::BOTH.map(|side| sum[side] / total[side].max(1e-6) + 1e-5);
+                    shares.push(of[Side::Object] / (of[Side::Object] + of[Side::Ground]));
                     known[usize::from(colour)] = shares.len() as u16;
                 }
                 let k = usize::from(known[usize::from(colour)]) - 1;
@@ -216,16 +214,17 @@ impl AppearanceModel {
                 let sample = |counts: &[Counts]| {
                     let window = &counts[first..first + self.size[0] + 2];
                     let [a, b, c, d] = [window[0], window[1], window[self.size[0]], window[self.size[0] + 1]];
-                    [0, 1].map(|s| {
+                    Side::BOTH.map(|s| {
                         let (top, bottom) = (a[s] + fx * (b[s] - a[s]), c[s] + fx * (d[s] - c[s]));
                         top + fy * (bottom - top)
                     })
                 };
                 let (near, wider) = (sample(&planes), sample(&wide));
                 let back_off = model().back_off;
-                let of_wider = (wider[0] + model().places * back_off * shares[k])
-                    / (wider[0] + wider[1] + model().places * back_off);
-                probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
+                let of_wider = (wider[Side::Object] + model().places * back_off * shares[k])
+                    / (wider[Side::Object] + wider[Side::Ground] + model().places * back_off);
+                let all = near[Side::Object] + near[Side::Ground] + back_off;
+                probabilities.push((near[Side::Object] + back_off * of_wider) / all);
             }
         }
         probabilities
@@ -237,10 +236,12 @@ impl AppearanceModel {
         let [mut annotated, mut found] = [[[0.0; 2]]; 2];
         self.gather(colour, &self.annotated_of, &mut annotated);
         self.gather(colour, &self.found_of, &mut found);
-        let ([object, ground], [found]) = (annotated[0], found);
-        let heard = |found: f32| (model().silences * (object + ground) / found.max(1e-6)).min(1.0);
-        [(ground, found[0]), (object, found[1])]
-            .map(|(disagrees, found)| 1.0 - heard(found) * disagrees / (object + ground + 1.0))
+        let ([annotated], [found]) = (annotated, found);
+        let all = annotated[Side::Object] + annotated[Side::Ground];
+        Side::BOTH.map(|side| {
+            let weight = (model().outweighed * all / found[side].max(1e-6)).min(1.0);
+            1.0 - weight * annotated[side.other()] / (all + 1.0)
+        })
     }
 
     /// [`trust`](Self::trust) of the colour of every pixel.
@@ -281,7 +282,7 @@ impl AppearanceModel {
             for k in 0..count {
                 let (before, after) = (line[k.saturating_sub(1)], line[(k + 1).min(count - 1)]);
                 // [1 2 1]/4.
-                plane[first + k * step] = [0, 1].map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
+                plane[first + k * step] = Side::BOTH.map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
             }
         };
         (0..rows).for_each(|row| along(row * columns, 1, columns));
@@ -314,8 +315,8 @@ mod tests {
     }
 
     fn appearance_of(features: &FrameFeatures, source: Source) -> AppearanceModel {
-        let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
-        let mut appearance = AppearanceModel::of(&features.plane(&|p| side(p) == 0));
+        let side = |p: usize| Some(Side::object_if(is_object(p % SIZE[0], p / SIZE[0])));
+        let mut appearance = AppearanceModel::of(&features.plane(&|p| side(p) == Some(Side::Object)));
         appearance.learn(features, CENTRE, source, 1.0, &side);
         appearance
     }
@@ -347,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn annotations_silence_what_was_found() {
+    fn annotations_outweigh_what_was_found() {
         let features = features(RED);
         let mut appearance = appearance_of(&features, Source::Found);
         let red = features.colours[48 * SIZE[0] + 32];
@@ -355,11 +356,11 @@ mod tests {
         assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9);
         // Half of the object is annotated as ground, so what was found in the other half is not trusted either.
         appearance.learn(&features, CENTRE, Source::Annotated, 1.0, &|p| {
-            if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
+            (is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48).then_some(Side::Ground)
         });
-        let [object, ground] = appearance.trust(red);
-        assert!(object < 0.05 && ground == 1.0, "{object}, {ground}");
-        let silenced = at(&appearance, &features, [32, 54], CENTRE);
-        assert!(silenced < 0.5, "{silenced}");
+        let trust = appearance.trust(red);
+        assert!(trust[Side::Object] < 0.05 && trust[Side::Ground] == 1.0, "{trust:?}");
+        let outweighed = at(&appearance, &features, [32, 54], CENTRE);
+        assert!(outweighed < 0.5, "{outweighed}");
     }
 }

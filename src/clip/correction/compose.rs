@@ -193,7 +193,7 @@ impl Composition<'_> {
         for (object, _) in self.proposals {
             let painted = rules.annotation.painted_of(*object).unwrap_or_default();
             for (label, _) in
-                draft.labels.iter_mut().zip(painted).filter(|(label, said)| *said == 0 && **label == *object)
+                draft.labels.iter_mut().zip(painted).filter(|(label, painted)| *painted == 0 && **label == *object)
             {
                 *label = UNLABELLED;
             }

@@ -37,7 +37,7 @@ pub(super) struct FrameFeatures {
     /// L, a and b at a quarter of the size.
     pub(super) coarse: [Plane; 3],
     /// Edge weights for a smoothness of 1.
-    pub(super) borders: EdgeWeights,
+    pub(super) edge_weights: EdgeWeights,
 }
 
 impl FrameFeatures {
@@ -51,8 +51,8 @@ impl FrameFeatures {
         let colours =
             (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = EdgeWeights::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
-        FrameFeatures { size, scaling, colours, fine, coarse, borders }
+        let edge_weights = EdgeWeights::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
+        FrameFeatures { size, scaling, colours, fine, coarse, edge_weights }
     }
 }
 

@@ -7,8 +7,8 @@ use super::propagator::{Observation, Prediction};
 use super::proposal::{Proposal, log_odds_at};
 use super::track::Track;
 use crate::clip::annotation::{Direction, Seed, Spread};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::order::sort_few;
 
@@ -150,13 +150,13 @@ mod tests {
     }
 
     /// The seeds of an object in a label map.
-    fn of_object(said: &[u8], number: u8) -> Vec<Seed> {
+    fn of_object(labels: &[u8], number: u8) -> Vec<Seed> {
         let of = |&label: &u8| match label {
             UNLABELLED => Seed::Nothing,
             label if label == number => Seed::Object,
             _ => Seed::Other,
         };
-        said.iter().map(of).collect()
+        labels.iter().map(of).collect()
     }
 
     #[test]
@@ -167,17 +167,17 @@ mod tests {
             false => [110, 120, 115],
         });
         let inside = |p: usize| (20..44).contains(&(p / SIZE[0]));
-        let said = |p: usize| match p % SIZE[0] {
+        let label = |p: usize| match p % SIZE[0] {
             20..44 if inside(p) => 1,
             44..68 if inside(p) => 2,
             _ => 0,
         };
-        let said: Vec<u8> = (0..features.pixels()).map(said).collect();
+        let labels: Vec<u8> = (0..features.pixels()).map(label).collect();
         let tracks = [1, 2].map(|number| Track::new(number, vec![anchor(0)], 3)).to_vec();
         let mut group = Group { tracks, changing: vec![1, 2] };
         let found = vec![0; features.pixels()];
         for t in 0..3 {
-            let seeds = |number: u8| (t == 0).then(|| (of_object(&said, number), Spread::Both));
+            let seeds = |number: u8| (t == 0).then(|| (of_object(&labels, number), Spread::Both));
             let scene = Scene { features: &features, seeds: &seeds, seen: &|_| None, found: &found, flows: None };
             let proposals = group.visit(t, Direction::Forward, false, &scene);
             let mut owners = vec![0; features.pixels()];
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_later_counts_before_it() {
+    fn later_annotations_count_in_earlier_frames() {
         // Both parts were found as one object. This frame has a stroke on the left part, a later frame has a stroke that excludes the right
         // part.
         let place = |x: usize, y: usize| match (20..44).contains(&y) {
@@ -216,10 +216,10 @@ mod tests {
             (0..features.pixels()).map(|p| if is_in(&p) { label } else { UNLABELLED }).collect()
         };
         let (here, later) = (stroke(1, 1), stroke(2, 0));
-        let shares = [false, true].map(|hears| {
+        let shares = [false, true].map(|learns| {
             let mut track = Track::new(1, vec![anchor(0), anchor(3)], 4);
-            for said in [&here, &later].into_iter().filter(|_| hears) {
-                track.learn_seeds(&features, &of_object(said, 1), &found);
+            for labels in [&here, &later].into_iter().filter(|_| learns) {
+                track.learn_seeds(&features, &of_object(labels, 1), &found);
             }
             let mut group = Group { tracks: vec![track], changing: vec![1] };
             let seeds = |number: u8| Some((of_object(&here, number), Spread::Both));
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn one_comes_out_behind_its_like() {
+    fn an_object_reappears_from_behind_a_like_one() {
         // Both have the same texture. The first passes behind the second, which rests, and is completely hidden for a while.
         let mut random = Random::from_seed(7);
         let patches: Vec<[u8; 3]> =

@@ -20,12 +20,12 @@ use std::ops::Range;
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
-use super::label_evidence::LabelEvidence;
+use super::label_ratios::LabelRatios;
 use super::proposal::{CERTAIN, cut, logit};
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Click, Prompt};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::segmented_clip::SegmentedClip;
 use crate::components::{Connectivity, components};
 use crate::frame::Frame;
@@ -33,6 +33,7 @@ use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::labelling::upsampling::upsample;
 use crate::model::Model;
+use crate::side::Side;
 
 /// A frame, and what is known for a prompt in it.
 struct View<'a> {
@@ -40,7 +41,7 @@ struct View<'a> {
     /// Labels found automatically, and the motion labels to the next frame and to the previous one.
     found: Vec<Vec<u8>>,
     /// The side that the clicks so far give to a pixel, if any.
-    sure: Vec<u8>,
+    sure: Vec<Option<Side>>,
     /// The area in which the object may be.
     limit: Area,
     /// The mask after the clicks so far: 1 inside.
@@ -56,7 +57,7 @@ struct Beginning {
     /// Log-odds of the object at every pixel, nats.
     log_odds: Vec<f32>,
     /// The side of every pixel; `None` where it is open.
-    sides: Vec<u8>,
+    sides: Vec<Option<Side>>,
 }
 
 /// The full-size outline of a prompt's object: its number inside, 0 outside, 255 where another annotated object keeps its pixels. `shown`
@@ -85,7 +86,8 @@ pub(super) fn outline(
         rows: scaled(y..y + rows, features.size[1]),
     });
     let nothing = vec![0; features.pixels()];
-    let mut view = View { features, found, sure: vec![2; features.pixels()], limit, mask: nothing, others: Vec::new() };
+    let mut view =
+        View { features, found, sure: vec![None; features.pixels()], limit, mask: nothing, others: Vec::new() };
     let clicks: Vec<(usize, bool)> =
         prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
     if prompt.within.is_some() {
@@ -96,7 +98,7 @@ pub(super) fn outline(
         let centre = view.place(click);
         for p in 0..features.pixels() {
             if view.square(p, centre, [model().click; 2]) < 1.0 {
-                view.sure[p] = u8::from(!inside);
+                view.sure[p] = Some(Side::object_if(*inside));
             }
         }
         view.refine(click, *inside);
@@ -198,7 +200,7 @@ impl View<'_> {
         let parts = components(&self.mask, self.features.size[0], Connectivity::Four);
         let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max()?;
         let own = parts.of[click];
-        let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == 0);
+        let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == Some(Side::Object));
         let is_separate = !is_sure && parts.list[own as usize].size < largest;
         is_separate.then(|| parts.of.iter().map(|&part| u8::from(part == own)).collect())
     }
@@ -219,10 +221,10 @@ impl View<'_> {
             let prior = soft.values().iter().map(|share| model().beginning * (2.0 * share - 1.0));
             let sign = if inside { 1.0 } else { -1.0 };
             let log_odds = prior.zip(&from.log_odds).map(|(prior, part)| sign * (sign * prior).max(*part)).collect();
-            let side = |(&mask, &part): (&u8, &u8)| match part {
-                0 => u8::from(!inside),
-                2 if (mask > 0) != inside => 2,
-                _ => 1 - mask,
+            let side = |(&mask, &part): (&u8, &Option<Side>)| match part {
+                Some(Side::Object) => Some(Side::object_if(inside)),
+                None if (mask > 0) != inside => None,
+                _ => Some(Side::object_if(mask > 0)),
             };
             let sides = mask.iter().zip(&from.sides).map(side).collect();
             self.fitted(Beginning { area, log_odds, sides }, &seen)
@@ -233,8 +235,8 @@ impl View<'_> {
     /// The connected part around a click where another mask is as the click demands, this mask is not, and no other click demands
     /// otherwise.
     fn change(&self, other: &[u8], click: usize, inside: bool) -> Vec<u8> {
-        let own = u8::from(inside);
-        self.connected(click, &|p| other[p] == own && self.mask[p] != own && self.sure[p] != own)
+        let (own, otherwise) = (u8::from(inside), Some(Side::object_if(!inside)));
+        self.connected(click, &|p| other[p] == own && self.mask[p] != own && self.sure[p] != otherwise)
     }
 
     /// The connected component at a click of the pixels for which `is_in` holds.
@@ -249,9 +251,9 @@ impl View<'_> {
     fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
         let object = 1.0 - model().rim;
         let squares: Vec<f32> = (0..self.features.pixels()).map(|p| self.square(p, centre, radii)).collect();
-        let mut sides = vec![1; squares.len()];
+        let mut sides = vec![Some(Side::Ground); squares.len()];
         for p in area.pixels(self.features.size[0]).filter(|&p| squares[p] < ground * ground) {
-            sides[p] = if squares[p] < object * object { 0 } else { 2 };
+            sides[p] = (squares[p] < object * object).then_some(Side::Object);
         }
         Beginning { area, sides, log_odds: squares.iter().map(|square| model().beginning * (even - square)).collect() }
     }
@@ -269,7 +271,7 @@ impl View<'_> {
         let [left, top, right, bottom] = part.bounds;
         Some(Beginning {
             area: Area { columns: left..right + 1, rows: top..bottom + 1 },
-            sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
+            sides: (0..labels.len()).map(|p| Some(Side::object_if(inside(p)))).collect(),
             log_odds: gaussian(&self.features.plane(&inside), model().border)
                 .values()
                 .iter()
@@ -282,25 +284,29 @@ impl View<'_> {
     fn fitted(&self, from: Beginning, seen: &Area) -> Vec<u8> {
         let (features, width) = (self.features, self.features.size[0]);
         let Beginning { area, log_odds: prior, mut sides } = from;
-        sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
+        sides
+            .iter_mut()
+            .zip(&self.sure)
+            .filter(|(_, sure)| **sure == Some(Side::Ground))
+            .for_each(|(side, sure)| *side = *sure);
         for _ in 0..model().prompt_rounds {
-            let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
+            let count = |side: Side| seen.pixels(width).filter(|&p| sides[p] == Some(side)).count() as f32;
             // Ground pixels weigh less the more of them there are.
-            let weight = (count(0) / count(1).max(1.0)).sqrt();
+            let weight = (count(Side::Object) / count(Side::Ground).max(1.0)).sqrt();
             let mut appearance = AppearanceModel::new(&Area::whole(0, 0), f32::INFINITY);
-            for (side, weight) in [(0, 1.0), (1, weight)] {
-                let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
+            for (side, weight) in [(Side::Object, 1.0), (Side::Ground, weight)] {
+                let of = |p: usize| sides[p].filter(|own| *own == side);
                 appearance.learn_within(features, seen, [0.0; 2], Source::Recent, weight, &of);
             }
             let remembered = appearance.read(features, &area, [0.0; 2]);
-            let evidence: Vec<LabelEvidence> =
-                self.found.iter().map(|found| LabelEvidence::of(found, &sides, seen, width)).collect();
+            let ratios: Vec<LabelRatios> =
+                self.found.iter().map(|found| LabelRatios::of(found, &sides, seen, width)).collect();
             let log_odds = |(p, remembered): (usize, f32)| {
-                let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
+                let found: f32 = self.found.iter().zip(&ratios).map(|(found, of)| of.ratio(found[p])).sum();
                 match self.sure[p] {
-                    0 => CERTAIN,
-                    1 => -CERTAIN,
-                    _ => prior[p] + logit(remembered) + found,
+                    Some(Side::Object) => CERTAIN,
+                    Some(Side::Ground) => -CERTAIN,
+                    None => prior[p] + logit(remembered) + found,
                 }
             };
             let log_odds: Vec<f32> = area.pixels(width).zip(remembered).map(log_odds).collect();
@@ -308,10 +314,10 @@ impl View<'_> {
             if !mask.contains(&1) {
                 break;
             }
-            sides.fill(1);
-            area.pixels(width).zip(mask).for_each(|(p, inside)| sides[p] = 1 - inside);
+            sides.fill(Some(Side::Ground));
+            area.pixels(width).zip(mask).for_each(|(p, inside)| sides[p] = Some(Side::object_if(inside > 0)));
         }
-        sides.iter().map(|&side| u8::from(side == 0)).collect()
+        sides.iter().map(|&side| u8::from(side == Some(Side::Object))).collect()
     }
 
     /// An area grown by a margin, within a limit.

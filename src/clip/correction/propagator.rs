@@ -9,19 +9,20 @@
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
-use super::label_evidence::LabelEvidence;
-use super::placement::{Placement, Whole};
+use super::label_ratios::LabelRatios;
+use super::placement::{OcclusionState, Placement};
 use super::prompt::overlap;
 use super::proposal::{Proposal, Signs, centre_of, logit};
 use super::strokes;
 use super::trace::Trace;
 use crate::clip::annotation::Seed;
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::Footprint;
+use crate::side::Side;
 
 /// A frame, with all that is known about one object in it.
 #[derive(Clone, Copy)]
@@ -61,20 +62,20 @@ struct Reached {
     /// 1 inside the object.
     mask: Plane,
     centre: [f32; 2],
-    whole: Whole,
+    occlusion: OcclusionState,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Propagator {
     reached: Option<Reached>,
     appearance: Option<AppearanceModel>,
-    label_evidence: LabelEvidence,
+    label_ratios: LabelRatios,
     /// Leads back to the last frame passed whose whole mask a person has given.
     trace: Option<Trace>,
     /// 1 where annotations have changed the object in the last frame reached; `None` if they are about all of it.
     change: Option<Plane>,
     /// Whether it has learned the annotations that spread to all frames.
-    knows_annotations: bool,
+    learned_annotations: bool,
 }
 
 impl Observation<'_> {
@@ -95,7 +96,7 @@ impl Propagator {
 
     /// The propagator for the opposite direction: it keeps what it learned from annotations, and forgets the frames passed.
     pub(super) fn turned(&self, features: &FrameFeatures, found: &[u8]) -> Propagator {
-        let (mut appearance, mut label_evidence) = (self.appearance.clone(), LabelEvidence::default());
+        let (mut appearance, mut label_ratios) = (self.appearance.clone(), LabelRatios::default());
         if let (Some(appearance), Some(reached)) = (&mut appearance, &self.reached) {
             appearance.forget_recent();
             appearance.learn(
@@ -105,16 +106,17 @@ impl Propagator {
                 1.0 - model().memory_decay,
                 &side(&reached.mask),
             );
-            label_evidence.learn(found, &reached.mask, true);
+            label_ratios.learn(found, &reached.mask, true);
         }
-        let reached = self.reached.as_ref().map(|reached| Reached { whole: reached.whole.turned(), ..reached.clone() });
+        let reached =
+            self.reached.as_ref().map(|reached| Reached { occlusion: reached.occlusion.turned(), ..reached.clone() });
         Propagator {
             reached,
             appearance,
-            label_evidence,
+            label_ratios,
             trace: self.trace.clone(),
             change: self.change.clone(),
-            knows_annotations: self.knows_annotations,
+            learned_annotations: self.learned_annotations,
         }
     }
 
@@ -138,12 +140,12 @@ impl Propagator {
         let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
         let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
         appearance.learn_seeds(features, centre, Some(seeds));
-        self.knows_annotations = true;
+        self.learned_annotations = true;
     }
 
     /// Whether it has learned the annotation of a frame already.
-    fn knows(&self, of: &Observation<'_>) -> bool {
-        self.knows_annotations && of.spreads_to_all
+    fn has_learned(&self, of: &Observation<'_>) -> bool {
+        self.learned_annotations && of.spreads_to_all
     }
 
     /// Begins at an anchor of an object.
@@ -159,9 +161,9 @@ impl Propagator {
         let shown = shown(features, of.seeds, of.found, object);
         let partly = of.seeds.is_none_or(|seeds| seeds.contains(&Seed::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
-        let knows = self.knows(of);
+        let has_learned = self.has_learned(of);
         let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
-        if !knows {
+        if !has_learned {
             appearance.learn_seeds(features, centre, of.seeds);
         }
         let area = features.area();
@@ -169,30 +171,30 @@ impl Propagator {
             if !is_found {
                 // Most pixels without a seed are ground.
                 let has_seed = |p: usize| of.seeds.is_some_and(|seeds| seeds[p] != Seed::Nothing);
-                let ground = |p: usize| if has_seed(p) { 2 } else { 1 };
+                let ground = |p: usize| (!has_seed(p)).then_some(Side::Ground);
                 appearance.learn(features, centre, Source::Recent, model().unannotated, &ground);
             }
             let remembered = appearance.read(features, &area, centre);
             for ((log_odds, remembered), trust) in log_odds.iter_mut().zip(remembered).zip(appearance.trusts(features))
             {
                 *log_odds =
-                    trust[usize::from(*log_odds < 0.0)] * *log_odds + model().bias + model().memory * logit(remembered);
+                    trust[Side::favoured_by(*log_odds)] * *log_odds + model().bias + model().memory * logit(remembered);
             }
         }
         log_odds.iter_mut().enumerate().for_each(|(p, log_odds)| *log_odds += of.log_odds_seen(p));
         let proposal = Proposal::solved(features, area, log_odds, of.seeds);
         let mask = proposal.plane(features);
         let centre = centre_of(&mask).unwrap_or(centre);
-        let whole = Whole::new(&mask, features, centre, !partly);
+        let occlusion = OcclusionState::new(&mask, features, centre, !partly);
         self.trace = of.is_whole.then(|| Trace::new(&mask, features));
         self.change = Self::changed(of, object, &proposal.inside(features), &Signs::default());
-        self.reach(of, Reached { mask, centre, whole }, [partly, true]);
+        self.reach(of, Reached { mask, centre, occlusion }, [partly, true]);
         proposal
     }
 
     /// The visible share of the object in the last frame reached, 0…1.
     pub(super) fn share(&self) -> f32 {
-        self.reached.as_ref().map_or(0.0, |reached| reached.whole.share)
+        self.reached.as_ref().map_or(0.0, |reached| reached.occlusion.visible_share)
     }
 
     /// Where the object is in the next frame; `covered` marks the pixels of objects in front.
@@ -200,13 +202,13 @@ impl Propagator {
         let reached = self.reached.as_ref()?;
         let still = LayeredMotion::still(of.features.size);
         let [_, from] = of.flows.unwrap_or([&still, &still]);
-        reached.whole.place(of.features, from, covered)
+        reached.occlusion.place(of.features, from, covered)
     }
 
     /// Marks the pixels where the object is expected.
     pub(super) fn cover(&self, placement: &Placement, covered: &mut [bool]) {
         if let Some(reached) = &self.reached {
-            reached.whole.template.cover(placement.shift, covered);
+            reached.occlusion.template.cover(placement.shift, covered);
         }
     }
 
@@ -217,7 +219,7 @@ impl Propagator {
         let still = LayeredMotion::still(features.size);
         let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&reached.mask, model().blur);
-        let all = gaussian(&reached.whole.template.mask, model().blur);
+        let all = gaussian(&reached.occlusion.template.mask, model().blur);
         let along = |of: &Plane, p: usize| {
             let [u, v] = to.at(p % width, p / width);
             let [x, y] = [(p % width) as f32 + u as f32, (p / width) as f32 + v as f32];
@@ -249,9 +251,12 @@ impl Propagator {
         let carried = features.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
         let central =
             features.plane_of(&|p| if carried.values()[p] > model().central { carried.values()[p] } else { 0.0 });
-        let centre =
-            reached.whole.expected_centre(placement.as_ref()).or_else(|| centre_of(&central)).unwrap_or(reached.centre);
-        let learns = of.is_anchor && of.spreads && !self.knows(of);
+        let centre = reached
+            .occlusion
+            .expected_centre(placement.as_ref())
+            .or_else(|| centre_of(&central))
+            .unwrap_or(reached.centre);
+        let learns = of.is_anchor && of.spreads && !self.has_learned(of);
         if let Some(appearance) = self.appearance.as_mut().filter(|_| learns) {
             appearance.learn_seeds(features, centre, of.seeds);
         }
@@ -260,13 +265,13 @@ impl Propagator {
         let log_odds = area.pixels(width).enumerate().map(|(k, p)| {
             let traced = traced.as_ref().map_or(0.0, |of| of[k]);
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
-            let evidence = self.label_evidence.ratio(of.found[p]);
+            let ratio = self.label_ratios.ratio(of.found[p]);
             let z = of.log_odds_seen(p)
                 + model().bias
                 + weight * logit(carried.values()[p])
                 + model().memory * memory
                 + model().trace * traced
-                + evidence;
+                + ratio;
             // A pixel that did not belong to the hidden object and does not look like it at that position is not its own, whatever its
             // colour.
             let most = if hidden.is_some() && carried.values()[p] < model().expected {
@@ -325,9 +330,9 @@ impl Propagator {
         self.change = Self::changed(of, object, &now, &signs);
         if let Some(reached) = self.reached.take() {
             let seen = centre_of(&mask).unwrap_or(centre);
-            let whole = reached.whole.gone_on(&mask, features, seen, placement.as_ref());
-            let centre = if whole.now { seen } else { centre };
-            self.reach(of, Reached { mask, centre, whole }, [true, false]);
+            let occlusion = reached.occlusion.advanced(&mask, features, seen, placement.as_ref());
+            let centre = if occlusion.fully_visible { seen } else { centre };
+            self.reach(of, Reached { mask, centre, occlusion }, [true, false]);
         }
         proposal.signs = signs;
         proposal
@@ -373,14 +378,14 @@ impl Propagator {
     /// Continues from a frame. The appearance is learned from its mask if it `knows_little` of it.
     fn reach(&mut self, of: &Observation<'_>, reached: Reached, [knows_little, begins]: [bool; 2]) {
         // From a partly hidden object it would learn the object in front.
-        if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.whole.now) {
+        if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.occlusion.fully_visible) {
             appearance.fade(model().memory_decay);
             if knows_little {
                 let weight = 1.0 - model().memory_decay;
                 appearance.learn(of.features, reached.centre, Source::Recent, weight, &side(&reached.mask));
             }
         }
-        self.label_evidence.learn(of.found, &reached.mask, begins);
+        self.label_ratios.learn(of.found, &reached.mask, begins);
         self.reached = Some(reached);
     }
 }
@@ -393,7 +398,7 @@ fn shown(features: &FrameFeatures, seeds: Option<&[Seed]>, found: &[u8], object:
     })
 }
 
-/// 0 for the pixels of a mask, 1 for the others.
-fn side(mask: &Plane) -> impl Fn(usize) -> usize {
-    |p| usize::from(mask.values()[p] < 0.5)
+/// The side of each pixel by a mask.
+fn side(mask: &Plane) -> impl Fn(usize) -> Option<Side> {
+    |p| Some(Side::object_if(mask.values()[p] >= 0.5))
 }

@@ -106,9 +106,9 @@ pub(super) fn log_odds_at(area: &Area, log_odds: &[f32], p: usize, width: usize)
 /// The mask of least energy: 1 inside.
 pub(super) fn cut(features: &FrameFeatures, area: &Area, log_odds: &[f32]) -> Vec<u8> {
     let (width, height) = (area.width(), area.height());
-    let borders = features.borders.cropped(area, model().smoothness);
+    let edge_weights = features.edge_weights.cropped(area, model().smoothness);
     let object = Plane::from_vec(width, height, log_odds.iter().map(|&z| -z).collect());
-    borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
+    edge_weights.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
 }
 
 /// Centre of a mask, weighted by its values: column and row; `None` if it is empty.

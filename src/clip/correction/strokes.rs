@@ -138,16 +138,16 @@ pub(super) fn absorb_rims(
 fn smooth(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize) {
     let parts = components(mask, width, Connectivity::Four);
     let mut is_new = vec![false; parts.list.len()];
-    let mut is_said = vec![false; parts.list.len()];
+    let mut is_annotated = vec![false; parts.list.len()];
     for p in 0..mask.len() {
         let part = parts.of[p] as usize;
         let around = [p, p.wrapping_sub(1), p + 1, p.wrapping_sub(width), p + width];
         is_new[part] |= around.into_iter().any(|q| q < mask.len() && mask[q] != before[q]);
-        is_said[part] |= seeds[p] != Seed::Nothing && (seeds[p] == Seed::Object) == (mask[p] > 0);
+        is_annotated[part] |= seeds[p] != Seed::Nothing && (seeds[p] == Seed::Object) == (mask[p] > 0);
     }
     for (p, inside) in mask.iter_mut().enumerate() {
         let part = parts.of[p] as usize;
-        if parts.list[part].size < model().speck && is_new[part] && !is_said[part] {
+        if parts.list[part].size < model().speck && is_new[part] && !is_annotated[part] {
             *inside = 1 - *inside;
         }
     }

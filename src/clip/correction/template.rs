@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_out_behind_its_like_is_found() {
+    fn a_patch_that_reappears_from_behind_a_like_one_is_found() {
         // The patch in front is 10 columns to the left, so 10 columns of the other are visible.
         let here = features(&[[60, 40], [50, 40]]);
         let mut covered = vec![false; here.pixels()];

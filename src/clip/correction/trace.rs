@@ -7,8 +7,8 @@
 use super::features::FrameFeatures;
 use super::proposal::logit;
 use super::template::{at, difference};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
@@ -172,8 +172,8 @@ mod tests {
             let mut in_shadow = 0;
             for t in 0..=20 {
                 let (here, to, from) = (features(t), flow(t, -2.0), flow(t.saturating_sub(1), 2.0));
-                let said = |p: usize| if is_at(&CAR, 0, p % SIZE[0], p / SIZE[0]) { Seed::Object } else { Seed::Other };
-                let seeds = |_: u8| (t == 0).then(|| ((0..here.pixels()).map(said).collect(), Spread::Both));
+                let seed = |p: usize| if is_at(&CAR, 0, p % SIZE[0], p / SIZE[0]) { Seed::Object } else { Seed::Other };
+                let seeds = |_: u8| (t == 0).then(|| ((0..here.pixels()).map(seed).collect(), Spread::Both));
                 let flows = (t > 0).then_some([&to, &from]);
                 // The car and its shadow were found as one object.
                 let scene = Scene { features: &here, seeds: &seeds, seen: &|_| None, found: &to.labels, flows };

@@ -1,8 +1,8 @@
 //! An object as it was last seen, and where it is expected.
 
 use super::sight::{Sight, mean_motion, moves};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::record::Record;
 use crate::labelling::BACKGROUND;
 

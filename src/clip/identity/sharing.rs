@@ -1,6 +1,6 @@
 //! A region of the foreground, shared among several objects.
 
-use super::sight::telling;
+use super::sight::shown_motion;
 use crate::clip::options::model;
 use crate::clip::record::Record;
 use crate::frame::Plane;
@@ -11,7 +11,7 @@ use crate::labelling::solver::Solver;
 /// therefore free to change.
 pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: &[u8], labels: &mut [u8]) {
     let [width, height] = record.size();
-    let motions = telling(record).map(|flow| &flow.labels);
+    let motions = shown_motion(record).map(|flow| &flow.labels);
     let motion = |p: usize| motions.map_or(0, |labels| usize::from(labels[p]));
     let own = |p: usize| numbers.iter().position(|&number| number == carried[p]);
     let mut votes = vec![vec![0usize; numbers.len()]; 256];
@@ -32,6 +32,6 @@ pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: 
             cost.values_mut()[p] = other + model().leaves_motion * (1.0 - votes[k] as f32 / all);
         }
     }
-    let solved = record.borders(model().smoothness).solve(&costs, Solver::FAST);
+    let solved = record.edge_weights(model().smoothness).solve(&costs, Solver::FAST);
     pixels.iter().for_each(|&p| labels[p] = numbers[usize::from(solved[p])]);
 }

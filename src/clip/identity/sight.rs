@@ -1,6 +1,6 @@
 //! Size, position, motion and colours of a set of pixels.
 
-use crate::clip::evidence::LayeredMotion;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::record::Record;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
@@ -38,7 +38,7 @@ impl Sight {
 
 /// The motion that shows how the pixels of a frame move: that to the next frame or, at the end of a scene or if the next frame repeats this
 /// one, that to the previous frame.
-pub(crate) fn telling(record: &Record) -> Option<&LayeredMotion> {
+pub(crate) fn shown_motion(record: &Record) -> Option<&LayeredMotion> {
     record.onward.as_ref().filter(|onward| !onward.is_still()).or(record.back.as_ref()).or(record.onward.as_ref())
 }
 
@@ -54,7 +54,7 @@ pub(crate) fn mean_motion(along: &LayeredMotion, pixels: &[usize]) -> [f64; 2] {
 
 /// Mean displacement of some pixels from this frame to the next one, as far as it is known.
 fn velocity(record: &Record, pixels: &[usize]) -> [f64; 2] {
-    match (telling(record), &record.onward) {
+    match (shown_motion(record), &record.onward) {
         (Some(along), Some(onward)) if std::ptr::eq(along, onward) => mean_motion(along, pixels),
         (Some(back), _) => mean_motion(back, pixels).map(|v| -v),
         (None, _) => [0.0; 2],
@@ -63,6 +63,6 @@ fn velocity(record: &Record, pixels: &[usize]) -> [f64; 2] {
 
 /// Whether most of some pixels move differently from the background.
 pub(crate) fn moves(record: &Record, pixels: &[usize]) -> bool {
-    telling(record)
+    shown_motion(record)
         .is_some_and(|flow| 2 * pixels.iter().filter(|&&p| !is_background(flow.labels[p])).count() > pixels.len())
 }

@@ -77,8 +77,8 @@ pub(crate) fn unexplained(
                 }
                 let r = seen - level.first.at(x, y);
                 let e = r * r / (level.noise * level.noise + position_variance * level.energy.at(x, y));
-                if e > model.robustness {
-                    let weight = e / (e + model.robustness);
+                if e > model.truncation {
+                    let weight = e / (e + model.truncation);
                     places.push(y * width + x);
                     weights.push(weight);
                 }

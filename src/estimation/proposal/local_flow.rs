@@ -77,10 +77,10 @@ struct Windows {
 
 fn windows(level: &PairLevel, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
-    let (robustness, position) = (1.0 / level.model.robustness_loose, level.model.position_variance());
+    let (per_truncation, position) = (1.0 / level.model.truncation_loose, level.model.position_variance());
     let mut weight = s.residual.clone();
     each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
-        1.0 / (noise + r * r * robustness + position * energy)
+        1.0 / (noise + r * r * per_truncation + position * energy)
     });
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();

@@ -17,7 +17,7 @@ use crate::view::level::PairLevel;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GreedySelection {
     /// Gain that a motion must exceed, cost summed over pixels.
-    pub(crate) price: f64,
+    pub(crate) penalty: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
     /// Proposals refined per round.
@@ -121,7 +121,7 @@ pub(crate) fn add_motions(
             return next;
         }
         for &k in order.iter().take(how.tries) {
-            if gains[k] < model.smallest_tried_gain * how.price {
+            if gains[k] < model.smallest_tried_gain * how.penalty {
                 break;
             }
             if best.as_ref().is_some_and(|(gain, _)| most[k] <= *gain) {
@@ -139,7 +139,7 @@ pub(crate) fn add_motions(
             }
         }
         match best.map(|(_, scored)| refined(level, &current, scored.motion, how)) {
-            Some((gain, scored)) if gain >= how.price => selected.push(scored),
+            Some((gain, scored)) if gain >= how.penalty => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
     }
@@ -193,7 +193,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32)
 }
 
 /// Removes motions whose absence costs less than their penalty, the cheapest first. The first motion always stays.
-pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
+pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, penalty: f64) {
     while selected.len() > 1 {
         let with_all = smallest_cost(selected).total();
         let mut cheapest = (f64::INFINITY, 0);
@@ -205,7 +205,7 @@ pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
                 cheapest = (absence, k);
             }
         }
-        if cheapest.0 >= price {
+        if cheapest.0 >= penalty {
             break;
         }
         selected.remove(cheapest.1);

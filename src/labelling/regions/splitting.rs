@@ -106,9 +106,9 @@ fn two_bodies(
     }
     gain *= f64::from(weight_of_pixel(level));
     let of_second = second.iter().filter(|s| **s).count();
-    let price = second_motion_penalty([region.len() - of_second, of_second])
+    let penalty = second_motion_penalty([region.len() - of_second, of_second])
         + border_penalty(inner_border(region, &second, width, height), model);
-    (gain > price).then_some((pair, second))
+    (gain > penalty).then_some((pair, second))
 }
 
 /// Which pixels of a region are not connected with most of it; `None` if all of them are.

@@ -82,14 +82,14 @@ fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], options: Labell
 
 /// Adds the penalty of an object's pixels on the frame's border, for each of the borders that they lie on.
 fn add_frame_border_penalty(cost: &mut Plane, options: LabellingOptions) {
-    let price = 0.5 * options.smoothness;
+    let penalty = 0.5 * options.smoothness;
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
-        cost.row_mut(y).iter_mut().for_each(|c| *c += price);
+        cost.row_mut(y).iter_mut().for_each(|c| *c += penalty);
     }
     for y in 0..height {
         for x in [0, width - 1] {
-            cost.row_mut(y)[x] += price;
+            cost.row_mut(y)[x] += penalty;
         }
     }
 }

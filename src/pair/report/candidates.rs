@@ -12,7 +12,7 @@ use crate::pair::settings::Settings;
 
 /// Description lengths, nats, with the motions found, with fewer (the least useful ones are removed one by one) and with one more. Labels
 /// are solved for each number at the base level, without costs of occlusion and colour.
-pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Candidate> {
+pub(super) fn scored_candidates(labelled: &LabelledPair, settings: &Settings) -> Vec<Candidate> {
     let pair = &labelled.pair;
     let level = &pair.levels[pair.base];
     let width = level.width();

@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn only_objects_are_doubted_and_by_all_evidence() {
+    fn only_objects_are_doubted_and_by_all_features() {
         let [background, object] = doubted(&square(4), &[0, 1], 0.4);
         assert_eq!(background, 0.9);
         assert!(object < doubted(&square(4), &[0, 1], 0.3)[1], "more misfit");
