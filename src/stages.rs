@@ -53,7 +53,7 @@ pub struct Background {
     pub derivatives: Derivatives,
     /// The local flow (u, v) relative to the dominant motion, pixels of the full frame, on `base`.
     pub local_flow: [Plane; 2],
-    /// The measurements of the multibody constraint; none where they are too few.
+    /// The measurements of the multibody constraint; `None` where they are too few.
     pub measured: Option<MeasuredPixels>,
     /// The candidates, in the order in which they were proposed.
     pub candidates: Vec<CandidateMotion>,

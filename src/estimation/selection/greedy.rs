@@ -93,8 +93,8 @@ impl RoughCosts {
     }
 }
 
-/// Adds proposed motions to `selected` as long as each gains more than its penalty. Returns the best motion that was rejected; there is
-/// none if nothing was proposed.
+/// Adds proposed motions to `selected` as long as each gains more than its penalty. Returns the best motion that was rejected;
+/// `None` if nothing was proposed.
 ///
 /// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
 /// all pixels.
