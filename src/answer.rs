@@ -6,7 +6,7 @@ use crate::embedding::rank::RankCandidate;
 use crate::motion::AffineMotion;
 use crate::refinement::Report;
 
-/// The label of a measurement or pixel without one: an outlier, a pixel whose motion is unknown, or one of which an annotation says nothing.
+/// The label of a measurement or pixel without one: an outlier, a pixel whose motion is unknown, or one that is not annotated.
 pub const UNLABELLED: u8 = 255;
 
 /// The result of [`fit_motions`](crate::fit_motions).
@@ -21,7 +21,7 @@ pub struct MotionFit {
     /// One label per measurement, in input order; [`UNLABELLED`] for an outlier.
     #[serde(skip)]
     pub labels: Vec<u8>,
-    /// Evidence for the number of motions.
+    /// What the number of motions was chosen by.
     pub evidence: FitEvidence,
     /// Results of the steps of the paper; only with [`Method::Paper`](crate::Method::Paper).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,7 +47,7 @@ pub struct FittedMotion {
     pub covariance: Option<[[f64; 6]; 6]>,
 }
 
-/// Evidence for the number of motions.
+/// What the number of motions was chosen by.
 #[non_exhaustive]
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]

@@ -1,15 +1,16 @@
-//! Clips: objects that keep their number from their first frame to their last.
+//! Clips: objects keep their numbers from their first frame to their last.
 //!
-//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/pairing.rs`), and where these show no
-//!    object with an earlier one (`clip/farther.rs`). Pauses are no evidence (`clip/held.rs`).
-//! 2. The log-odds of each pixel are carried along the motions, colours learned and the foreground cut, in two rounds (`clip/foreground.rs`).
-//! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
-//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), parts that move together
-//!    are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
+//! 1. Each frame is prepared once and solved in pairs with the next and the previous frame (`clip/pairing.rs`) and, where these show no
+//!    object, with an earlier frame (`clip/farther.rs`). Pauses do not count as background (`clip/held.rs`).
+//! 2. The log-odds of each pixel are carried along the motions, colours are learned, and the foreground is cut, in two rounds
+//!    (`clip/foreground.rs`).
+//! 3. The foreground of each frame is assigned to the objects of the previous frame, or to new ones (`clip/identity.rs`).
+//! 4. In a whole clip, objects that move apart are divided in the earlier frames as well (`clip/parting.rs`), parts that move together are
+//!    joined, and objects of a few frames are dropped (`clip/grouping.rs`).
 //! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
-//! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
-//! [`SegmentedClip`] gives any frame, as often as it is asked, takes corrections and can be saved.
+//! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels at the working size; its [`SegmentedClip`]
+//! returns any frame as often as it is asked, takes corrections and can be saved.
 
 mod annotation;
 mod carry;
@@ -18,7 +19,6 @@ mod colours;
 mod correction;
 mod description;
 mod edits;
-mod evidence;
 mod farther;
 mod foreground;
 mod frame_annotation;
@@ -31,6 +31,7 @@ mod layer;
 mod options;
 mod overlay;
 mod pairing;
+mod pairs;
 mod parting;
 mod record;
 mod runs;

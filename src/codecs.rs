@@ -30,7 +30,7 @@ mod jpeg;
 /// Maximum allocation of a decoder in bytes: three times the largest frame in 16-bit RGBA.
 const MAX_ALLOCATION: usize = 3 * 8 * MAX_SIDE * MAX_SIDE;
 
-/// That for a large picture: the largest one in 8-bit RGBA.
+/// The same for a large picture: the largest one in 8-bit RGBA.
 const LARGE_ALLOCATION: usize = 4 * header::LARGE_SIDE * header::LARGE_SIDE;
 
 /// A decoded image: RGBA bytes, row by row, like `ImageData`. See the [module example](self).
@@ -42,19 +42,19 @@ pub struct Picture {
     pub height: usize,
     /// Width × height × 4 bytes: red, green, blue, alpha.
     pub rgba: Vec<u8>,
-    /// Of a file with samples of 16 bits: the smallest and the largest one, alpha aside.
+    /// For a file with 16-bit samples: the smallest and the largest sample, except alpha.
     pub range: Option<(u16, u16)>,
 }
 
-/// How a file is decoded where the usual way does not fit it.
+/// Options of decoding, for files that the defaults do not suit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Decoding {
-    /// Takes a JPEG file as far as it goes: the missing part of its scan is grey. Otherwise such a file is unreadable.
+    /// Decodes a damaged JPEG file as far as it goes: the missing part of its scan is grey. Without this, such a file is an error.
     pub allow_damaged: bool,
-    /// Of samples of 16 bits: those that become 0 and 255. Otherwise 0 and 65535, of which cameras and scanners may use a small part.
+    /// The 16-bit samples that become 0 and 255. Without this they are 0 and 65535, of which cameras and scanners may use a small part.
     pub range: Option<(u16, u16)>,
-    /// Takes pictures with sides up to 16384 pixels, which have to be scaled down to become frames.
+    /// Allows sides up to 16384 pixels; such pictures must be scaled down to become frames.
     pub large: bool,
 }
 
@@ -95,7 +95,7 @@ pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
     decode_image_with(bytes, &Decoding::default())
 }
 
-/// Decodes an image as [`decode_image`] does, in a stated way.
+/// Decodes an image as [`decode_image`] does, with options.
 ///
 /// ```
 /// use veronese::codecs::{Decoding, decode_image_with};
@@ -140,7 +140,7 @@ pub fn decode_image_with(bytes: &[u8], decoding: &Decoding) -> Result<Picture> {
     Ok(Picture { width: rgba.width() as usize, height: rgba.height() as usize, rgba: rgba.into_raw(), range })
 }
 
-/// The smallest and the largest sample of 16 bits, if that is what they have, alpha aside.
+/// The smallest and the largest 16-bit sample, except alpha; `None` for samples of 8 bits.
 fn range_of(image: &DynamicImage) -> Option<(u16, u16)> {
     fn of<P: Pixel<Subpixel = u16>>(image: &ImageBuffer<P, Vec<u16>>) -> (u16, u16) {
         let colours = usize::from(P::CHANNEL_COUNT) - usize::from(P::HAS_ALPHA);
@@ -156,7 +156,7 @@ fn range_of(image: &DynamicImage) -> Option<(u16, u16)> {
     }
 }
 
-/// Samples of 16 bits as bytes, `low` as 0 and `high` as 255, what is beyond them too. Alpha keeps its range.
+/// Converts 16-bit samples to bytes: `low` and below become 0, `high` and above 255. Alpha keeps its range.
 fn stretch(image: ImageBuffer<Rgba<u16>, Vec<u16>>, (low, high): (u16, u16)) -> RgbaImage {
     let span = u32::from(high.saturating_sub(low)).max(1);
     let byte = |sample: u16, low: u16, span: u32| {

@@ -1,7 +1,7 @@
 //! The error type of the crate: why an input cannot be processed.
 //!
-//! Ambiguous data are not an error but a result with its evidence, and a solver that stops early returns a report. See "Three kinds of
-//! outcome" in ARCHITECTURE.md.
+//! Ambiguous data are not an error but a result with scores, and a solver that stops early returns a report. See "Three kinds of outcome"
+//! in ARCHITECTURE.md.
 
 /// Why an input cannot be processed. Every variant has a stable [`code`](Error::code).
 #[non_exhaustive]
@@ -15,7 +15,7 @@ pub enum Error {
         /// Width and height of the frame that differs.
         second: (usize, usize),
     },
-    /// A frame is smaller or larger than what can be processed.
+    /// A frame is too small or too large to be processed.
     #[error(
         "a frame of {width}×{height} pixels cannot be processed: both sides must be between {min} and {max} pixels"
     )]
@@ -75,13 +75,13 @@ pub enum Error {
         /// Why it is wrong, and which values are valid.
         reason: String,
     },
-    /// A frame of a clip is read again and has other pixels.
+    /// A frame of a clip was read again and had other pixels.
     #[error("frame {index} is not the one that was segmented")]
     OtherFrame {
         /// Index of the frame, from 0.
         index: usize,
     },
-    /// An object that is locked would change.
+    /// An annotation would change a locked object.
     #[error("object {object} is locked: unlock it to change it")]
     ObjectLocked {
         /// Its number.
@@ -90,7 +90,7 @@ pub enum Error {
     /// A file is not an image in a supported format, or is damaged.
     #[error("the image cannot be read: {reason}")]
     UnreadableImage {
-        /// The decoder's own words.
+        /// The decoder's message.
         reason: String,
     },
 }

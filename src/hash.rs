@@ -1,7 +1,7 @@
-//! One hash for all that is recognised later, the same in every build. Not for keys that somebody may choose. XXH64 is as good and takes
-//! five times as much of the module.
+//! A hash for recognising data later, the same in every build. Not for keys that somebody may choose. XXH64 is as good and takes five times
+//! as much code in the module.
 
-/// An odd number without pattern, that of FxHash.
+/// An odd number without a pattern, as in FxHash.
 const MULTIPLIER: u64 = 0x517c_c1b7_2722_0a95;
 
 /// A hash of some bytes: words of 64 bits, multiplied and folded. A change within one word always changes it.

@@ -33,7 +33,7 @@
 //! The stages are: luminance, pyramids and gradients; the dominant motion and the change of brightness; measurements on the pixels that
 //! the dominant motion does not explain; candidate motions from the multibody constraint; greedy selection; refinement of each motion
 //! on the intensities of its pixels, coarse to fine; labels of least energy, corrected for occlusion; masks at full size, groups of
-//! motions, evidence for their number.
+//! motions, scores of their number.
 //!
 //! # Frames, planes and derivatives
 //!
@@ -74,8 +74,8 @@
 //!
 //! # Correcting masks
 //!
-//! A [`clip`] takes corrections: a person says of some pixels of some frames which object is there, and masks change in all frames without
-//! solving a pair again. Two frames are a clip, too. Here a stroke takes the upper half of an object away from it:
+//! A [`clip`] takes corrections: a person annotates which object some pixels of some frames belong to, and masks change in all frames
+//! without solving a pair again. Two frames are a clip, too. Here a stroke takes the upper half of an object away from it:
 //!
 //! ```
 //! use veronese::clip::{Annotations, ClipOptions, ClipSegmenter, Painted, Spread};
@@ -91,7 +91,7 @@
 //! let found = [clip.frame(0, frames[0])?, clip.frame(1, frames[1])?];
 //! let object = &found[0].objects[0];
 //!
-//! let mut labels = vec![255; 160 * 120]; // nothing is said
+//! let mut labels = vec![255; 160 * 120]; // not annotated
 //! let [x, y, width, height] = object.bbox;
 //! for row in y..y + height / 2 {
 //!     labels[160 * row + x..][..width].fill(0); // not the object
@@ -157,6 +157,7 @@ mod points;
 mod progress;
 mod random;
 pub mod refinement;
+mod side;
 #[cfg(feature = "stages")]
 #[doc(hidden)]
 pub mod stages;

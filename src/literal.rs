@@ -1,5 +1,5 @@
-//! The image experiment of the paper to the letter (section 4): derivatives, selection of the pixels with a strong temporal derivative,
-//! Problem 1 on these pixels.
+//! The image experiment of the paper, step by step as written there (section 4): derivatives, selection of the pixels with a strong
+//! temporal derivative, Problem 1 on these pixels.
 //!
 //! It serves for comparison; use [`segment_pair`](crate::segment_pair) for results. One pixel gives one equation for the two components
 //! of its flow, so the labels of single pixels are noisy in textured images. Pixels that are not selected have no label, and the

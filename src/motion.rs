@@ -87,7 +87,7 @@ impl AffineMotion {
         AffineMotion::new([a[0], a[1], a[2] * factor, a[3], a[4], a[5] * factor])
     }
 
-    /// The displacement that undoes the motion: `(I + A)⁻¹ − I`; none if the motion is singular.
+    /// The displacement that undoes the motion: `(I + A)⁻¹ − I`; `None` if the motion is singular.
     #[inline(never)]
     pub(crate) fn inverse(&self) -> Option<AffineMotion> {
         let a = &self.matrix;

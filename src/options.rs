@@ -185,14 +185,13 @@ pub struct SegmentOptions {
     pub motions: MotionCount,
     /// How much work to spend; default [`Quality::Best`].
     pub quality: Quality,
-    /// Label a pixel [`UNLABELLED`](crate::UNLABELLED) if it is hidden or outside in the second frame, has no texture around it, or has
-    /// a label that is more likely wrong than right; default `false`.
+    /// Label a pixel [`UNLABELLED`](crate::UNLABELLED) if it is occluded or outside in the second frame, has no texture around it, or has a
+    /// label that is more likely wrong than right; default `false`.
     pub mark_unknown: bool,
     /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
     /// default `false`.
     pub confidence: bool,
-    /// Take the main subject for the one object, as for a cut-out, and all else for ground: what else moves is not told apart from it;
-    /// default `false`.
+    /// Treat the main subject as the only object, as for a cut-out, and everything else as background, even if it moves; default `false`.
     pub subject: bool,
 }
 

@@ -1,13 +1,13 @@
-//! The image pipeline: from two frames to masks. The path of a pair is that of the files:
+//! The image pipeline: from two frames to masks. A pair passes through the files in this order:
 //!
 //! 1. [`frames`]: two frames at several sizes;
 //! 2. [`dominant`]: the dominant motion, which is that of the background, and the change of brightness;
-//! 3. [`hypotheses`]: the background moves as the dominant motion says, or is at rest, each with the [`motions`] of its objects;
+//! 3. [`hypotheses`]: the background moves with the dominant motion, or is at rest, each with the [`motions`] of its objects;
 //! 4. [`labels`]: the motion of every working pixel;
-//! 5. [`groups`]: motions that are parts of one thing, and [`figure`]: which of them are the ground;
-//! 6. [`report`]: masks at full size, and what is known of them.
+//! 5. [`groups`]: motions that are parts of one thing, and [`figure`]: which of them are objects;
+//! 6. [`report`]: masks at full size, statistics and scores.
 //!
-//! [`frame_motions`] is the path of the pairs of clips, [`settings`] depend on options and size, and an [`observer`] may look on.
+//! [`frame_motions`] solves the pairs of clips, [`settings`] depend on options and size, and an [`observer`] gets intermediate results.
 
 mod dominant;
 pub(crate) mod figure;
@@ -37,10 +37,16 @@ use settings::Settings;
 const STAGES: &[&str] =
     &["frames", "dominant", "measurements", "algebra", "selection", "refinement", "labels", "masks"];
 
-/// Segments two frames: how many things move, how each one moves and which pixels belong to it.
+/// Segments two frames: estimates how many motions there are, each motion, and the pixels that follow it.
+///
+/// Labels are those of the pixels of `first`; they number the motions from 0 by decreasing number of pixels. A motion gives the
+/// displacement (u, v) of the pixel (x, y) to `second`, in pixels of the full-size frame; (0, 0) is the centre of the top-left pixel, x
+/// points right, y down. Motions of one thing share a [`group`](SegmentedMotion::group); group 0 is the background. `progress` is called at
+/// the beginning of every stage.
 ///
 /// # Errors
-/// [`Error::InvalidOption`](crate::Error::InvalidOption), [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch).
+/// [`Error::InvalidOption`](crate::Error::InvalidOption) for a number of motions outside 1 to [`MAX_MOTIONS`](crate::MAX_MOTIONS),
+/// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch) for frames of different sizes.
 pub fn segment_pair(
     first: &Frame,
     second: &Frame,
@@ -65,7 +71,7 @@ pub fn segment_pair_with(
     segment_observed([first, second], options, model, &mut ())
 }
 
-/// [`segment_pair`], of which an observer is told while it goes on.
+/// [`segment_pair`] with other constants and an observer of its stages.
 pub(crate) fn segment_observed(
     [first, second]: [&Frame; 2],
     options: &SegmentOptions,

@@ -35,9 +35,9 @@ pub type Progress<'a> = &'a mut dyn FnMut(Stage);
 pub(crate) struct Stages<'a> {
     names: &'static [&'static str],
     progress: Progress<'a>,
-    /// How often all stages but the last are gone through.
+    /// Number of rounds through all stages but the last.
     rounds: usize,
-    /// Rounds that are over.
+    /// Number of finished rounds.
     over: usize,
 }
 
@@ -46,7 +46,7 @@ impl<'a> Stages<'a> {
         Stages { names, progress, rounds: 1, over: 0 }
     }
 
-    /// Reports that the first stage of a round begins, of `rounds` in which all stages but the last are gone through.
+    /// Begins a round, one of `rounds` through all stages but the last, and reports its first stage.
     pub(crate) fn begin_round(&mut self, round: usize, rounds: usize) {
         (self.over, self.rounds) = (round, rounds);
         self.begin(self.names[0]);

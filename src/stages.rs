@@ -1,4 +1,4 @@
-//! What the stages of a pair find, noted by an observer of the pipeline for the figures of the site.
+//! What the stages of a pair find, recorded by an observer of the pipeline for the figures of the site.
 
 mod recorder;
 
@@ -16,7 +16,7 @@ pub struct PairStages {
     pub hypotheses: Vec<Background>,
     /// The index of the one that describes the frames in fewer nats.
     pub chosen: usize,
-    /// Large frames with quality [`Best`](crate::Quality::Best): the labels carried on at a finer working size.
+    /// Large frames with quality [`Best`](crate::Quality::Best): the labels of the search continued at a finer working size.
     pub detail: Option<Labelling>,
     /// The labels at the final working size, after shadows are given back to the background.
     pub working: Labelling,
@@ -53,19 +53,19 @@ pub struct Background {
     pub derivatives: Derivatives,
     /// The local flow (u, v) relative to the dominant motion, pixels of the full frame, on `base`.
     pub local_flow: [Plane; 2],
-    /// The measurements of the multibody constraint; none where they are too few.
+    /// The measurements of the multibody constraint; `None` where they are too few.
     pub measured: Option<MeasuredPixels>,
     /// The candidates, in the order in which they were proposed.
     pub candidates: Vec<CandidateMotion>,
     /// The gain that a motion needs to be selected.
-    pub price: f64,
+    pub penalty: f64,
     /// The motions after greedy selection; the first is the dominant one.
     pub selected: Vec<SelectedMotion>,
-    /// The selected motion that explains each pixel best, before any pixel asks its neighbours.
+    /// The selected motion that explains each pixel best, without regard to its neighbours.
     pub selection: Labelling,
     /// The motions after refinement on the intensities.
     pub refined: Vec<SelectedMotion>,
-    /// The refined motion that explains each pixel best, before any pixel asks its neighbours.
+    /// The refined motion that explains each pixel best, without regard to its neighbours.
     pub refinement: Labelling,
     /// The labels of the draft level.
     pub draft: Labelling,
@@ -104,7 +104,7 @@ pub struct CandidateMotion {
     pub matrix: AffineMotion,
     /// Where it comes from.
     pub source: CandidateSource,
-    /// How much it would save beside the dominant motion alone before it is refined, in the unit of [`Background::penalty`].
+    /// How much cost it would save in addition to the dominant motion before it is refined, in the unit of [`Background::penalty`].
     pub gain: f64,
     /// Share of the pixels, 0…1, that it explains better than the dominant motion does.
     pub support: f64,

@@ -26,7 +26,7 @@ use kept::{Kept, Step, Summary};
 use source::Source;
 use tracks::Tracks;
 
-/// Begins a clip. Arguments are checked; nothing is segmented before somebody asks for it.
+/// Begins a clip. Arguments are checked; segmentation begins with the first request.
 #[pyfunction]
 #[allow(clippy::too_many_arguments, reason = "they are named in Python")]
 pub(crate) fn segment_clip(
@@ -78,7 +78,7 @@ pub(crate) fn segment_clip(
         _ if whole => None,
         _ => Some(MAX_LOOK_AHEAD),
     };
-    let said = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
+    let annotations = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
     let worker = Worker::<Kept>::start()?;
     worker
         .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
@@ -87,7 +87,7 @@ pub(crate) fn segment_clip(
         source,
         progress,
         mark_unknown,
-        options: Some(Options { said, state }),
+        options: Some(Options { annotations, state }),
         size: None,
         place: if whole {
             Place::Unsegmented
@@ -102,18 +102,18 @@ pub(crate) fn segment_clip(
 
 /// The options of a whole clip.
 struct Options {
-    said: FrameAnnotations,
+    annotations: FrameAnnotations,
     state: Option<Vec<u8>>,
 }
 
-/// How far a clip is.
+/// The state of a clip.
 enum Place {
     Stream {
         ready: VecDeque<ClipFrame>,
         /// The frame that is read next.
         next: usize,
         ended: bool,
-        /// Whether frames are answered as they come, so that the clip may end at any time.
+        /// Whether frames are returned as they come, so that the clip may end at any time.
         live: bool,
     },
     Unsegmented,
@@ -127,7 +127,7 @@ enum Place {
 /// The frames of a clip, in order, as they are finished.
 #[pyclass(module = "veronese")]
 pub(crate) struct Clip {
-    /// None when the clip is closed.
+    /// `None` when the clip is closed.
     worker: Option<Worker<Kept>>,
     source: Source,
     progress: Option<Py<PyAny>>,
@@ -139,7 +139,7 @@ pub(crate) struct Clip {
     /// The changes by the last annotations.
     changes: Vec<Changed>,
     tracks: Tracks,
-    /// The error of the source, or of a frame; the frames before it come first.
+    /// The error of the source, or of a frame; it is raised after the frames before it.
     failure: Option<PyErr>,
 }
 
@@ -186,28 +186,28 @@ impl Clip {
         self.returned(py, frame)
     }
 
-    /// Says what is certain in frames of a whole clip, or points to objects there. Returns the indices of the frames that change.
-    #[pyo3(signature = (*said))]
-    fn correct(&mut self, py: Python<'_>, said: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        self.say(py, &Given { corrections: Some(said), ..Given::default() })
+    /// Annotates frames of a whole clip by label maps, strokes and prompts. Returns the indices of the frames that change.
+    #[pyo3(signature = (*annotations))]
+    fn correct(&mut self, py: Python<'_>, annotations: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
+        self.apply(py, &Given { corrections: Some(annotations), ..Given::default() })
     }
 
-    /// The objects that nothing changes; all others can be changed from now on.
+    /// Locks these objects: no annotation changes their pixels. All others are unlocked.
     fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.say(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
+        self.apply(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
     }
 
-    /// The objects that only annotations of their own change, besides those that have some.
+    /// Names these objects: like annotated objects, they change only by annotations of themselves.
     fn name(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.say(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
+        self.apply(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
     }
 
-    /// The frames that are right. Returns the indices of those that change.
+    /// Accepts these frames as correct. Returns the indices of those that change.
     fn accept(&mut self, py: Python<'_>, frames: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
-        self.say(py, &Given { accepted: Some(frames), ..Given::default() })
+        self.apply(py, &Given { accepted: Some(frames), ..Given::default() })
     }
 
-    /// Makes objects one, which keeps the number of the first. Returns the indices of the frames that change.
+    /// Merges objects under the number of the first. Returns the indices of the frames that change.
     #[pyo3(signature = (*objects))]
     fn merge(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
         let objects = annotations::objects("objects", objects)?;
@@ -217,14 +217,14 @@ impl Clip {
         self.renumber(py, others, *kept)
     }
 
-    /// Makes objects background. Returns the indices of the frames that change.
+    /// Turns objects into background. Returns the indices of the frames that change.
     #[pyo3(signature = (*objects))]
     fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
         let objects = annotations::objects("objects", objects)?;
         self.renumber(py, &objects, 0)
     }
 
-    /// The pixels that objects have gained and lost by the last annotations.
+    /// The numbers of pixels that objects have gained and lost by the last annotations.
     fn changes<'py>(&mut self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         self.prepare(py)?;
         self.changes.iter().map(|changed| results::clip_change(py, changed)).collect()
@@ -260,7 +260,7 @@ impl Clip {
         self.close();
     }
 
-    // Whoever keeps a clip often listens to it, too.
+    // The source or the listener may refer back to the clip.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
         self.source.traverse(&visit)?;
         visit.call(&self.progress)
@@ -284,7 +284,7 @@ impl Clip {
         }
     }
 
-    /// Says that work on a frame begins.
+    /// Calls the listener when work on a frame begins.
     fn report(&self, py: Python<'_>, stage: &str, index: usize) -> PyResult<()> {
         match &self.progress {
             Some(progress) => progress.call1(py, (stage, index, self.source.length())).map(|_| ()),
@@ -292,7 +292,7 @@ impl Clip {
         }
     }
 
-    /// A frame of the source, checked against the size of the others. None at the end.
+    /// A frame of the source, checked against the size of the others. `None` at the end.
     fn read(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
         let Some(given) = self.source.read(py, index)? else { return Ok(None) };
         let frame = py.detach(|| given.frame()).map_err(|failure| failure.about(&format!("frame {index}")))?;
@@ -311,10 +311,10 @@ impl Clip {
         Ok(self.read(py, index)?.ok_or_else(gone)?)
     }
 
-    /// [`read`](Self::read), where an error comes after the frames before.
+    /// [`read`](Self::read), but an error is raised only after the frames before it.
     fn read_or_fail(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
         match self.read(py, index) {
-            // Not what is to end the program, such as KeyboardInterrupt.
+            // Exceptions that end the program, such as KeyboardInterrupt, are raised at once.
             Err(error) if error.is_instance_of::<PyException>(py) => {
                 self.failure = Some(error);
                 Ok(None)
@@ -357,7 +357,7 @@ impl Clip {
         }
     }
 
-    /// Refuses a source that ended, and did not fail, before its second frame.
+    /// Rejects a source that ended, and did not fail, before its second frame.
     fn check_count(&self, frames: usize) -> Result<(), Failure> {
         if frames >= 2 || self.failure.is_some() {
             return Ok(());
@@ -407,7 +407,7 @@ impl Clip {
         self.call(py, move |kept| kept.segmented(|clip| clip.frame(index, &frame)))
     }
 
-    /// Segments a whole clip, or takes its state, and applies what is asked for at its beginning. Once.
+    /// Segments a whole clip, or restores its state, and applies the annotations given with it. Runs once.
     fn prepare(&mut self, py: Python<'_>) -> PyResult<()> {
         if matches!(self.place, Place::Stream { .. }) {
             let sentence = "this needs a whole clip, and the frames of this one come once".into();
@@ -428,16 +428,16 @@ impl Clip {
         };
         self.tracks.dropped = summary.dropped;
         self.place = Place::Segmented { length: summary.length, next: 0 };
-        // The source may have failed before it came to a frame.
-        self.annotate(py, options.said.of_first(summary.length)).map(drop)
+        // The source may have failed before it reached an annotated frame.
+        self.annotate(py, options.annotations.of_first(summary.length)).map(drop)
     }
 
-    /// Solves all pairs. Of a source that fails, the frames before are a clip.
+    /// Solves all pairs. If the source fails, the frames before form the clip.
     fn solved(&mut self, py: Python<'_>, options: &Options) -> PyResult<Summary> {
         let mut index = 0;
         while let Some(frame) = self.read_or_fail(py, index)? {
             if let (0, Some(size)) = (index, self.size) {
-                options.said.check(size)?;
+                options.annotations.check(size)?;
             }
             self.report(py, "pairs", index)?;
             self.call(py, move |kept| kept.push(frame))?;
@@ -456,16 +456,16 @@ impl Clip {
         }
         if found > 0 {
             self.size = Some(summary.size);
-            options.said.check(summary.size)?;
+            options.annotations.check(summary.size)?;
         }
         Ok(summary)
     }
 
-    fn say(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
+    fn apply(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
         self.prepare(py)?;
-        let said = FrameAnnotations::of(given, self.length())?;
-        said.check(self.size.unwrap_or_default())?;
-        self.annotate(py, said.annotations)
+        let given = FrameAnnotations::of(given, self.length())?;
+        given.check(self.size.unwrap_or_default())?;
+        self.annotate(py, given.annotations)
     }
 
     fn renumber(&mut self, py: Python<'_>, objects: &[u8], number: u8) -> PyResult<Vec<usize>> {
@@ -475,7 +475,7 @@ impl Clip {
         self.annotate(py, Annotations { numbers, ..Annotations::default() })
     }
 
-    /// Applies annotations. Returns the frames that have changed, in order. What ends it early leaves everything as it was.
+    /// Applies annotations. Returns the frames that have changed, in order. If it ends early, the clip is as before.
     fn annotate(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<Vec<usize>> {
         let done = self.annotate_through(py, annotations);
         if let Some(worker) = &self.worker {

@@ -1,4 +1,4 @@
-//! Frames as they are given, arrays, what NumPy makes an array of, or files, and label images.
+//! Frames as they are given: arrays, what NumPy makes an array of, or files; and label images.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -15,7 +15,7 @@ use crate::errors::Failure;
 /// Largest file, bytes: more than the largest frame needs in the most wasteful of the formats.
 const LARGEST: u64 = 512 * 1024 * 1024;
 
-/// A frame that needs the interpreter no longer.
+/// A frame that no longer needs the interpreter.
 pub(crate) enum Given {
     Pixels {
         width: usize,
@@ -32,7 +32,8 @@ const MODES: [&str; 3] = ["L", "RGB", "RGBA"];
 const OPAQUE: [&str; 7] = ["1", "P", "RGBX", "CMYK", "YCbCr", "LAB", "HSV"];
 const WITH_ALPHA: [&str; 4] = ["LA", "La", "PA", "RGBa"];
 
-/// A frame from an array, what has the protocols of one, a path, or the bytes of a file. Pixels are copied; the size is checked before.
+/// A frame from an array, an object with the protocols of one, a path, or the bytes of a file. The size is checked before pixels are
+/// copied.
 pub(crate) fn given(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Failure> {
     if !frame.is_instance_of::<PyUntypedArray>() {
         if let Ok(path) = frame.extract::<PathBuf>() {
@@ -63,7 +64,7 @@ fn content_of(buffer: &Bound<'_, PyMemoryView>) -> PyResult<Option<Vec<u8>>> {
     if (dimensions, size) != (1, 1) { Ok(None) } else { buffer.call_method0("tobytes")?.extract().map(Some) }
 }
 
-/// A picture of Pillow as one whose array has its colours: a palette would be other numbers. Anything else as it is.
+/// A picture of Pillow as one whose array has its colours, not the indices of a palette. Anything else is returned as it is.
 fn in_colours<'py>(which: &str, frame: &Bound<'py, PyAny>) -> Result<Bound<'py, PyAny>, Failure> {
     let mode = frame.getattr("mode").and_then(|mode| mode.extract::<String>());
     let Ok(mode) = mode else { return Ok(frame.clone()) };

@@ -1,7 +1,7 @@
 //! The interface to Python: arrays, paths and plain options in, arrays and plain classes out. No arithmetic happens here.
 //!
-//! Work runs in a thread of its own, without the interpreter (`worker.rs`): other Python threads go on, and signals are heard. Results are
-//! the classes of the module `veronese._types`, errors its `VeroneseError` with a stable `code`.
+//! Work runs in a thread of its own, without the interpreter (`worker.rs`): other Python threads continue, and signals are handled. Results
+//! are the classes of the module `veronese._types`, errors its `VeroneseError` with a stable `code`.
 
 use pyo3::prelude::*;
 

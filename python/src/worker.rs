@@ -1,5 +1,5 @@
-//! Work in threads without the interpreter. Whoever waits for it looks for signals: Ctrl-C ends a call at once, and its thread at the next
-//! stage, or, of a clip, when the frame is done.
+//! Work in threads without the interpreter. The thread that waits for it checks for signals: Ctrl-C ends a call at once, and its thread at
+//! the next stage or, for a clip, when the frame is done.
 //!
 //! A thread also keeps a clip, which cannot move from one to another: it shares its frames without atomic counters.
 
@@ -14,37 +14,38 @@ use veronese::{Progress, Stage};
 
 use crate::errors::Failure;
 
-/// Time between two looks for signals.
+/// Time between two checks for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Messages of a thread to the one that waits.
+/// Messages of a worker to the thread that waits for it.
 enum Message<R> {
     Stage(Stage),
     Done(Result<R, Failure>),
 }
 
-/// Unwinds a call whose result nobody waits for.
+/// Unwinds a call whose result is no longer wanted.
 struct Abandoned;
 
-/// A call of its own. `progress` is called with the name of each stage, its index and the number of stages; what it raises ends the call.
+/// Runs a call in its own thread. `progress` is called with the name of each stage, its index and the number of stages; an exception that
+/// it raises ends the call.
 pub(crate) fn alone<R: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     work: impl FnOnce(Progress<'_>) -> Result<R, Failure> + Send + 'static,
 ) -> PyResult<R> {
-    let (tell, said) = channel();
+    let (sender, messages) = channel();
     spawn(move || {
         let mut listener = |stage| {
-            if tell.send(Message::Stage(stage)).is_err() {
+            if sender.send(Message::Stage(stage)).is_err() {
                 resume_unwind(Box::new(Abandoned));
             }
         };
         if let Some(done) = caught(|| work(&mut listener)) {
-            // Nobody may wait any more.
-            let _ = tell.send(Message::Done(done));
+            // The other thread may have stopped waiting.
+            let _ = sender.send(Message::Done(done));
         }
     })?;
-    answer(py, said, |Stage { name, index, of, .. }| match progress {
+    answer(py, messages, |Stage { name, index, of, .. }| match progress {
         Some(progress) => progress.call1((name, index, of)).map(|_| ()),
         None => Ok(()),
     })
@@ -55,7 +56,7 @@ type Job<T> = Box<dyn FnOnce(&mut T) -> bool + Send>;
 /// A thread that keeps a value until this is dropped.
 pub(crate) struct Worker<T> {
     jobs: Sender<Job<T>>,
-    /// A forked process has no such thread.
+    /// The process that has the thread: a forked one has not.
     process: u32,
 }
 
@@ -73,7 +74,7 @@ impl<T: Default + 'static> Worker<T> {
         Ok(Worker { jobs, process: std::process::id() })
     }
 
-    /// Does something with the value. After a panic there is none any more.
+    /// Runs some work on the value. After a panic there is no value any more.
     pub(crate) fn call<R: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -83,18 +84,18 @@ impl<T: Default + 'static> Worker<T> {
             let message = "a clip stays in the process that began it".into();
             return Err(Failure { code: "worker-failed", message }.into());
         }
-        let (tell, said) = channel();
+        let (sender, messages) = channel();
         let job = move |kept: &mut T| {
             let done = caught(|| work(kept));
             let goes_on = !matches!(done, None | Some(Err(Failure { code: "internal", .. })));
-            let _ = done.is_none_or(|done| tell.send(Message::Done(done)).is_ok());
+            let _ = done.is_none_or(|done| sender.send(Message::Done(done)).is_ok());
             goes_on
         };
         self.jobs.send(Box::new(job)).map_err(|_| lost())?;
-        answer(py, said, |_| Ok(()))
+        answer(py, messages, |_| Ok(()))
     }
 
-    /// Does something that nobody waits for, before anything else that is asked from now on.
+    /// Runs some work without waiting for it, before any later work.
     pub(crate) fn post(&self, work: impl FnOnce(&mut T) + Send + 'static) {
         let job = move |kept: &mut T| {
             caught(|| {
@@ -103,7 +104,7 @@ impl<T: Default + 'static> Worker<T> {
             })
             .is_some_and(|done| done.is_ok())
         };
-        // A thread that has ended has nothing to put right.
+        // If the thread has ended, there is nothing left to do.
         let _ = self.jobs.send(Box::new(job));
     }
 }
@@ -121,7 +122,7 @@ fn spawn(work: impl FnOnce() + Send + 'static) -> Result<(), Failure> {
     }
 }
 
-/// The outcome of some work; a panic is an error of code `internal`. None where nobody waits.
+/// The outcome of some work; a panic is an error of code `internal`. `None` if nobody waits.
 fn caught<R>(work: impl FnOnce() -> Result<R, Failure>) -> Option<Result<R, Failure>> {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(done) => Some(done),
@@ -135,16 +136,16 @@ fn sentence(thrown: &(dyn Any + Send)) -> String {
     known.or_else(|| thrown.downcast_ref::<String>().cloned()).unwrap_or_else(|| "the call failed".into())
 }
 
-/// Waits for the result, without the interpreter.
+/// Waits for the result without holding the interpreter.
 fn answer<R: Send>(
     py: Python<'_>,
-    mut said: Receiver<Message<R>>,
+    mut messages: Receiver<Message<R>>,
     mut on_stage: impl FnMut(Stage) -> PyResult<()>,
 ) -> PyResult<R> {
     loop {
-        let (heard, waiting) = py.detach(move || (said.recv_timeout(PATIENCE), said));
-        said = waiting;
-        match heard {
+        let (received, waiting) = py.detach(move || (messages.recv_timeout(PATIENCE), messages));
+        messages = waiting;
+        match received {
             Ok(Message::Stage(stage)) => on_stage(stage)?,
             Ok(Message::Done(done)) => return Ok(done?),
             Err(RecvTimeoutError::Timeout) => {}

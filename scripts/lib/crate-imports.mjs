@@ -8,7 +8,7 @@ import { projectText, root } from './project.mjs';
 import { say } from './run.mjs';
 
 /** The top modules of `src`: each may use those before it. */
-const ORDER = `error exponential hash lanes model motion order random frame linear measurements recording progress options codecs components
+const ORDER = `error exponential hash lanes model motion order random side frame linear measurements recording progress options codecs components
   embedding refinement view answer factorisation estimation best labelling paper pair clip points literal stages`.split(/\s+/);
 
 /** Whether no files use each other, and top modules only those before them. Prints what differs. */

@@ -1,26 +1,26 @@
 //! A person's annotations of a clip: label maps, strokes, prompts, accepted frames, and objects that are locked, named, merged or deleted.
 //!
-//! An annotation is about one object, or, as a label map, about the objects that it names. It is kept as it was given: a box stays a box. The
-//! ground that a box or clicks suppose is not their object, and nothing to any other.
+//! Strokes and prompts annotate one object; a label map annotates every object whose number is among its labels. Annotations are stored as
+//! they were given: a box stays a box. The ground that follows from a box or from clicks is ground for their own object only.
 
 use super::saved::{Saved, saved};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 
-/// By number: whether the object is one of a set.
+/// For each object number, whether the object is in the set.
 pub(super) type ObjectSet = [bool; 256];
 
-/// Where an annotation of a frame spreads.
+/// The frames to which an annotation of a frame spreads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spread {
-    /// To the frames before and after.
+    /// The frames before and after.
     #[default]
     Both,
-    /// To the frames after.
+    /// The frames after.
     Forward,
-    /// To the frames before.
+    /// The frames before.
     Backward,
-    /// Nowhere: it holds in its frame alone.
+    /// No other frame.
     None,
 }
 
@@ -32,7 +32,7 @@ pub(super) enum Direction {
 }
 
 impl Spread {
-    /// Whether it spreads in a direction.
+    /// Whether an annotation spreads in this direction.
     pub(super) fn goes(self, direction: Direction) -> bool {
         match direction {
             Direction::Forward => matches!(self, Spread::Both | Spread::Forward),
@@ -57,13 +57,14 @@ impl Saved for Spread {
 pub struct Painted {
     /// Index of the frame.
     pub frame: usize,
-    /// The object that it is about. Without one it is about all objects whose numbers are among the labels. A map of 0 and 255 alone is an
-    /// eraser: at its zeros there is no object.
+    /// Number of the annotated object. `None` for a label map: it annotates every object whose number is among its labels. A label map of 0
+    /// and 255 alone is an eraser: it removes all objects from its pixels with the label 0.
     pub object: Option<u8>,
-    /// One label per pixel of the frame, row by row: the number of an object, a new number for a new one, 0 where none of these objects
-    /// is, 255 where nothing is said. Without 255, as of an outline, they are the mask of an object, to the pixel.
+    /// One label per pixel of the frame, row by row: an object's number, which may be new; 0 for pixels that belong to none of the
+    /// annotated objects; 255 for pixels that are not annotated. Labels without any 255, such as a filled outline, are the object's exact
+    /// mask.
     pub labels: Vec<u8>,
-    /// Where it spreads.
+    /// The frames to which it spreads.
     pub spread: Spread,
 }
 
@@ -72,13 +73,13 @@ pub struct Painted {
 pub struct Prompt {
     /// Index of the frame.
     pub frame: usize,
-    /// Number of the object, which may have been found or not, 1…254.
+    /// Number of the object, 1…254; it may be new.
     pub object: u8,
-    /// Pixels that are the object's, or are not. In this order each adds the part around it to the mask, or takes it away.
+    /// Pixels that belong to the object or do not. They are applied in order: each adds the part around it to the mask, or removes it.
     pub clicks: Vec<Click>,
-    /// A rectangle that has all of it: first column, first row, width and height.
+    /// A rectangle that contains the whole object: first column, first row, width and height, pixels.
     pub within: Option<[usize; 4]>,
-    /// Where it spreads.
+    /// The frames to which it spreads.
     pub spread: Spread,
 }
 
@@ -87,62 +88,65 @@ pub struct Prompt {
 pub struct Click {
     /// Column and row.
     pub at: [usize; 2],
-    /// Whether it is the object's.
+    /// Whether the pixel belongs to the object.
     pub inside: bool,
 }
 
 saved!(Prompt { frame, object, clicks, within, spread });
 saved!(Click { at, inside });
 
-/// A frame that a person finds right.
+/// A frame whose labels a person accepts as correct.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accepted {
     /// Index of the frame.
     pub frame: usize,
-    /// Its labels, one per pixel; without them those that it has.
+    /// The accepted labels, one per pixel; `None` for the labels that the frame has.
     pub labels: Option<Vec<u8>>,
 }
 
 /// Annotations that are given together, for [`SegmentedClip::annotate`](super::SegmentedClip::annotate).
 #[derive(Clone, Debug, Default)]
 pub struct Annotations {
-    /// Label maps, for instance made elsewhere. Their numbers are theirs: objects found automatically under one of them get another.
+    /// Label maps that are applied first, for instance from another program. They keep their numbers: an object found automatically under
+    /// one of these numbers gets another one.
     pub masks: Vec<Painted>,
-    /// Label maps and strokes, which go before the mask of their frame where they say anything. Each replaces what was painted in its frame
-    /// of the same object, or as a map; a map that says nothing takes back all that was said in its frame, prompts too.
+    /// Label maps and strokes. Where they are not 255, they replace the labels of the mask of their frame. Strokes replace the earlier
+    /// strokes of their object in their frame, and a label map the earlier label map. A label map of 255 alone removes all annotations of
+    /// its frame, prompts too.
     pub corrections: Vec<Painted>,
-    /// One after another. Each replaces the prompt of its object in its frame; one that points nowhere takes it back.
+    /// Prompts, applied in order. Each replaces the prompt of its object in its frame; one without a box and without a click inside the
+    /// object removes it.
     pub prompts: Vec<Prompt>,
-    /// Numbers of the objects that are locked from now on: no annotation changes their pixels, but those given together with a new lock.
-    /// Without this the locks stay as they are.
+    /// Numbers of the objects that are locked from now on. Annotations do not change the pixels of a locked object, except those given
+    /// together with a new lock. `None` leaves the locks as they are.
     pub locked: Option<Vec<u8>>,
-    /// Numbers of the objects that a person has named: annotations of other objects do not change their pixels. Without this the names
-    /// stay as they are.
+    /// Numbers of the objects that a person has named. Annotations of other objects do not change their pixels. `None` leaves the names as
+    /// they are.
     pub named: Option<Vec<u8>>,
-    /// The frames that a person has accepted: annotations of other frames do not change their labels. Without this they stay as they are.
+    /// The frames that a person has accepted. Annotations of other frames do not change their labels. `None` leaves them as they are.
     pub accepted: Option<Vec<Accepted>>,
-    /// Objects and the numbers that they get for the whole clip: that of another object to merge them, 0 to make them background: such
-    /// an object claims nothing any more. Numbers that no object has change nothing.
+    /// Objects and their new numbers in the whole clip: the number of another object merges both, 0 turns the object into background.
+    /// Numbers that no object has are ignored.
     pub numbers: Vec<[u8; 2]>,
 }
 
-/// The annotation of a pixel about one object.
+/// The annotation of a pixel with respect to one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seed {
     Nothing,
-    /// It is in a piece that was taken away as a whole: not the object's, though it may look like it.
+    /// In a separate piece of the object that was removed as a whole: not the object, although it may look like it.
     Dropped,
     Other,
     Object,
 }
 
 impl Prompt {
-    /// Whether it points anywhere.
+    /// Whether the prompt points to an object: it has a box or a click inside the object.
     pub(super) fn points(&self) -> bool {
         self.within.is_some() || self.clicks.iter().any(|click| click.inside)
     }
 
-    /// Whether it is within a frame, and can be obeyed.
+    /// Checks that the prompt lies in the frame and does not contradict itself.
     fn check(&self, [width, height]: [usize; 2]) -> Result<()> {
         if !is_object(self.object) {
             return invalid("label", format!("{} is no number of an object: these are 1 to 254", self.object));
@@ -176,7 +180,7 @@ impl Prompt {
 }
 
 impl Annotations {
-    /// Whether they are about pixels, and numbers of objects, that can be.
+    /// Checks labels, positions and object numbers for frames of the given size.
     pub(super) fn check(&self, size @ [width, height]: [usize; 2]) -> Result<()> {
         let fill = |name, labels: &[u8]| match labels.len() == width * height {
             true => Ok(()),
@@ -207,7 +211,7 @@ impl Annotations {
         Ok(())
     }
 
-    /// The frames that they are about.
+    /// The indices of the annotated frames.
     pub(super) fn frames(&self) -> impl Iterator<Item = usize> {
         let painted = self.masks.iter().chain(&self.corrections).map(|painted| painted.frame);
         let accepted = self.accepted.iter().flatten().map(|accepted| accepted.frame);

@@ -1,13 +1,12 @@
-//! Evidence carried through time along the motions of the pixels.
+//! Log-odds and labels carried from frame to frame along the motions of the pixels.
 
-use super::evidence::LayeredMotion;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::labelling::BACKGROUND;
 
-/// A plane of another frame at each pixel of this one: its value where the pixel's motion leads, or at the nearest place
-/// inside the frame.
+/// For each pixel of this frame, the value of a plane of another frame at the position to which the pixel moves, clamped to the frame.
 pub(crate) fn carried(plane: &Plane, along: &LayeredMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut carried = Plane::filled(width, height, 0.0);
@@ -15,7 +14,7 @@ pub(crate) fn carried(plane: &Plane, along: &LayeredMotion) -> Plane {
     let rows = carried.values_mut().chunks_exact_mut(width).zip(along.labels.chunks_exact(width));
     for (y, (row, labels)) in rows.enumerate() {
         let mut x = 0;
-        // Pixels with one motion lie side by side.
+        // Pixels with the same motion lie side by side.
         for run in labels.chunk_by(|one, next| one == next) {
             let path = RowPath::new(&along.motions[usize::from(run[0])], x, y);
             for (chunk, values) in row[x..x + run.len()].chunks_mut(CHUNK).enumerate() {
@@ -29,7 +28,7 @@ pub(crate) fn carried(plane: &Plane, along: &LayeredMotion) -> Plane {
     carried
 }
 
-/// The labels of a frame whose pixels go on with the motions that led from the frame before it to the one before that, whose flow that is.
+/// The labels of the next frame if all pixels keep their motions; `flow` is a frame's motion to the previous frame.
 pub(crate) fn continued_labels(flow: &LayeredMotion) -> Vec<u8> {
     let (width, height) = (flow.width, flow.labels.len() / flow.width);
     let mut labels = vec![BACKGROUND as u8; flow.labels.len()];
@@ -48,8 +47,9 @@ pub(crate) fn continued_labels(flow: &LayeredMotion) -> Vec<u8> {
     labels
 }
 
-/// The labels of another frame where the motions of this one's pixels lead; `unknown` where that is outside, or something else was in
-/// front. `return_flow` is the other frame's flow to this one, if it was measured.
+/// For each pixel of this frame, the label of another frame at the position to which the pixel moves; `unknown` where that position is
+/// outside, or the other frame's motion does not lead back, as where the pixel is occluded. `return_flow` is the other frame's motion to
+/// this one, if it was measured.
 pub(crate) fn carried_labels(
     labels: &[u8],
     along: &LayeredMotion,

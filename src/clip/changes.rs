@@ -1,8 +1,8 @@
-//! Changes by annotations: in which frames, and of which objects how many pixels.
+//! What annotations change: the frames, and how many pixels of which objects.
 
 use super::runs::Runs;
 
-/// Pixels that an object has gained and lost in a frame.
+/// Numbers of pixels that an object has gained and lost in a frame.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Changed {
@@ -10,17 +10,17 @@ pub struct Changed {
     pub frame: usize,
     /// Number of the object; 0 for the background.
     pub object: u8,
-    /// Pixels that it has now, and had not.
+    /// Pixels that the object has now and did not have before.
     pub gained: usize,
-    /// Pixels that it had, and has no more.
+    /// Pixels that the object had before and does not have now.
     pub lost: usize,
 }
 
-/// The frames that change, in the order in which they changed first.
+/// The changed frames, in the order of their first change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Changes {
     frames: Vec<usize>,
-    /// By index of the frame: its labels at first, and what objects gained and lost since.
+    /// In ascending order of frames: index, labels before the first change, and the pixels that objects have gained and lost since.
     labels: Vec<(usize, Runs, Vec<Changed>)>,
 }
 
@@ -29,14 +29,14 @@ impl Changes {
         &self.frames
     }
 
-    /// A frame changes somehow.
+    /// Adds a frame without counting pixels.
     pub(super) fn add(&mut self, frame: usize) {
         if !self.frames.contains(&frame) {
             self.frames.push(frame);
         }
     }
 
-    /// The labels of a frame change.
+    /// Sets the labels of a frame, and counts the pixels that have changed since the first call.
     pub(super) fn set(&mut self, frame: usize, before: &[u8], now: &[u8]) {
         self.add(frame);
         let at = self.labels.partition_point(|(of, ..)| *of < frame);
@@ -55,7 +55,7 @@ impl Changes {
         }
     }
 
-    /// By frame, then by object.
+    /// All changes, by frame, then by object.
     pub(super) fn list(&self) -> Vec<Changed> {
         self.labels.iter().flat_map(|(.., changed)| changed.iter().copied()).collect()
     }

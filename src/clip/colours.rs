@@ -1,10 +1,11 @@
-//! Colours of objects and of the background, learned from the frames around a moment.
+//! Colours of objects and of the background, learned from neighbouring frames.
 
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
+use crate::side::Side;
 
-/// How often each colour is seen on objects and on the background.
+/// Numbers of pixels of each quantised colour, on objects and on the background.
 #[derive(Clone, Debug)]
 pub(crate) struct ColourCounts([Vec<f32>; 2]);
 
@@ -13,13 +14,14 @@ impl ColourCounts {
         ColourCounts([(); 2].map(|()| vec![0.0; COLOURS]))
     }
 
-    /// The counts of one frame, from the log-odds of object against background at its pixels.
+    /// The counts of one frame. A pixel counts for the side that its log-odds of object against background favour; undecided pixels do not
+    /// count.
     pub(crate) fn of(palette: &Palette, log_odds: &Plane) -> ColourCounts {
         let mut counts = ColourCounts::none();
         for (p, &log_odds) in
             log_odds.values().iter().enumerate().filter(|(_, log_odds)| log_odds.abs() > model().undecided)
         {
-            counts.0[usize::from(log_odds < 0.0)][palette.index(p)] += 1.0;
+            counts.0[Side::favoured_by(log_odds)][palette.index(p)] += 1.0;
         }
         counts
     }
@@ -29,15 +31,18 @@ impl ColourCounts {
         pairs.for_each(|(count, other)| *count += other);
     }
 
-    /// Log-likelihood ratio of object against background for each colour, nats; zero while a side is unknown.
+    /// Log-likelihood ratio of object against background for each colour, nats; all zero while either side has too few pixels.
     pub(crate) fn ratios(&self) -> Vec<f32> {
         let totals = self.0.each_ref().map(|side| side.iter().sum::<f32>());
         if totals.iter().any(|&total| total < model().pixels as f32) {
             return vec![0.0; COLOURS];
         }
-        let share = |side: usize, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
+        let share = |side: Side, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
         (0..COLOURS)
-            .map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-model().certain, model().certain))
+            .map(|colour| {
+                libm::logf(share(Side::Object, colour) / share(Side::Ground, colour))
+                    .clamp(-model().certain, model().certain)
+            })
             .collect()
     }
 }

@@ -1,10 +1,11 @@
-//! Corrections: an annotation of one frame is certain there, and goes through the whole scene.
+//! Corrections: an annotation is exact in its own frame, and is propagated through its scene.
 //!
-//! Annotations of several frames that are given together go through the scene together, in one pass. Each object is propagated by its own
-//! annotations alone. Where two objects of a user propose a pixel, the one that had it keeps it.
+//! Annotations of several frames that are given together are propagated in one pass. Each object is propagated from its own annotations
+//! alone. Where two annotated objects propose the same pixel, the object that had it keeps it.
 //!
-//! 1. The annotations of all frames tell which objects change, and from which frames they are propagated (`correction/anchors.rs`).
-//! 2. A plan lists the frames to visit (`correction/plan.rs`). In the first ones the appearance of the objects is learnt
+//! 1. The annotations of all frames determine the objects that change, and the frames from which each is propagated, its anchors
+//!    (`correction/anchors.rs`).
+//! 2. A plan lists the frames to visit (`correction/plan.rs`). The first visits learn the appearance of the objects
 //!    (`correction/appearance.rs`).
 //! 3. Objects are propagated forward and backward (`correction/propagator.rs`, `correction/track.rs`), and compete for pixels
 //!    (`correction/group.rs`).
@@ -15,7 +16,7 @@ mod appearance;
 mod compose;
 mod features;
 mod group;
-mod label_evidence;
+mod label_ratios;
 mod placement;
 mod plan;
 mod prompt;
@@ -30,9 +31,9 @@ use std::collections::VecDeque;
 
 use super::annotation::{Direction, ObjectSet, Spread};
 use super::changes::Changes;
-use super::evidence::LayeredMotion;
 use super::frame_annotation::{Change, FrameAnnotation};
 use super::layer::Layer;
+use super::pairs::LayeredMotion;
 use super::segmented_clip::SegmentedClip;
 use crate::answer::UNLABELLED;
 use crate::error::Result;
@@ -51,27 +52,27 @@ use track::Track;
 pub(super) struct SceneCorrection {
     /// Indices of the annotated frames.
     annotated: Vec<usize>,
-    /// Annotations whose frames have not come yet, with the indices of these.
+    /// Annotations that still wait for their frame, with its index.
     waiting: VecDeque<(usize, Change)>,
     /// First and last frame of the scene.
     scene: [usize; 2],
     /// Objects that the annotations change.
     changing: ObjectSet,
-    /// The anchors of each object as the annotations taken so far leave them.
+    /// For each object, its anchors after the annotations taken so far.
     anchors: Vec<Vec<Anchor>>,
     groups: Vec<Group>,
     /// Frames to visit, the next one last.
     visits: Vec<Visit>,
     /// Whether the layer of each frame of the scene is up to date.
     is_done: Vec<bool>,
-    /// Which objects were a user's in each frame of the scene.
+    /// For each frame of the scene, the annotated objects that reach it.
     users: Vec<ObjectSet>,
-    /// Objects that something is added to, and that nothing is taken back of.
+    /// Objects whose annotations were only added to, never taken back.
     extended: ObjectSet,
 }
 
 impl SceneCorrection {
-    /// Of at least one annotation, all of frames of one scene.
+    /// A correction by at least one annotation; all annotated frames are in one scene.
     pub(super) fn new(clip: &SegmentedClip, waiting: VecDeque<(usize, Change)>) -> SceneCorrection {
         let annotated: Vec<usize> = waiting.iter().map(|(index, _)| *index).collect();
         let scene @ [first, last] = clip.scene(annotated[0]);
@@ -89,7 +90,7 @@ impl SceneCorrection {
         }
     }
 
-    /// Index of the frame to [`take`](Self::take) next; none when the correction has spread.
+    /// Index of the frame to [`take`](Self::take) next; `None` when the annotations have spread.
     pub(super) fn wanted(&self) -> Option<usize> {
         let waiting = self.waiting.front().map(|(index, _)| *index);
         waiting.or_else(|| self.visits.last().map(|visit| visit.frame))
@@ -112,7 +113,7 @@ impl SceneCorrection {
                 self.plan(clip);
             }
         }
-        // A frame may be wanted for several tasks after one another.
+        // One frame may be wanted for several tasks in a row.
         while let Some(visit) = self.visits.pop_if(|visit| visit.frame == index) {
             match &visit.task {
                 Task::Learn(objects) => self.learn(clip, &arrived, objects),
@@ -128,7 +129,7 @@ impl SceneCorrection {
         Ok(())
     }
 
-    /// Takes an annotation, and changes its frame at once if it is new.
+    /// Takes an annotation, and updates its own frame at once if the annotation is new.
     #[inline(never)]
     fn begin(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, change: Change, changes: &mut Changes) {
         let (index, users) = (arrived.index, arrived.index - self.scene[0]);
@@ -147,7 +148,7 @@ impl SceneCorrection {
         now.keep_bases(&shown);
         let mut changing: ObjectSet = std::array::from_fn(|k| k > 0 && !now.agrees(&before, k as u8));
         if !now.agrees(&before, 0) {
-            // A label map that names no object says of those under it that they are not there.
+            // A label map without object numbers erases the objects under its zeros.
             now.takes_from = taken_from(clip, &now, &shown, &self.users[users]);
             before.takes_from.iter().chain(&now.takes_from).for_each(|&object| changing[usize::from(object)] = true);
         }
@@ -180,7 +181,8 @@ impl SceneCorrection {
         self.groups = members.into_iter().map(|members| Group::new(members, last + 1)).collect();
     }
 
-    /// The annotated frame at once. Each object goes by where it was before strokes were drawn, so that it matters not which came before.
+    /// Updates the annotated frame at once. Each object is compared with its mask before any stroke was drawn, so that the order of strokes
+    /// does not matter.
     #[inline(never)]
     fn at_once(
         &mut self,
@@ -209,7 +211,7 @@ impl SceneCorrection {
         self.compose(clip, arrived, &proposals, changes);
     }
 
-    /// Learns annotations that spread to all frames, and the appearance of objects found automatically.
+    /// Learns from annotations that spread to all frames, and the appearance of objects where they were found automatically.
     fn learn(&mut self, clip: &SegmentedClip, arrived: &Arrived<'_>, objects: &[u8]) {
         let Arrived { index, features, .. } = *arrived;
         let found = clip.found_at(index, features.size);
@@ -254,7 +256,7 @@ impl SceneCorrection {
         }
     }
 
-    /// Gives a frame its layer. An accepted frame changes by its own annotations alone.
+    /// Gives a frame its layer. An accepted frame changes only by its own annotations.
     #[inline(never)]
     fn compose(
         &mut self,
@@ -275,13 +277,13 @@ impl SceneCorrection {
         let is_same = labels(&clip.frames[index].layer) == labels(&layer);
         clip.frames[index].layer = layer;
         let now = clip.overlaid(index, found, &clip.user_objects_in(index));
-        // An object that was found and is erased as a whole leaves no layer.
+        // An object that was found and is erased completely leaves no layer.
         if !is_same || *before != now {
             changes.set(index, before, &now);
         }
     }
 
-    /// In frames that nothing was propagated to, nothing is left of objects that have no annotation any more.
+    /// In frames that the propagation did not reach, removes the labels of objects that have no annotation any more.
     fn finish(&mut self, clip: &mut SegmentedClip, changes: &mut Changes) {
         let changing: Vec<u8> = self.groups.iter().flat_map(|group| group.changing.clone()).collect();
         for t in self.scene[0]..=self.scene[1] {
@@ -299,7 +301,7 @@ impl SceneCorrection {
     }
 }
 
-/// Other objects of a user that a label map which names none takes pixels from.
+/// Annotated objects from which a label map without object numbers takes pixels.
 fn taken_from(clip: &SegmentedClip, annotation: &FrameAnnotation, shown: &[u8], users: &ObjectSet) -> Vec<u8> {
     if !annotation.names_no_object() {
         return Vec::new();
@@ -311,7 +313,7 @@ fn taken_from(clip: &SegmentedClip, annotation: &FrameAnnotation, shown: &[u8], 
     (1..UNLABELLED).filter(|&object| is_taken(usize::from(object))).collect()
 }
 
-/// A frame that has come.
+/// A frame that was handed in.
 #[derive(Clone, Copy)]
 struct Arrived<'a> {
     index: usize,

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::evidence::LayeredMotion;
 use super::options::model;
+use super::pairs::LayeredMotion;
 use crate::answer::UNLABELLED;
 use crate::frame::Plane;
 use crate::frame::scaling::Scaling;
@@ -22,10 +22,10 @@ pub struct ClipFrame {
     /// One label per pixel, row by row: 0 for the background, 255 for a pixel that is marked as unknown, else the number of an object.
     #[serde(skip)]
     pub labels: Vec<u8>,
-    /// The objects in sight, by number.
+    /// The visible objects, by number.
     pub objects: Vec<ClipObject>,
-    /// Motion of the background to the next frame, pixels; none where there is no next frame of the same scene. With a look-ahead, the
-    /// motion with which it came to this frame.
+    /// Motion of the background to the next frame, pixels; `None` if no frame of the same scene follows. With a look-ahead, the motion from
+    /// the previous frame, continued.
     pub background: Option<AffineMotion>,
 }
 
@@ -42,7 +42,7 @@ pub struct ClipObject {
     pub bbox: [usize; 4],
     /// Mean probability, 0…1, that its pixels belong to an object.
     pub confidence: f64,
-    /// Motion of its largest part, as [`ClipFrame::background`].
+    /// Motion of its largest part to the next frame, as [`ClipFrame::background`].
     pub matrix: Option<AffineMotion>,
 }
 
@@ -53,19 +53,19 @@ pub(crate) struct WorkingFrame<'a> {
     pub(crate) labels: &'a [u8],
     /// Log-odds of object against background, nats.
     pub(crate) log_odds: &'a Plane,
-    /// To the next frame of the scene, if there is one.
+    /// Motion to the next frame of the scene, if there is one.
     pub(crate) onward: Option<&'a LayeredMotion>,
-    /// Whether pixels whose log-odds do not decide are marked.
+    /// Whether pixels whose log-odds do not decide get the label 255.
     pub(crate) mark_unknown: bool,
 }
 
 impl WorkingFrame<'_> {
-    /// The frame described at the size of its luminance.
+    /// The result for the frame at the size of its luminance.
     pub(crate) fn described(&self, luminance: &Plane) -> ClipFrame {
         self.marked(self.upsampled(luminance), luminance.width())
     }
 
-    /// The frame with these labels of full size, marked where they are unknown if that is asked for.
+    /// The result for full-size labels, of which the undecided ones are marked if that is asked for.
     pub(crate) fn marked(&self, mut labels: Vec<u8>, width: usize) -> ClipFrame {
         let scaling = Scaling::between([width, labels.len() / width], [self.log_odds.width(), self.log_odds.height()]);
         if self.mark_unknown {
@@ -86,7 +86,7 @@ impl WorkingFrame<'_> {
         upsample(self.labels, &scaling, of, luminance, &Model::DEFAULT)
     }
 
-    /// The objects of full-size labels.
+    /// Describes the objects of full-size labels.
     fn describe(&self, labels: Vec<u8>, scaling: &Scaling) -> ClipFrame {
         let scale = |motion: &AffineMotion| motion.scaled(scaling.step as f64);
         let background = self.onward.map(|onward| scale(&onward.motions[BACKGROUND]));
@@ -103,7 +103,7 @@ impl WorkingFrame<'_> {
     }
 }
 
-/// Pixels and bounding box of every object of some labels.
+/// Pixels and bounding box of every object in some labels.
 fn boxes(labels: &[u8], width: usize) -> Vec<ClipObject> {
     let mut corners = [[usize::MAX, usize::MAX, 0, 0]; 256];
     let mut pixels = [0usize; 256];
@@ -125,7 +125,7 @@ fn boxes(labels: &[u8], width: usize) -> Vec<ClipObject> {
     (1..UNLABELLED).filter_map(described).collect()
 }
 
-/// Mean probability of an object at some pixels.
+/// Mean probability of an object over some pixels, 0…1.
 fn mean_probability(log_odds: &Plane, pixels: impl Iterator<Item = usize>) -> f64 {
     let probability = |log_odds: f32| f64::from(1.0 / (1.0 + libm::expf(-log_odds)));
     let (sum, count) =

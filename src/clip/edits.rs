@@ -1,4 +1,4 @@
-//! Edits that need no propagation: numbers that are kept free, frames that are accepted, objects that are merged or deleted.
+//! Edits without propagation: reserved numbers, accepted frames, merged and deleted objects.
 
 use super::annotation::{Accepted, ObjectSet};
 use super::changes::Changes;
@@ -7,9 +7,9 @@ use crate::answer::UNLABELLED;
 use crate::frame::Frame;
 
 impl SegmentedClip {
-    /// Keeps numbers for given masks: an object found automatically under one of them gets the lowest number that is free. Where none is
-    /// left it becomes background and counts as [`dropped`](Self::dropped). A user's objects keep theirs. Returns the indices of the frames
-    /// that change.
+    /// Reserves numbers for given masks: an object found automatically under one of them gets the lowest free number or, if there is none,
+    /// becomes background and counts as [`dropped`](Self::dropped). Annotated objects keep their numbers. Returns the indices of the
+    /// changed frames.
     pub(super) fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
         let user_objects: ObjectSet = std::array::from_fn(|k| self.frames.iter().any(|frame| frame.anchors(k as u8)));
         let mut is_found = [false; 256];
@@ -33,7 +33,7 @@ impl SegmentedClip {
                 self.named.swap(old, usize::from(now[old]));
             }
         }
-        // Objects that were merged into one of them go along.
+        // Objects that were merged into a renumbered object follow it.
         for (_, number) in self.numbers.iter_mut().enumerate().filter(|(k, number)| usize::from(**number) != *k) {
             *number = now[usize::from(*number)];
         }
@@ -52,7 +52,7 @@ impl SegmentedClip {
         changed
     }
 
-    /// Gives a frame the labels with which a person accepts it; without them those that it has.
+    /// Accepts a frame with the given labels, without them with the labels that it has.
     pub(super) fn accept(&mut self, frame: &Frame, Accepted { frame: index, labels }: Accepted, changes: &mut Changes) {
         let shown = self.shown(index, frame.luminance());
         let labels = labels.unwrap_or_else(|| shown.clone());
@@ -69,8 +69,8 @@ impl SegmentedClip {
         }
     }
 
-    /// Gives every pixel of an object another number for the whole clip. One that becomes background claims nothing from then on, and what was
-    /// said of it is forgotten. Returns the indices of the frames that change.
+    /// Gives every pixel of an object another number in the whole clip. The annotations of an object that becomes background are deleted.
+    /// Returns the indices of the changed frames.
     pub(super) fn renumber(&mut self, [object, number]: [u8; 2]) -> Vec<usize> {
         let number = self.numbers[usize::from(number)];
         if number != 0 && self.frames_with(number).is_empty() {

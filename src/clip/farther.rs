@@ -1,38 +1,40 @@
-//! Slow things: where neighbours show no object, a frame is compared with an earlier one, twice as far each time, until one shows.
+//! Slow objects: where neighbouring frames show no object, a frame is compared with earlier frames, twice as far back each time, until an
+//! object shows.
 //!
-//! What moves by less than a pair can tell moves by more in a longer time. The flow between neighbours stays that of the background: what is
-//! so slow is carried along it as well.
+//! An object that moves too little within a pair moves more over a longer time. The motion between neighbours stays that of the background,
+//! along which slow objects are carried as well.
 
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::evidence::{log_odds, shows_object};
 use super::options::model;
+use super::pairs::{log_odds, shows_object};
 use super::record::PendingFrame;
 use crate::frame::Plane;
 use crate::frame::pyramid::FramePyramid;
 use crate::pair::frame_motions::Expected;
 use crate::pair::settings::Settings;
 
-/// Frames to the nearest one with which a frame is compared beside its neighbour …
+/// Distance of the nearest frame with which a frame is compared besides its neighbour, frames.
 const NEAREST: usize = 2;
-/// … and to the farthest: what moves by an eighth of what neighbours tell is then seen. Farther ones have less in common.
+/// Distance of the farthest, frames: objects that move by an eighth of what neighbours show are then found. Frames farther apart have less
+/// in common.
 pub(super) const FARTHEST: usize = 8;
 
 /// The frames with which the next one may be compared.
 #[derive(Debug)]
 pub(super) struct Farther {
-    /// Those since an object was seen to move between neighbours, the newest last.
+    /// The frames since neighbours last showed an object, the newest last.
     earlier: VecDeque<Rc<FramePyramid>>,
-    /// How far back the next frame looks.
+    /// Distance of the frame with which the next one is compared, frames.
     reach: usize,
 }
 
-/// What an earlier frame tells.
+/// The pair with an earlier frame.
 pub(super) struct FartherPair {
-    /// Of object against background, nats.
+    /// Log-odds of object against background, nats.
     pub(super) log_odds: Plane,
-    /// How many frames earlier it is.
+    /// How many frames earlier that frame is.
     pub(super) reach: usize,
 }
 
@@ -41,7 +43,7 @@ impl Farther {
         Farther { earlier: VecDeque::new(), reach: NEAREST }
     }
 
-    /// What the newest frame and an earlier one tell, if they have something to tell that the newest frame and the last one have not.
+    /// Compares the newest frame with an earlier one. Returns their pair if it shows an object and the pair with the last frame does not.
     pub(super) fn look(
         &mut self,
         last: &PendingFrame,
@@ -52,7 +54,7 @@ impl Farther {
             *self = Farther::new();
             return None;
         }
-        // It shows what the last one does.
+        // A repeated frame shows nothing new.
         if newest.repeats {
             return None;
         }
@@ -66,7 +68,7 @@ impl Farther {
         if !view.is_cut() && shows_object(&pair.log_odds) {
             return Some(pair);
         }
-        // Where nothing moves, few frames look so far.
+        // Where nothing moves, the farthest comparison is made for few frames.
         if self.reach == FARTHEST {
             self.earlier.clear();
         }

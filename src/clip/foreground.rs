@@ -1,13 +1,13 @@
-//! The foreground of each frame, cut in rounds: log-odds are carried along the motions from both sides, colours are learned from the frames
-//! around, and the foreground is cut. A second round starts from the log-odds and the cut of the first.
+//! The foreground of each frame, found in two rounds. A round carries log-odds along the motions from past and future frames, learns
+//! colours from neighbouring frames, and cuts the foreground. The second round starts from the log-odds and the cut of the first.
 //!
 //! ```text
 //! past(t)   = log-odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
 //! z(t)      = past(t) + future(t) − log-odds(t)
-//! E(l)      = Σ_p l_p ≠ object · w (z + colour)(p) + borders
+//! E(l)      = Σ_p l_p ≠ object · w (z + colour)(p) + edges
 //! ```
-//! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
-//! there, while ground seldom looks like an object. A frame leaves when the frames it waits for have come.
+//! Carried log-odds are clamped, and decay with every frame. Negative ones count less: an object that rests in one pair looks like
+//! background there, while background seldom looks like an object. A frame leaves a round when the frames for which it waits have come.
 
 use crate::clip::options::model;
 use std::collections::VecDeque;
@@ -19,19 +19,19 @@ use super::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
 
-/// Frames on each side whose colours count.
+/// Number of frames on each side whose colours count.
 const COLOUR_FRAMES: usize = 16;
 
 /// One round over the frames.
 #[derive(Debug)]
 pub(crate) struct Round {
-    /// Frames that each frame waits for.
+    /// Number of later frames for which each frame waits.
     delay: usize,
     solver: Solver,
     waiting: VecDeque<Waiting>,
-    /// Evidence of the newest frame with that of the frames before it.
+    /// Log-odds of the newest frame joined with those of the frames before it.
     past: Option<Plane>,
-    /// Colours of the frames that have left, the last ones.
+    /// Colours of the last frames that have left.
     colours: VecDeque<ColourCounts>,
 }
 
@@ -45,16 +45,16 @@ struct Waiting {
 /// A frame that leaves a round.
 pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
-    /// The log-odds that it came with.
+    /// The log-odds with which it came.
     own: Plane,
-    /// Log-odds of object against background with the evidence of other frames, nats.
+    /// Log-odds of object against background, joined with those of other frames, nats.
     pub(crate) log_odds: Plane,
     /// 1 where the frame shows an object, else 0.
     pub(crate) mask: Vec<u8>,
 }
 
 impl Foreground {
-    /// The frame's record and log-odds for the second round.
+    /// The frame's record and its log-odds for the second round, which contain the cut of the first.
     pub(crate) fn for_second_round(self) -> (Rc<Record>, Plane) {
         let Foreground { record, own: mut log_odds, mask, .. } = self;
         for (log_odds, &object) in log_odds.values_mut().iter_mut().zip(&mask) {
@@ -100,17 +100,17 @@ impl Round {
             self.colours.pop_front();
         }
         let ratios = colours.ratios();
-        let price = |(p, log_odds): (usize, &f32)| {
+        let penalty = |(p, log_odds): (usize, &f32)| {
             model().automatic * (log_odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
         };
         let [width, height] = record.size();
-        let ground = Plane::from_vec(width, height, log_odds.values().iter().enumerate().map(price).collect());
-        let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
+        let ground = Plane::from_vec(width, height, log_odds.values().iter().enumerate().map(penalty).collect());
+        let mask =
+            record.edge_weights(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
         Some(Foreground { record, own, log_odds, mask })
     }
 
-    /// The evidence of the frame that has waited longest with that of all others, its colours by that evidence, and those of the waiting
-    /// frames of its scene by theirs.
+    /// The joined log-odds of the frame that has waited longest, its colours by these, and the colours of the waiting frames of its scene.
     fn with_future(&self) -> Option<(Plane, ColourCounts, ColourCounts)> {
         let of_scene = self.waiting.iter().skip(1).take_while(|waiting| waiting.record.back.is_some());
         let last_of_colours = of_scene.count().min(COLOUR_FRAMES);
@@ -136,7 +136,7 @@ impl Round {
         None
     }
 
-    /// A frame's own evidence and that of another one, carried to it.
+    /// A frame's own log-odds plus those carried to it from a neighbour.
     fn joined(&self, own: &Plane, carried: &Plane) -> Plane {
         let mut joined = own.clone();
         let pixels = joined.values_mut().iter_mut().zip(carried.values());

@@ -10,28 +10,28 @@ use crate::components::{Component, Connectivity, components};
 /// The annotations of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct FrameAnnotation {
-    /// In the order in which they were last changed: later ones go over earlier ones.
+    /// In the order of their last change; later ones cover earlier ones.
     painted: Vec<Strokes>,
-    /// By object, ascending.
+    /// In ascending order of objects.
     prompts: Vec<Outlined>,
-    /// By object, ascending: 0 at separate pieces that strokes have taken away, 255 elsewhere.
+    /// In ascending order of objects: 0 in separate pieces that strokes have removed, 255 elsewhere.
     pieces: Vec<(u8, Runs)>,
-    /// By object, ascending: 1 where it was when strokes were first drawn in the frame.
+    /// In ascending order of objects: 1 in the object's mask before strokes were first drawn in the frame.
     bases: Vec<(u8, Runs)>,
-    /// By object, ascending: 1 where it was right after it was annotated with strokes, which a person has seen.
+    /// In ascending order of objects: 1 in the mask that a person saw right after strokes were drawn.
     seen: Vec<(u8, Runs)>,
-    /// Objects that are propagated from here.
+    /// Objects of which this frame is an anchor.
     pub(super) anchored: Vec<u8>,
-    /// Other objects of a user that a label map which names none takes pixels from.
+    /// Annotated objects from which a label map without object numbers takes pixels.
     pub(super) takes_from: Vec<u8>,
 }
 
 saved!(FrameAnnotation { painted, prompts, pieces, bases, seen, anchored, takes_from });
 
-/// A label of each full-size pixel, or 255 for nothing.
+/// Strokes or a label map: a label for each full-size pixel, 255 where there is none.
 #[derive(Clone, Debug, PartialEq)]
 struct Strokes {
-    /// 0 for a label map.
+    /// Number of the object; 0 for a label map.
     object: u8,
     labels: Runs,
     spread: Spread,
@@ -39,7 +39,7 @@ struct Strokes {
 
 saved!(Strokes { object, labels, spread });
 
-/// A prompt, and its outline: the object's number, 0 elsewhere, 255 where another object is.
+/// A prompt, and its outline: the object's number inside, 0 outside, 255 where another object keeps its pixels.
 #[derive(Clone, Debug, PartialEq)]
 struct Outlined {
     prompt: Prompt,
@@ -51,7 +51,7 @@ saved!(Outlined { prompt, labels });
 /// A new annotation of a frame.
 #[derive(Clone, Debug)]
 pub(super) enum Change {
-    /// Label maps and strokes; empty ones take back.
+    /// Label maps and strokes; empty ones remove earlier ones.
     Painted(Vec<Painted>),
     Prompt(Prompt),
 }
@@ -67,7 +67,7 @@ impl FrameAnnotation {
         painted.chain(self.prompts.iter().map(|of| &of.labels)).chain(pieces).all(|labels| labels.is_valid(pixels))
     }
 
-    /// Puts a label map or strokes in the place of those of the same object. An empty label map takes back everything.
+    /// Replaces the label map, or the strokes of the same object. An empty label map removes all annotations of the frame.
     #[inline(never)]
     pub(super) fn paint(&mut self, painted: &Painted) {
         let object = painted.object.unwrap_or(0);
@@ -87,7 +87,7 @@ impl FrameAnnotation {
         }
     }
 
-    /// Puts a prompt with its outline in the place of that of the same object.
+    /// Replaces the prompt of the same object and its outline.
     #[inline(never)]
     pub(super) fn point(&mut self, prompt: Prompt, labels: &[u8]) {
         self.take_back_prompt(prompt.object);
@@ -97,7 +97,7 @@ impl FrameAnnotation {
         }
     }
 
-    /// Forgets what is about deleted objects alone, by the numbers that objects are given. A label map also says where others are not.
+    /// Removes the strokes and prompts of deleted objects, whose `numbers` are 0. Label maps stay, because they also exclude other objects.
     #[inline(never)]
     pub(super) fn forget(&mut self, numbers: &[u8]) {
         for object in (1..UNLABELLED).filter(|&object| numbers[usize::from(object)] == 0) {
@@ -129,35 +129,36 @@ impl FrameAnnotation {
         self.painted.iter().find(|strokes| strokes.object == object)
     }
 
-    /// The strokes of an object: its number, 0 where it is not, 255 for nothing.
+    /// The strokes of an object: its number inside, 0 outside, 255 where there are none.
     pub(super) fn painted_of(&self, object: u8) -> Option<Vec<u8>> {
         Some(self.strokes(object)?.labels.values())
     }
 
-    /// The label map, if it is about an object: if it names it, or none.
+    /// The label map, if it annotates an object: if it contains the object's number, or no object number at all.
     fn map_of(&self, object: u8) -> Option<&Strokes> {
         self.strokes(0).filter(|_| self.names_in_map(object) || self.names_no_object())
     }
 
-    /// Whether its label map names no object: where it is 0, there is none.
+    /// Whether there is a label map without object numbers. It erases all objects at its zeros.
     #[inline(never)]
     pub(super) fn names_no_object(&self) -> bool {
         self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == UNLABELLED))
     }
 
-    /// Whether anything is about an object by its number.
+    /// Whether any annotation has the number of an object.
     #[inline(never)]
     pub(super) fn names(&self, object: u8) -> bool {
         self.names_in_map(object) || self.strokes(object).is_some() || self.outlined(object).is_some()
     }
 
-    /// Whether other annotations of the frame say the same of an object by its number; of 0, of all under a label map that names none.
+    /// Whether other annotations of the frame annotate an object equally by its number. For 0, whether both have the same label map without
+    /// object numbers.
     #[inline(never)]
     pub(super) fn agrees(&self, other: &FrameAnnotation, object: u8) -> bool {
         self.about(object) == other.about(object)
     }
 
-    /// The label map, strokes and outline that are about an object by its number; of 0, a label map that names none.
+    /// The label map, strokes and outline that have the number of an object; for 0, a label map without object numbers.
     #[inline(never)]
     fn about(&self, object: u8) -> (Option<&Strokes>, Option<&Strokes>, Option<&Outlined>) {
         let is_map = if object == 0 { self.names_no_object() } else { self.names_in_map(object) };
@@ -165,7 +166,7 @@ impl FrameAnnotation {
         (map, self.strokes(object).filter(|_| object > 0), self.outlined(object))
     }
 
-    /// Whether seeds of an object were added to those before, and none taken back.
+    /// Whether seeds of an object were only added since `before`, none removed.
     pub(super) fn extends(&self, before: &FrameAnnotation, object: u8) -> bool {
         if self.agrees(before, object) {
             return true;
@@ -175,16 +176,16 @@ impl FrameAnnotation {
         before.seeds(object).unwrap_or_default().iter().enumerate().all(is_kept)
     }
 
-    /// Whether other annotations of the frame are the same.
+    /// Whether other annotations of the frame have the same labels and prompts.
     pub(super) fn is_same(&self, other: &FrameAnnotation) -> bool {
         self.painted == other.painted && self.prompts == other.prompts
     }
 
-    /// A separate piece of an object goes as a whole when a stroke in it takes pixels away. The frame shows the labels `now`, and `before`
-    /// are its annotations so far.
+    /// Removes a separate piece of an object as a whole when a new stroke removes pixels in it. `now` are the labels that the frame shows,
+    /// `before` its annotations so far.
     #[inline(never)]
     pub(super) fn drop_pieces(&mut self, before: &FrameAnnotation, now: &[u8], width: usize) {
-        // A piece whose stroke was taken back is the object's again.
+        // A piece whose stroke was taken back belongs to the object again.
         let mut pieces = std::mem::take(&mut self.pieces);
         pieces.retain(|(object, piece)| {
             let seeds = self.seeds(*object).unwrap_or_default();
@@ -199,12 +200,12 @@ impl FrameAnnotation {
             let old = before.seeds(object);
             let inside: Vec<u8> = now.iter().map(|&label| u8::from(label == object)).collect();
             let parts = components(&inside, width, Connectivity::Eight);
-            let mut is_said = vec![false; parts.list.len()];
-            // First and last column and row of the strokes in each.
+            let mut is_annotated = vec![false; parts.list.len()];
+            // First and last column and row of the new strokes in each component.
             let mut strokes = vec![[usize::MAX, usize::MAX, 0, 0]; parts.list.len()];
             for p in 0..now.len() {
                 let part = parts.of[p] as usize;
-                is_said[part] |= seeds[p] == Seed::Object;
+                is_annotated[part] |= seeds[p] == Seed::Object;
                 if seeds[p] == Seed::Other && old.as_ref().is_none_or(|old| old[p] != Seed::Other) {
                     let ([x, y], [left, top, right, bottom]) = ([p % width, p / width], strokes[part]);
                     strokes[part] = [left.min(x), top.min(y), right.max(x), bottom.max(y)];
@@ -214,10 +215,10 @@ impl FrameAnnotation {
             let goes = |part: usize| {
                 let (Component { label, size, bounds, .. }, drawn) = (parts.list[part], strokes[part]);
                 let length = |[left, top, right, bottom]: [usize; 4]| (right - left).max(bottom - top) + 1;
-                if label == 0 || is_said[part] || drawn[0] > drawn[2] {
+                if label == 0 || is_annotated[part] || drawn[0] > drawn[2] {
                     return false;
                 }
-                // A dab in a large piece may be about part of it; a stroke through it is not.
+                // A short stroke in a large piece may be about part of it; a stroke across the piece is about all of it.
                 let is_through = length(drawn) as f32 > (1.0 - model().uncrossed) * length(bounds) as f32;
                 (size as f32) < model().piece * all as f32 || is_through && 2 * size < all
             };
@@ -236,7 +237,7 @@ impl FrameAnnotation {
         }
     }
 
-    /// Keeps where objects are before strokes change them, by the labels that the frame shows.
+    /// Keeps the masks of objects before strokes change them, from the labels that the frame shows.
     #[inline(never)]
     pub(super) fn keep_bases(&mut self, shown: &[u8]) {
         let mut is_shown = [false; 256];
@@ -252,12 +253,12 @@ impl FrameAnnotation {
         self.bases = (1..UNLABELLED).filter(|&k| is_stroked(k)).map(base).collect();
     }
 
-    /// Where an object was before strokes were drawn: 1 at its pixels. There is none without strokes.
+    /// The mask of an object before strokes were drawn: 1 inside. `None` without strokes.
     pub(super) fn base(&self, object: u8) -> Option<Vec<u8>> {
         self.bases.iter().find(|(of, _)| *of == object).map(|(_, base)| base.values())
     }
 
-    /// Keeps where changed objects with strokes are in the labels of the frame.
+    /// Keeps the masks of changed objects with strokes, from the labels of the frame.
     #[inline(never)]
     pub(super) fn keep_seen(&mut self, labels: &[u8], changing: &ObjectSet) {
         let seen = |k: u8| {
@@ -268,7 +269,7 @@ impl FrameAnnotation {
         self.seen = self.bases.iter().map(|(k, _)| seen(*k)).filter(|(_, seen)| seen.names(1)).collect();
     }
 
-    /// Where an object was right after strokes were drawn, if it was anywhere: 1 at its pixels.
+    /// The mask of an object right after strokes were drawn: 1 inside. `None` if it had no pixels.
     pub(super) fn seen(&self, object: u8) -> Option<Vec<u8>> {
         self.seen.iter().find(|(of, _)| *of == object).map(|(_, seen)| seen.values())
     }
@@ -277,20 +278,20 @@ impl FrameAnnotation {
         self.strokes(0).is_some_and(|map| map.labels.names(object))
     }
 
-    /// Whether the mask of an object is painted as a whole: what a prompt outlines is no one's word.
+    /// Whether a person has painted the whole mask of an object. The outline of a prompt does not count.
     pub(super) fn is_whole(&self, object: u8) -> bool {
         let painted = [self.strokes(object), self.strokes(0).filter(|_| self.names_in_map(object))];
         painted.into_iter().flatten().any(|of| !of.labels.names(UNLABELLED))
     }
 
-    /// Where the annotations of an object spread.
+    /// The frames to which the annotations of an object spread.
     #[inline(never)]
     pub(super) fn spread_of(&self, object: u8) -> Spread {
         let painted = self.strokes(object).or(self.map_of(object)).map(|strokes| strokes.spread);
         painted.or(self.prompt(object).map(|prompt| prompt.spread)).unwrap_or_default()
     }
 
-    /// The seeds of an object at full size, if anything is said of it. Strokes go before a label map, and that before a prompt.
+    /// The seeds of an object at full size, if it is annotated. Strokes take precedence over a label map, and that over a prompt.
     #[inline(never)]
     pub(super) fn seeds(&self, object: u8) -> Option<Vec<Seed>> {
         let mut seeds: Option<Vec<Seed>> = None;
@@ -310,13 +311,13 @@ impl FrameAnnotation {
         seeds
     }
 
-    /// The seeds of an object at full size that were painted, if any were.
+    /// The seeds of an object at full size, if it was painted.
     pub(super) fn painted_seeds(&self, object: u8) -> Option<Vec<Seed>> {
         let is_painted = self.strokes(object).is_some() || self.names_in_map(object);
         is_painted.then(|| self.seeds(object)).flatten()
     }
 
-    /// The painted labels at full size: the number of an object, 0 for the ground of a label map, 255 for nothing.
+    /// The painted labels at full size: the number of an object, 0 for the ground of a label map, 255 where nothing is painted.
     #[inline(never)]
     pub(super) fn painted_labels(&self) -> Option<Vec<u8>> {
         let mut painted: Option<Vec<u8>> = None;
@@ -334,7 +335,7 @@ impl FrameAnnotation {
         painted
     }
 
-    /// Whether a pixel is within all boxes of prompts.
+    /// Whether a pixel is inside the boxes of all prompts.
     pub(super) fn is_within(&self, [x, y]: [usize; 2]) -> bool {
         let boxes = self.prompts.iter().filter_map(|of| of.prompt.within);
         boxes
@@ -342,7 +343,7 @@ impl FrameAnnotation {
             .all(|[left, top, columns, rows]| (left..left + columns).contains(&x) && (top..top + rows).contains(&y))
     }
 
-    /// The numbers that prompts outline, with their pixels.
+    /// The objects of prompts, with their outlines.
     pub(super) fn outlines(&self) -> impl Iterator<Item = (u8, Vec<u8>)> + '_ {
         self.prompts.iter().map(|of| (of.prompt.object, of.labels.values()))
     }

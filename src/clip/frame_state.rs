@@ -1,23 +1,23 @@
-//! A frame of a segmented clip: the labels found automatically, a person's annotation of it, and the layer that comes of all annotations.
+//! A frame of a segmented clip: the labels found automatically, a person's annotation, and the layer that follows from all annotations.
 
-use super::evidence::KeptLayeredMotion;
 use super::frame_annotation::FrameAnnotation;
 use super::layer::Layer;
+use super::pairs::KeptLayeredMotion;
 use super::saved::saved;
 use super::tracker::Tracked;
 
 #[derive(Clone, Debug)]
 pub(super) struct FrameState {
-    /// As the clip was segmented, working size.
+    /// As segmented automatically, at the working size.
     pub(super) found: Layer,
     pub(super) annotation: Option<FrameAnnotation>,
-    /// Lies over the labels found automatically.
+    /// Labels over those found automatically.
     pub(super) layer: Option<Layer>,
-    /// Whether a person finds the frame right: its layer has all its labels.
+    /// Whether a person has accepted the frame. Its layer then has all its labels.
     pub(super) accepted: bool,
-    /// To the next frame of the scene.
+    /// Motion to the next frame of the scene.
     pub(super) onward: Option<KeptLayeredMotion>,
-    /// To the frame before.
+    /// Motion to the previous frame.
     pub(super) back: Option<KeptLayeredMotion>,
 }
 
@@ -35,17 +35,17 @@ impl FrameState {
         }
     }
 
-    /// Whether a person accepted the frame with an object in it.
+    /// Whether the frame was accepted with an object in it.
     pub(super) fn accepts(&self, object: u8) -> bool {
         self.accepted && self.layer.as_ref().is_some_and(|layer| layer.names(object))
     }
 
-    /// Whether annotations of the frame are anchors of an object.
+    /// Whether the annotated frame is an anchor of an object.
     pub(super) fn anchors(&self, object: u8) -> bool {
         self.annotation.as_ref().is_some_and(|annotation| annotation.anchored.contains(&object))
     }
 
-    /// Whether it fits the numbers of pixels of the working size and of the full size.
+    /// Whether it fits the numbers of pixels at the working size and at full size.
     pub(super) fn is_valid(&self, pixels: usize, full: usize) -> bool {
         self.found.labels.is_valid(pixels)
             && self.found.log_odds.is_valid(pixels)

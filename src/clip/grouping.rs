@@ -1,11 +1,11 @@
-//! Objects by the whole clip: which of them are parts of one, which are none, and their final numbers.
+//! Objects judged by the whole clip: which are parts of one object, which are mistakes, and their final numbers.
 //!
-//! Parts that move together while they are seen together are one object (the Gestalt law of common fate). An object of a few frames in a
-//! longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,
+//! Parts that move together while both are visible are one object (the Gestalt law of common fate). An object that lasts only a few frames
+//! of a longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,
 //! leftmost pixel.
 
-use super::evidence::LayeredMotion;
 use super::identity::MAX_OBJECTS;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::labelling::BACKGROUND;
 use crate::order::sort_few;
@@ -13,7 +13,7 @@ use crate::order::sort_few;
 /// All objects of a clip, counted frame by frame.
 pub(crate) struct Census {
     objects: Vec<Option<Seen>>,
-    /// Pairs of objects that were seen together, in order.
+    /// Pairs of objects that were visible together, in the order of their first meeting.
     meetings: Vec<Meeting>,
     /// First frame of every scene.
     scenes: Vec<usize>,
@@ -26,19 +26,19 @@ struct Seen {
     scene: usize,
     frames: usize,
     last: usize,
-    /// First frame, and there the pixels it lacks, and its first pixel: what it is numbered by.
+    /// Sort key of its number: the first frame; in that frame the number of pixels outside the object, and its first pixel.
     order: (usize, usize, usize),
 }
 
-/// How two objects moved while they were seen together.
+/// How two objects moved while both were visible.
 struct Meeting {
     numbers: [u8; 2],
-    /// Frames in which they moved.
+    /// Number of frames in which both moved.
     frames: usize,
     /// Sum of the differences of their motions, and of their displacements relative to the background, working pixels.
     difference: f64,
     displacement: f64,
-    /// Smallest distance, in roots of the smaller one's pixels.
+    /// Smallest distance, relative to the root of the smaller object's number of pixels.
     distance: f64,
 }
 
@@ -52,7 +52,7 @@ struct Sighting {
     bounds: [usize; 4],
     /// Mean displacement to the next frame.
     displacement: [f64; 2],
-    /// Index of the motion that most of its pixels have.
+    /// Index of the most frequent motion of its pixels.
     motion: usize,
 }
 
@@ -116,7 +116,7 @@ impl Census {
         meeting.distance = meeting.distance.min(length([gap(0), gap(2)], [0.0; 2]) / root);
     }
 
-    /// The final number of each object, by the number it has; those that are none have 0.
+    /// The final number of each object, by its current number; 0 for those that are dropped.
     pub(crate) fn final_numbers(&self) -> [u8; 256] {
         let mut group: Vec<usize> = (0..self.objects.len()).collect();
         for meeting in self.meetings.iter().filter(|meeting| meeting.is_of_one_object()) {

@@ -1,23 +1,23 @@
-//! Frames that are held back until it is known what moves after them.
+//! Frames wait here until it is known whether anything moves soon after them.
 
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use super::evidence::shows_object;
+use super::pairs::shows_object;
 use super::record::Record;
 use crate::frame::Plane;
 
-/// A frame in which nothing moves is no evidence of ground if something moves in one so near to it: frames may be shown several times, as
-/// where the rate was raised, or what moves stops for a moment. From 12 to 60 frames a second the third of five is this far from the others.
+/// A frame at rest does not count as background if anything moves within this many frames of it: a recording may repeat frames, as where
+/// its rate was raised, or an object may pause. From 12 to 60 frames a second, the third of five equal frames is this far from the others.
 const REACH: usize = 2;
 
 /// The newest frames, with the log-odds of their own pairs.
 #[derive(Debug)]
 pub(super) struct HeldFrames {
-    /// How many are held back.
+    /// Number of frames that are held back.
     delay: usize,
     frames: VecDeque<(Rc<Record>, Plane)>,
-    /// Frames since something moved.
+    /// Number of frames since anything moved.
     frames_at_rest: usize,
 }
 
@@ -32,7 +32,7 @@ impl HeldFrames {
         if self.frames.len() > self.delay { self.next() } else { None }
     }
 
-    /// The frame that is held longest. Its log-odds are zero where they would be those of a pause.
+    /// Releases the frame that has been held longest. Its log-odds are set to zero if it is a pause.
     pub(super) fn next(&mut self) -> Option<(Rc<Record>, Plane)> {
         let (record, mut log_odds) = self.frames.pop_front()?;
         // A scene begins as if nothing had moved for long.
@@ -52,7 +52,7 @@ impl HeldFrames {
         self.frames.back().map(|(record, _)| &**record)
     }
 
-    /// The log-odds of the newest frames, as many as these.
+    /// The log-odds of the newest frames, at most `count`.
     pub(super) fn newest_log_odds(&mut self, count: usize) -> impl Iterator<Item = &mut Plane> {
         self.frames.iter_mut().rev().take(count).map(|(_, log_odds)| log_odds)
     }

@@ -1,9 +1,9 @@
-//! Which foreground is which object: numbers that last from an object's first frame to its last.
+//! Which foreground is which object: numbers that stay the same from an object's first frame to its last.
 //!
-//! The labels of the frame before are carried along the motions. A connected region that one object leads to is that object, with all the
-//! parts that single frames give motions of their own. Where several lead to one region, they share it (`identity/sharing.rs`). A region
-//! that none leads to, or a piece of one that does not move with it, may be an object, or a part of one, that was hidden. Else a region is
-//! a new object. Pieces of an object that move apart are two.
+//! The labels of the previous frame are carried along the motions. A connected region that gets labels of one object is that object,
+//! including the parts to which single frames give motions of their own. A region that gets labels of several objects is shared among them
+//! (`identity/sharing.rs`). A region without labels, or a piece that moves independently, may be an object, or a part of one, that was
+//! hidden; else it is a new object. Pieces of an object that move apart become two objects.
 
 mod object;
 mod sharing;
@@ -21,12 +21,12 @@ use crate::model::Model;
 use crate::order::{descending, sort_few};
 use object::{Apart, Object};
 use sharing::share;
-use sight::{Sight, telling};
+use sight::{Sight, shown_motion};
 
 /// Largest number of an object: 255 is kept for unlabelled pixels.
 pub(crate) const MAX_OBJECTS: usize = 254;
 
-/// An object that was a part of another one before a frame.
+/// An object that was part of another one before a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Parting {
     pub(crate) frame: usize,
@@ -37,16 +37,16 @@ pub(crate) struct Parting {
 /// The objects of a clip so far.
 #[derive(Debug)]
 pub(crate) struct Identities {
-    /// Whether all that is found is one object, the main subject.
+    /// Whether everything that is found is one object, the main subject.
     subject: bool,
     objects: Vec<Object>,
-    /// In order.
+    /// In order of frames.
     pub(crate) parted: Vec<Parting>,
     /// The last frame and its labels.
     last: Option<(Rc<Record>, Vec<u8>)>,
     /// Number of the next new object.
     next: usize,
-    /// Objects that got no number.
+    /// Number of objects for which no number was left.
     pub(crate) dropped: usize,
 }
 
@@ -84,7 +84,8 @@ impl Identities {
         labels
     }
 
-    /// The labels of the frame before where the motions lead, and the objects moved on. A new scene has none.
+    /// The labels of the previous frame, carried along the motions; 255 where there is none. Moves the objects on; a new scene begins
+    /// without objects.
     fn carried(&mut self, record: &Record, mask: &[u8]) -> Vec<u8> {
         let (Some(back), Some((last, labels))) = (&record.back, &self.last) else {
             self.objects.clear();
@@ -92,7 +93,7 @@ impl Identities {
         };
         let return_flow = last.onward.as_ref().filter(|flow| flow.measured);
         let mut carried = carried_labels(labels, back, return_flow, UNLABELLED);
-        // Where nothing is seen to move, an object may be hidden.
+        // A repeated frame shows no motion: the objects stay where they are.
         if !record.repeats {
             self.objects.iter_mut().for_each(Object::move_on);
             self.follow_velocities(labels, mask, record.size()[0], &mut carried);
@@ -100,7 +101,7 @@ impl Identities {
         carried
     }
 
-    /// Foreground that the motions lead to no object, as one of its pairs took it for background, may be where an object's velocity leads.
+    /// Gives foreground without a carried label, which one of its pairs took for background, the object whose velocity leads there.
     fn follow_velocities(&self, labels: &[u8], mask: &[u8], width: usize, carried: &mut [u8]) {
         let height = (labels.len() / width) as f64;
         let lost = |label: u8| label == 0 || label == UNLABELLED;
@@ -116,15 +117,15 @@ impl Identities {
         }
     }
 
-    /// A piece that comes out from behind an object touches it, and the motions of one pair lead it there. It moves by itself, as a hidden
-    /// object did, and has more of its colours than of those of the object in front. Such pieces count as carried from hidden objects, whose
-    /// numbers are returned.
+    /// Finds pieces that come out from behind an object. Such a piece touches the object in front, and the motions of one pair carry it
+    /// from there; but it moves independently, as a hidden object did, and its colours are more like those of the hidden object. It then
+    /// counts as carried from the hidden object. Returns the numbers of these objects.
     fn emerge(&self, record: &Record, mask: &[u8], smallest: usize, carried: &mut [u8]) -> Vec<u8> {
-        let Some(along) = telling(record) else { return Vec::new() };
+        let Some(along) = shown_motion(record) else { return Vec::new() };
         let moving: Vec<u8> =
             mask.iter().zip(&along.labels[..]).map(|(&m, &k)| if m > 0 { k + 1 } else { 0 }).collect();
         let pieces = regions(&components(&moving, along.width, Connectivity::Eight), smallest);
-        // The object that most of a piece is carried from, and how much of the piece is.
+        // The object from which most of a piece is carried, and how many of its pixels are.
         let owners: Vec<(Option<&Object>, usize)> = pieces.iter().map(|piece| self.owner(piece, carried)).collect();
         let mut emerged = Vec::new();
         for (piece, (owner, count)) in pieces.iter().zip(&owners) {
@@ -134,7 +135,7 @@ impl Identities {
             if let Some(owner) = owner
                 && owners.iter().all(largest)
             {
-                // However little of a covered object is in sight, it keeps its place in the region.
+                // A covered object keeps its place in the region, however little of it is visible.
                 if owner.is_covered() && 2 * count >= piece.len() {
                     emerged.push(owner.number);
                 }
@@ -151,7 +152,7 @@ impl Identities {
         emerged
     }
 
-    /// The object that most pixels of a piece are carried from, and from how many.
+    /// The object from which most pixels of a piece are carried, and how many are.
     fn owner(&self, piece: &[usize], carried: &[u8]) -> (Option<&Object>, usize) {
         let counts = counts(piece, carried);
         let of = |object: &Object| counts[usize::from(object.number)];
@@ -159,7 +160,7 @@ impl Identities {
         (owner, owner.map_or(0, of))
     }
 
-    /// The objects that lead to a region, by number; those that have emerged do with any of their pixels.
+    /// The numbers of the objects from which a sufficient share of a region is carried; of emerged objects any pixel is sufficient.
     fn claims(&self, pixels: &[usize], carried: &[u8], emerged: &[u8]) -> Vec<u8> {
         let counts = counts(pixels, carried);
         let size = pixels.len() as f64;
@@ -173,12 +174,12 @@ impl Identities {
         numbers
     }
 
-    /// The object that a region is, or is a part of, which was hidden until now.
+    /// The known object that a region is, or is a part of, after it was hidden.
     fn returned(&self, sight: &Sight) -> Option<u8> {
         self.most_alike(sight, 0.0, |object| object.is_covered() || object.moves_like(sight))
     }
 
-    /// The object near a place whose colours are most alike among those that may be there, if they are more alike than `least`.
+    /// The object near a region whose colours are most like it, among those that `may_be` it, if they are more alike than `least`.
     fn most_alike(&self, sight: &Sight, least: f64, may_be: impl Fn(&Object) -> bool) -> Option<u8> {
         let mut best = (least.max(f64::from(model().likeness)), None);
         for object in &self.objects {
@@ -199,7 +200,7 @@ impl Identities {
         Some((self.next - 1) as u8)
     }
 
-    /// Gives pieces that have moved apart from their object for some frames numbers of their own.
+    /// Gives new numbers to pieces that have moved apart from their object for some frames.
     fn part(&mut self, record: &Record, labels: &mut [u8]) {
         let Some(along) = record.onward.as_ref().or(record.back.as_ref()) else { return };
         let found = components(labels, record.size()[0], Connectivity::Eight);
@@ -244,7 +245,7 @@ impl Identities {
     }
 }
 
-/// The pixels of every component that has a label other than 0 and at least `smallest` pixels; the largest component first.
+/// The pixels of each component with a label other than 0 and at least `smallest` pixels, the largest component first.
 fn regions(found: &Components, smallest: usize) -> Vec<Vec<usize>> {
     let mut pixels = vec![Vec::new(); found.list.len()];
     found.of.iter().enumerate().for_each(|(p, &k)| pixels[k as usize].push(p));
@@ -253,7 +254,7 @@ fn regions(found: &Components, smallest: usize) -> Vec<Vec<usize>> {
     order.iter().filter(large).map(|&k| std::mem::take(&mut pixels[k])).collect()
 }
 
-/// How many of some pixels are carried from each object.
+/// How many of some pixels are carried from each object, by number.
 fn counts(pixels: &[usize], carried: &[u8]) -> [usize; 256] {
     let mut counts = [0; 256];
     pixels.iter().for_each(|&p| counts[usize::from(carried[p])] += 1);

@@ -1,5 +1,5 @@
-//! All annotations take effect in one order: numbers that are kept free, deletions, locks and names, accepted frames, label maps and
-//! strokes, prompts, and objects that are merged.
+//! Annotations that are given together take effect in a fixed order: reserved numbers, deletions, locks and names, accepted frames, label
+//! maps and strokes, prompts, merges.
 
 use std::collections::VecDeque;
 
@@ -13,15 +13,15 @@ use crate::error::{Error, Result};
 use crate::frame::Frame;
 
 impl SegmentedClip {
-    /// Takes what a person says. It is checked at once, and takes effect as the job takes the frames that it wants.
+    /// Begins a job that applies annotations. They are checked at once, and take effect as the job takes the frames that it wants.
     ///
-    /// Nothing that a person named, painted, gave, prompted, accepted or locked changes when something else is said. An object that was found
-    /// automatically changes by the pixels that another one takes from it or gives back.
+    /// Objects that a person has named, painted, given as masks, prompted, accepted or locked change only by annotations of themselves. An
+    /// object found automatically changes by the pixels that annotated objects take from it or give back.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), labels that do not fill the frame, prompts that are not
-    /// within the frame, and numbers that are not those of objects; [`Error::ObjectLocked`] for what is said of a locked object. Nothing is
-    /// changed then.
+    /// [`Error::InvalidOption`] for a frame index that is not below [`len`](Self::len), labels that do not fill the frame, prompts outside
+    /// the frame, and numbers that are not those of objects; [`Error::ObjectLocked`] for annotations of a locked object. The clip is then
+    /// unchanged.
     pub fn annotate(&mut self, annotations: Annotations) -> Result<ClipJob> {
         ClipJob::new(self, annotations)
     }
@@ -41,7 +41,7 @@ impl SegmentedClip {
 /// }
 /// let mut clip = segmenter.conclude();
 ///
-/// // The left half of frame 1 is object 7; nothing is said of the rest.
+/// // The left half of frame 1 is object 7; the rest is not annotated.
 /// let labels = (0..64 * 48).map(|p| if p % 64 < 32 { 7 } else { 255 }).collect();
 /// let corrections = vec![Painted { frame: 1, object: None, labels, spread: Spread::Both }];
 /// let mut job = clip.annotate(Annotations { corrections, ..Annotations::default() })?;
@@ -57,9 +57,9 @@ impl SegmentedClip {
 pub struct ClipJob {
     steps: VecDeque<Step>,
     correction: Option<SceneCorrection>,
-    /// Objects that are locked when all steps are done.
+    /// Objects to lock when all steps are done.
     locks: Vec<u8>,
-    /// Objects and their new numbers, when all steps are done.
+    /// Objects and their new numbers; merges take effect when all steps are done.
     numbers: Vec<[u8; 2]>,
     changes: Changes,
 }
@@ -75,7 +75,7 @@ impl ClipJob {
     fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
         annotations.frames().try_for_each(|frame| clip.check_index(frame))?;
         annotations.check(clip.size())?;
-        if let Some(object) = said_of_locked(clip, &annotations) {
+        if let Some(object) = annotated_locked_object(clip, &annotations) {
             return Err(Error::ObjectLocked { object });
         }
         let locks = locked_last(clip, &annotations);
@@ -88,7 +88,7 @@ impl ClipJob {
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
         }
-        // What is deleted claims nothing from the first step on.
+        // Deleted objects claim no pixel from the first step on.
         job.renumber(clip, true);
         for (set, now) in [(&mut clip.locked, locked), (&mut clip.named, named)] {
             if let Some(objects) = now {
@@ -105,7 +105,7 @@ impl ClipJob {
             let is_new = |of: &Accepted| !clip.frames[of.frame].accepted || of.labels.is_some();
             let accept: Vec<Step> = accepted.into_iter().filter(is_new).map(Step::Accept).collect();
             if !accept.is_empty() {
-                // A frame is accepted as it is seen after the masks.
+                // A frame is accepted as it is after the masks.
                 job.steps.extend(by_scene(clip, painted(&masks, &[])));
                 job.steps.extend(accept);
                 masks.retain(|mask| corrections.iter().any(|painted| painted.frame == mask.frame));
@@ -117,7 +117,7 @@ impl ClipJob {
         Ok(job)
     }
 
-    /// Index of the frame to [`take`](Self::take) next; none when all has taken effect.
+    /// Index of the frame to [`take`](Self::take) next; `None` when all annotations have taken effect.
     pub fn wanted(&self) -> Option<usize> {
         let of_correction = self.correction.as_ref().and_then(SceneCorrection::wanted);
         of_correction.or_else(|| match self.steps.front()? {
@@ -131,7 +131,8 @@ impl ClipJob {
         self.changes.frames()
     }
 
-    /// Pixels that objects gained and lost so far, by frame, then by object; [`Annotations::numbers`] are not counted.
+    /// Numbers of pixels that objects have gained and lost so far, by frame, then by object. Changes by [`Annotations::numbers`] are not
+    /// counted.
     pub fn changes(&self) -> Vec<Changed> {
         self.changes.list()
     }
@@ -160,7 +161,7 @@ impl ClipJob {
         Ok(())
     }
 
-    /// Locks objects and gives them their new numbers once all else is done.
+    /// After the last step, locks objects and gives them their new numbers.
     fn conclude(&mut self, clip: &mut SegmentedClip) {
         if self.wanted().is_none() {
             std::mem::take(&mut self.locks).into_iter().for_each(|object| clip.locked[usize::from(object)] = true);
@@ -177,7 +178,7 @@ impl ClipJob {
     }
 }
 
-/// A step for each scene: what is said of its frames spreads together.
+/// One step per scene: annotations of its frames spread together.
 fn by_scene(clip: &SegmentedClip, changes: impl Iterator<Item = (usize, Change)>) -> impl Iterator<Item = Step> {
     let mut scenes: Vec<VecDeque<(usize, Change)>> = Vec::new();
     for (index, change) in changes {
@@ -190,7 +191,7 @@ fn by_scene(clip: &SegmentedClip, changes: impl Iterator<Item = (usize, Change)>
     scenes.into_iter().map(Step::Correct)
 }
 
-/// What is painted of each frame: a correction goes before the mask of its frame where it says anything.
+/// The painted annotations of each frame. A correction replaces the mask of its frame where it is not 255.
 fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (usize, Change)> {
     let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
     for painted in masks.iter().chain(corrections) {
@@ -202,8 +203,8 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (
         match of_frame.iter_mut().find(|before| before.object == painted.object) {
             None => of_frame.push(painted.clone()),
             Some(mask) => {
-                let said = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNLABELLED);
-                said.for_each(|(mask, label)| *mask = *label);
+                let annotated = mask.labels.iter_mut().zip(&painted.labels).filter(|(_, label)| **label != UNLABELLED);
+                annotated.for_each(|(mask, label)| *mask = *label);
                 mask.spread = painted.spread;
             }
         }
@@ -211,7 +212,7 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (
     frames.into_iter().map(|(index, painted)| (index, Change::Painted(painted)))
 }
 
-/// The objects that are locked together with annotations of themselves, which hold.
+/// Objects that are annotated and locked by the same call. Their annotations still take effect.
 fn locked_last(clip: &SegmentedClip, annotations: &Annotations) -> Vec<u8> {
     let Annotations { masks, corrections, prompts, locked, .. } = annotations;
     let is_about = |object: u8| {
@@ -223,8 +224,8 @@ fn locked_last(clip: &SegmentedClip, annotations: &Annotations) -> Vec<u8> {
     locked.iter().flatten().copied().filter(is_new).collect()
 }
 
-/// An object that was locked before and stays so, of which the annotations say anything new.
-fn said_of_locked(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
+/// An object that was locked before and stays locked, and that the annotations would change.
+fn annotated_locked_object(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
     let Annotations { corrections, prompts, locked, numbers, .. } = annotations;
     let stays_locked = |object: &u8| match locked {
         Some(locked) => locked.contains(object),

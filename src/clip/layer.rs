@@ -1,6 +1,6 @@
 //! Labels of a frame with their log-odds: those found automatically, and those that annotations lay over them.
 
-use super::evidence::KeptLogOdds;
+use super::pairs::KeptLogOdds;
 use super::runs::Runs;
 use super::saved::saved;
 use crate::frame::Plane;
@@ -8,7 +8,7 @@ use crate::frame::Plane;
 /// Labels and log-odds.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// The object of each pixel, 0 for the background. Those of annotations have the full size, and 255 where the labels below show.
+    /// The object of each pixel, 0 for the background. Layers of annotations have full size, and 255 where the labels below show.
     pub(super) labels: Runs,
     /// Log-odds of object against background, nats, working size.
     pub(super) log_odds: KeptLogOdds,
@@ -21,7 +21,7 @@ impl Layer {
         Layer { labels: Runs::of(labels), log_odds: KeptLogOdds::of(log_odds) }
     }
 
-    /// Whether a number labels any pixel.
+    /// Whether any pixel has a number.
     pub(super) fn names(&self, object: u8) -> bool {
         self.labels.names(object)
     }

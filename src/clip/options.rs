@@ -12,7 +12,7 @@ thread_local! {
     static VARIED: std::cell::Cell<ClipModel> = const { std::cell::Cell::new(ClipModel::DEFAULT) };
 }
 
-/// The constants of clips; with the feature `ablation` those that this thread was told to use.
+/// The constants of clips; with the feature `ablation` those set for this thread.
 #[inline(always)]
 pub(crate) fn model() -> ClipModel {
     #[cfg(feature = "ablation")]
@@ -32,11 +32,11 @@ pub fn vary(model: ClipModel) {
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ClipOptions {
-    /// Options of each pair. With `mark_unknown`, pixels whose evidence does not tell an object from the background get the label 255;
+    /// Options of each pair. With `mark_unknown`, pixels whose log-odds do not decide between object and background get the label 255;
     /// `confidence` has no effect.
     pub pair: SegmentOptions,
-    /// Frames whose evidence each frame waits for, 0…[`MAX_LOOK_AHEAD`]; a frame is then compared with the one before it alone. None
-    /// stands for as many as can matter, and for comparisons with both neighbours.
+    /// Number of later frames for which each frame waits, 0…[`MAX_LOOK_AHEAD`]; a frame is then compared with the previous frame alone.
+    /// `None` stands for as many as can matter, and for comparisons with both neighbours.
     pub look_ahead: Option<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! The labels of a frame: those found automatically, with the layer of annotations over them.
+//! The labels of a frame: those found automatically, under the layer of annotations.
 
 use super::annotation::ObjectSet;
 use super::description::{ClipFrame, WorkingFrame};
@@ -20,7 +20,7 @@ impl SegmentedClip {
         let state = &self.frames[index];
         let user_objects = self.user_objects_in(index);
         let is_users = |label: u8| user_objects[usize::from(label)];
-        // A label that the layer must tell apart keeps its number until then.
+        // Labels that the layer distinguishes keep their numbers until the layer is applied.
         let given = |label: u8| match self.numbers[usize::from(label)] {
             number if is_users(label) || is_users(number) => label,
             number => number,
@@ -67,8 +67,8 @@ impl SegmentedClip {
         self.overlaid(index, &self.found_full(index, luminance), &self.user_objects_in(index))
     }
 
-    /// Full-size labels found automatically, with the layer of a frame over them. The found pixels of a user's object do not show, nor a
-    /// deleted one, nor the rest of an object most of which lies under one that was given as masks.
+    /// The labels found automatically, at full size, under the layer of a frame. Found pixels of annotated objects and of deleted ones are
+    /// hidden, and so is the rest of an object most of which lies under masks that were given.
     pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
         let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNLABELLED; found.len()]);
         let mut sizes = [[0usize; 2]; 256];
@@ -90,7 +90,7 @@ impl SegmentedClip {
         layer.iter().zip(found).map(label).collect()
     }
 
-    /// The labels of the layer of a frame, if it has one. Where a user's objects were deleted, the labels below show again.
+    /// The labels of the layer of a frame, if it has one. At the pixels of deleted objects, the labels below show.
     pub(super) fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
         let is_deleted = |label: u8| label > 0 && label != UNLABELLED && self.numbers[usize::from(label)] == 0;
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
@@ -98,8 +98,8 @@ impl SegmentedClip {
         Some(labels)
     }
 
-    /// A layer of full-size labels, if they say anything. `log_odds` has those of a full-size pixel, and of the working pixel that it is the
-    /// corner of.
+    /// The layer of full-size labels; `None` if all are 255. `log_odds` gives the log-odds of a full-size pixel and of the working pixel
+    /// whose corner it is.
     pub(super) fn layer_of(&self, labels: &[u8], log_odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
         if labels.iter().all(|&label| label == UNLABELLED) {
             return None;

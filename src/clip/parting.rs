@@ -1,11 +1,11 @@
-//! Objects that part were two from the start: the pixels of each are followed back to the frames in which they were one.
+//! Objects that part were two from the start: their pixels are followed back through the frames in which they had one number.
 
-use super::evidence::LayeredMotion;
+use super::pairs::LayeredMotion;
 use crate::clip::options::model;
 use crate::components::absorb_small;
 
-/// Divides what has the number `from` in a frame, whose flow to the next one is `onward`, between it and `new`, as their pixels have
-/// these numbers in the next frame, `later`. Tells whether `new` was found.
+/// Divides the pixels with the number `from` in a frame between `from` and `new`, by their numbers in the next frame, `later`, to which
+/// `onward` leads. Returns whether enough pixels of `new` were found.
 pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &LayeredMotion, from: u8, new: u8) -> bool {
     let width = onward.width;
     let mut carried: Vec<u8> = labels.iter().map(|&label| u8::from(label == from)).collect();

@@ -1,9 +1,9 @@
-//! A frame of a clip, and its motions to the frames beside it.
+//! A frame of a clip, with its motions to the neighbouring frames.
 
 use std::rc::Rc;
 
-use super::evidence::{LayeredMotion, shows_object};
 use super::options::model;
+use super::pairs::{LayeredMotion, shows_object};
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
@@ -20,9 +20,9 @@ pub(crate) struct PendingFrame {
     pub(crate) index: usize,
     pub(crate) frame: Rc<Frame>,
     pub(crate) pyramid: Rc<FramePyramid>,
-    /// Whether it shows the frame before again.
+    /// Whether it repeats the previous frame.
     pub(crate) repeats: bool,
-    /// Log-log-odds and flow of the pair with the frame before.
+    /// Log-odds and motion of the pair with the previous frame.
     pub(crate) back: Option<(Plane, LayeredMotion)>,
     /// Whether the log-odds are those of the pair with an earlier frame.
     pub(crate) looked_farther: bool,
@@ -46,8 +46,8 @@ impl PendingFrame {
         frame_motions(&self.frame, &self.pyramid, other, settings, expected)
     }
 
-    /// The record of the frame, and its log-odds by its own pairs: that with the next frame, as far as there is one, and that with the
-    /// frame before. Of the second view of a lone pair the log-odds are zero: it makes the mistakes of the first.
+    /// The record of the frame, and its log-odds by its own pairs: with the next frame, as far as there is one, and with the previous one.
+    /// The log-odds of the second frame of a lone pair are zero, because they would repeat the mistakes of the first.
     pub(crate) fn recorded(
         self,
         (onward_log_odds, onward): (Option<Plane>, Option<LayeredMotion>),
@@ -60,7 +60,7 @@ impl PendingFrame {
             back_log_odds.iter_mut().for_each(|log_odds| log_odds.values_mut().fill(0.0));
         }
         let moves = |flow: &Option<LayeredMotion>| flow.as_ref().is_some_and(|flow| !flow.is_still());
-        // Of both pairs, or of the one in which something moves; zero where there is no pair.
+        // The mean of both pairs, or the pair in which something moves; zero where there is no pair.
         let log_odds = match (onward_log_odds, back_log_odds) {
             (Some(moving), Some(_)) if moves(&onward) && !moves(&back) => moving,
             (Some(_), Some(moving)) if !moves(&onward) && moves(&back) => moving,
@@ -89,22 +89,22 @@ impl PendingFrame {
     }
 }
 
-/// A frame with the evidence of its pairs. Rounds over the clip share it.
+/// A frame with the results of its pairs. The rounds over the clip share it.
 #[derive(Debug)]
 pub(crate) struct Record {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
-    /// In a stream, which describes a frame when it leaves.
+    /// Only in a stream, which describes a frame when it leaves.
     pub(crate) frame: Option<Rc<Frame>>,
-    /// Whether it shows the frame before again.
+    /// Whether it repeats the previous frame.
     pub(crate) repeats: bool,
     /// Quantised colour of every working pixel.
     pub(crate) palette: Palette,
-    /// Weights of edges between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.
+    /// Edge weights for a smoothness of 1. They take less memory than the pictures from which they are computed.
     pub(crate) unit_weights: EdgeWeights,
-    /// To the next frame; none at the end of a scene.
+    /// Motion to the next frame; `None` at the end of a scene.
     pub(crate) onward: Option<LayeredMotion>,
-    /// To the frame before; none at the beginning of a scene.
+    /// Motion to the previous frame; `None` at the beginning of a scene.
     pub(crate) back: Option<LayeredMotion>,
 }
 
@@ -119,13 +119,13 @@ impl Record {
         [&self.onward, &self.back].into_iter().flatten().all(LayeredMotion::is_still)
     }
 
-    /// Weights of edges between labels.
-    pub(crate) fn borders(&self, smoothness: f32) -> EdgeWeights {
+    /// The edge weights for a smoothness.
+    pub(crate) fn edge_weights(&self, smoothness: f32) -> EdgeWeights {
         self.unit_weights.times(smoothness)
     }
 }
 
-/// Weights of edges along the edges of a frame, in units of the smoothness.
+/// The edge weights of a frame for a smoothness of 1.
 fn unit_weights(appearance: &Appearance) -> EdgeWeights {
     EdgeWeights::new(&appearance.pictures[0], SMALLEST_NOISE, 1.0, &Model::DEFAULT)
 }

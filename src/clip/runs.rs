@@ -1,4 +1,4 @@
-//! Run-length code of small numbers: labels and coarse log-odds of a frame take a few kilobytes.
+//! Run-length code of small numbers: it stores the labels or the coarse log-odds of a frame in a few kilobytes.
 
 use super::saved::saved;
 

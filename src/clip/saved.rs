@@ -10,15 +10,15 @@ use crate::pair::frame_motions::Prior;
 pub(super) trait Saved: Sized {
     /// Appends the bytes of the value.
     fn write(&self, bytes: &mut Vec<u8>);
-    /// Takes a value from the front of the bytes; `None` if they end too early or mean no such value.
+    /// Takes a value from the front of the bytes; `None` if they end too early or are not such a value.
     fn read(bytes: &mut &[u8]) -> Option<Self>;
 }
 
-/// The kind of some bytes.
+/// A kind of saved bytes.
 pub(super) struct Format {
     /// Their name in errors.
     pub(super) name: &'static str,
-    /// Their beginning, which no other version has.
+    /// Their beginning, which differs in every version.
     pub(super) mark: &'static str,
 }
 

@@ -1,12 +1,12 @@
-//! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
+//! Clips whose frames can be read again: they are segmented once, and then give any frame, are corrected and saved.
 
 use std::cmp::Ordering;
 
 use super::annotation::{Direction, ObjectSet};
-use super::evidence::LayeredMotion;
 use super::frame_state::FrameState;
 use super::layer::Layer;
 use super::options::ClipOptions;
+use super::pairs::LayeredMotion;
 use super::saved::{Format, saved};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -17,7 +17,7 @@ use crate::pair::settings::Settings;
 
 const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP6 ", env!("CARGO_PKG_VERSION"), "\n") };
 
-/// A clip whose objects are known in every frame. It keeps some kilobytes per frame and not the frames themselves.
+/// A clip whose objects are known in every frame. It stores some kilobytes per frame, and not the frames themselves.
 #[derive(Clone, Debug)]
 pub struct SegmentedClip {
     /// Width and height of the frames.
@@ -28,15 +28,15 @@ pub struct SegmentedClip {
     /// Whether the clip was segmented as a stream is, with a look-ahead.
     pub(super) stream: bool,
     pub(super) dropped: usize,
-    /// The number that each object is given, itself unless it was merged or removed.
+    /// For each object, its number in the results: its own unless the object was merged or deleted.
     pub(super) numbers: Vec<u8>,
-    /// By number: whether nothing changes the object.
+    /// For each object, whether it is locked.
     pub(super) locked: Vec<bool>,
-    /// By number: whether the object is a person's, and only annotations of itself change it.
+    /// For each object, whether a person has named it, so that only annotations of itself change it.
     pub(super) named: Vec<bool>,
-    /// By number: whether masks of the object were given, which take the place of the object that was found there.
+    /// For each object, whether masks of it were given, which replace the object found there.
     pub(super) given: Vec<bool>,
-    /// Of every frame as it was segmented.
+    /// The hash of every segmented frame.
     pub(super) hashes: Vec<u64>,
     pub(super) frames: Vec<FrameState>,
 }
@@ -59,17 +59,17 @@ impl SegmentedClip {
         self.size
     }
 
-    /// Number of objects that were seen when all numbers had been given, and count as background.
+    /// Number of objects for which no number was left; they count as background.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
 
-    /// Whether pixels whose evidence does not decide are to have the label 255 from now on.
+    /// Sets whether pixels whose log-odds do not decide get the label 255.
     pub fn mark_unknown(&mut self, mark: bool) {
         self.mark_unknown = mark;
     }
 
-    /// Indices of the frames in which an object is, by its number of now.
+    /// Indices of the frames that contain an object, by its current number.
     pub fn frames_with(&self, object: u8) -> Vec<usize> {
         let is_it = |(label, _): (u8, usize)| self.numbers[usize::from(label)] == object;
         let is_there = |frame: &FrameState| {
@@ -79,7 +79,7 @@ impl SegmentedClip {
         (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
     }
 
-    /// The objects that are in any frame, by their numbers before any edit.
+    /// The objects in any frame, by their numbers before merges and deletions.
     pub fn objects(&self) -> Vec<u8> {
         let mut is_there: ObjectSet = [false; 256];
         let layers = self.frames.iter().flat_map(|frame| [Some(&frame.found), frame.layer.as_ref()]).flatten();
@@ -87,7 +87,7 @@ impl SegmentedClip {
         (1..UNLABELLED).filter(|&object| is_there[usize::from(object)]).collect()
     }
 
-    /// First and last frame of the scene of a frame.
+    /// First and last frame of the scene that contains a frame.
     pub(super) fn scene(&self, index: usize) -> [usize; 2] {
         let (mut first, mut last) = (index, index);
         while self.frames[first].back.is_some() && first > 0 {
@@ -99,7 +99,7 @@ impl SegmentedClip {
         [first, last]
     }
 
-    /// The objects that annotations of the scene propagate to a frame. There, nothing that was found under their numbers shows.
+    /// The objects that annotations of the scene propagate to a frame. What was found there under their numbers is hidden.
     pub(super) fn user_objects_in(&self, index: usize) -> ObjectSet {
         let [first, last] = self.scene(index);
         let mut objects = [false; 256];
@@ -117,7 +117,7 @@ impl SegmentedClip {
         objects
     }
 
-    /// The objects that only annotations of themselves change: a person locked, named or merged them, or accepted them in some frame.
+    /// The protected objects, which change only by annotations of themselves: locked, named and merged ones, and those in accepted frames.
     pub(super) fn protected(&self) -> ObjectSet {
         let mut protected: ObjectSet = std::array::from_fn(|k| self.locked[k] || self.named[k]);
         for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
@@ -127,7 +127,7 @@ impl SegmentedClip {
         for (k, &number) in self.numbers.iter().enumerate().filter(is_merged) {
             (protected[k], protected[usize::from(number)]) = (true, true);
         }
-        // The background is none, nor is what was deleted.
+        // Neither the background nor a deleted object is protected.
         protected.iter_mut().zip(&self.numbers).for_each(|(of, number)| *of &= *number > 0);
         protected
     }
@@ -183,7 +183,7 @@ impl SegmentedClip {
         ClipOptions { pair, look_ahead: self.stream.then_some(0) }.settings(self.size)
     }
 
-    /// The working size of the clip's frames.
+    /// The scaling from the frames to their working size.
     pub(super) fn scaling(&self) -> Scaling {
         self.settings().scaling(self.size)
     }
@@ -200,7 +200,7 @@ impl SegmentedClip {
         (found.labels.values(), self.log_odds_of(found))
     }
 
-    /// Labels of a frame as the clip was segmented, at a size that is no smaller. Objects that were merged are one.
+    /// The labels of a frame as the clip was segmented, enlarged to a size. Merged objects have one number.
     pub(super) fn found_at(&self, index: usize, size: [usize; 2]) -> Vec<u8> {
         let (objects, labels) = (self.objects_of_found(), self.frames[index].found.labels.values());
         let labels: Vec<u8> = labels.iter().map(|&label| objects[usize::from(label)]).collect();
@@ -213,8 +213,8 @@ impl SegmentedClip {
         self.frames[index].found.labels.each().any(|(label, _)| objects[usize::from(label)] == object)
     }
 
-    /// By label found automatically: the object that it is of. One that was annotated before it was merged goes by its own annotations,
-    /// and one that was deleted tells of what is drawn anew in its place.
+    /// For each label found automatically, its object. An object that was annotated before it was merged keeps its own annotations, and a
+    /// deleted one stands for what is drawn anew in its place.
     pub(super) fn objects_of_found(&self) -> [u8; 256] {
         let is_annotated = |label: u8| self.frames.iter().any(|frame| frame.anchors(label));
         std::array::from_fn(|label| match self.numbers[label] {
@@ -223,13 +223,13 @@ impl SegmentedClip {
         })
     }
 
-    /// To the next frame of the scene; after the last one there is none.
+    /// Motion to the next frame of the scene; `None` after its last frame.
     pub(super) fn onward(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
+        self.frames[index].onward.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
     }
 
-    /// To the frame before; before the first one of a scene there is none.
+    /// Motion to the previous frame; `None` before the first frame of a scene.
     pub(super) fn back(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].back.as_ref().map(|flow| flow.flow(self.scaling().small[0]))
+        self.frames[index].back.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
     }
 }

@@ -1,11 +1,11 @@
 //! Segmentation of a whole clip, frame by frame.
 
 use super::description::{ClipFrame, WorkingFrame};
-use super::evidence::{KeptPairs, Pairs};
 use super::frame_state::FrameState;
 use super::grouping::Census;
 use super::identity::{Identities, Parting};
 use super::options::ClipOptions;
+use super::pairs::{KeptPairs, Pairs};
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
@@ -39,20 +39,20 @@ use crate::options::{MotionCount, Quality, SegmentOptions};
 pub struct ClipSegmenter {
     tracker: Tracker,
     frames: Vec<FrameState>,
-    /// Of every frame so far.
+    /// The hash of every frame so far.
     hashes: Vec<u64>,
-    /// Of the options.
+    /// The hash of the options.
     options: u64,
-    /// Of what the pairs of the newest frame follow from.
+    /// The hash of everything that determines the pairs of the newest frame.
     origin: u64,
     /// The objects of the previews, and the index of the last one.
     previews: (Identities, Option<usize>),
 }
 
-/// The solved pairs of a frame with the one before: nearly all the work of [`ClipSegmenter::push`].
+/// The solved pairs of a frame with the previous one: nearly all the work of [`ClipSegmenter::push`].
 ///
-/// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again. Without a look-ahead
-/// they follow from the two frames and the options alone, so that several segmenters can each solve a part of a clip for another one.
+/// An interrupted clip can be continued: [`ClipSegmenter::push_known`] does not solve the frame's pairs again. Without a look-ahead, pairs
+/// depend only on the two frames and the options, so that several segmenters can each solve a part of a clip for another one.
 #[derive(Clone, Debug)]
 pub struct FramePairs {
     origin: u64,
@@ -85,7 +85,7 @@ impl ClipSegmenter {
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
         let tracker = Tracker::new(options, false)?;
-        // The options that decide how pairs are solved.
+        // The options that determine how pairs are solved.
         let ClipOptions { pair: SegmentOptions { motions, quality, subject, .. }, look_ahead } = *tracker.options();
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
         let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
@@ -94,7 +94,7 @@ impl ClipSegmenter {
         Ok(ClipSegmenter { tracker, frames, hashes, options, origin: options, previews })
     }
 
-    /// Takes the next frame. What it returns need not be kept.
+    /// Takes the next frame. The returned pairs need not be kept.
     ///
     /// # Errors
     /// [`Error::FrameSizeMismatch`]; the clip may go on with another frame.
@@ -106,15 +106,15 @@ impl ClipSegmenter {
     /// Takes the next frame, whose pairs were solved before by [`push`](Self::push).
     ///
     /// # Errors
-    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs that were not solved with these options, of this frame and
-    /// the one before it, with a look-ahead all those before it; the frame can be pushed then.
+    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs that were solved with other options or frames: they depend on
+    /// this frame and the previous one or, with a look-ahead, on all frames before. The frame can then be pushed.
     pub fn push_known(&mut self, frame: Frame, pairs: &FramePairs) -> Result<()> {
         self.take(frame, Some(pairs)).map(|_| ())
     }
 
-    /// The newest frame whose pairs are all solved, with the masks that they tell alone: without the evidence of other frames, and with numbers
-    /// that need not be those of the segmented clip. There is none before there are such pairs, and none twice. Asked after each frame,
-    /// previews are those of all frames but the last, and objects keep their number from one to the next.
+    /// The newest frame whose pairs are all solved, with masks from these pairs alone and numbers that may differ from those of the
+    /// segmented clip. `None` if there is no such frame, or if it was returned already. If it is called after each frame, all frames but
+    /// the last have a preview, and objects keep their numbers from one to the next.
     pub fn preview(&mut self) -> Option<ClipFrame> {
         let PreviewSource { record, frame, log_odds } = self.tracker.preview()?;
         let SegmentOptions { subject, mark_unknown, .. } = self.tracker.options().pair;
@@ -132,7 +132,7 @@ impl ClipSegmenter {
     fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
         let size = [frame.width(), frame.height()];
         let own = frame.hash();
-        // A stream follows what it found in the frames before.
+        // In a stream, pairs depend on all earlier frames.
         let before = match (self.tracker.options().look_ahead, self.hashes.last()) {
             (None, Some(last)) => hash(self.options, &last.to_le_bytes()),
             _ => self.origin,
@@ -159,7 +159,7 @@ impl ClipSegmenter {
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
         }
-        // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
+        // With a look-ahead, the numbers stay those that a stream gives.
         if look_ahead.is_none() {
             let width = self.tracker.options().settings(size).scaling(size).small[0];
             self.part(width);
@@ -173,12 +173,12 @@ impl ClipSegmenter {
         SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames }
     }
 
-    /// Divides what was one object before it was two.
+    /// Divides objects that have parted in the earlier frames as well.
     fn part(&mut self, width: usize) {
         for &Parting { frame, from, new } in self.tracker.parted().iter().rev() {
             for t in (0..frame).rev() {
                 let [Some(here), Some(later)] = [t, t + 1].map(|t| self.frames.get(t)) else { break };
-                let Some(onward) = here.onward.as_ref().map(|flow| flow.flow(width)) else { break };
+                let Some(onward) = here.onward.as_ref().map(|flow| flow.layered_motion(width)) else { break };
                 let mut labels = here.found.labels.values();
                 if !divide(&mut labels, &later.found.labels.values(), &onward, from, new) {
                     break;
@@ -188,11 +188,11 @@ impl ClipSegmenter {
         }
     }
 
-    /// Gives the objects the numbers that the whole clip tells.
+    /// Renumbers the objects by what the whole clip shows.
     fn group(&mut self, width: usize) {
         let mut census = Census::new();
         for frame in &self.frames {
-            let onward = frame.onward.as_ref().map(|flow| flow.flow(width));
+            let onward = frame.onward.as_ref().map(|flow| flow.layered_motion(width));
             census.add(&frame.found.labels.values(), width, onward.as_ref(), frame.back.is_none());
         }
         let numbers = census.final_numbers();

@@ -1,4 +1,4 @@
-//! Clips whose frames come once.
+//! Streams: clips whose frames come once.
 
 use super::description::ClipFrame;
 use super::description::WorkingFrame;
@@ -7,8 +7,8 @@ use super::tracker::{Tracked, Tracker};
 use crate::error::Result;
 use crate::frame::Frame;
 
-/// Segments a clip whose frames come once, as from a camera. Frames go in one after another and come out, in order, with labels that
-/// last.
+/// Segments a stream, a clip whose frames come once, as from a camera. Frames are pushed one after another and returned in order, with
+/// labels that stay the same.
 ///
 /// ```
 /// use veronese::clip::{ClipOptions, StreamSegmenter};
@@ -33,7 +33,7 @@ pub struct StreamSegmenter {
 }
 
 impl StreamSegmenter {
-    /// A segmenter for one stream. Without a look-ahead, frames wait for [`MAX_LOOK_AHEAD`] others.
+    /// A segmenter for one stream. Without a look-ahead, each frame waits for [`MAX_LOOK_AHEAD`] later ones.
     ///
     /// # Errors
     /// [`Error::InvalidOption`](crate::Error::InvalidOption) for a look-ahead above [`MAX_LOOK_AHEAD`] or a number of motions out of
@@ -58,7 +58,7 @@ impl StreamSegmenter {
         rest.iter().filter_map(|tracked| self.described(tracked)).collect()
     }
 
-    /// Number of objects that were seen when all numbers had been given, and count as background.
+    /// Number of objects for which no number was left; they count as background.
     pub fn dropped(&self) -> usize {
         self.tracker.dropped()
     }

@@ -1,14 +1,14 @@
-//! Frames in, objects of the working size out: each frame is paired with its neighbours, held back, cut and handed to objects.
+//! From frames to objects at the working size: each frame is paired with its neighbours, held back, cut, and divided into objects.
 
 use std::rc::Rc;
 
-use super::evidence::{LayeredMotion, Pairs, shows_object};
 use super::farther::{FARTHEST, Farther, FartherPair};
 use super::foreground::{Foreground, Round};
 use super::held::HeldFrames;
 use super::identity::{Identities, Parting};
 use super::options::{ClipOptions, MAX_LOOK_AHEAD, model};
 use super::pairing;
+use super::pairs::{LayeredMotion, Pairs, shows_object};
 use super::record::{PendingFrame, Record};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
@@ -20,7 +20,7 @@ use crate::pair::settings::Settings;
 #[derive(Debug)]
 pub(crate) struct Tracker {
     options: ClipOptions,
-    /// Whether frames are kept until they leave, to be described then.
+    /// Whether frames are kept until they leave, in order to describe them.
     keeps_frames: bool,
     /// Width and height of the frames, once there is one.
     size: Option<[usize; 2]>,
@@ -28,24 +28,24 @@ pub(crate) struct Tracker {
     first: Option<PendingFrame>,
     /// The newest frame.
     last: Option<PendingFrame>,
-    /// Frames that have their pairs. The newest frame waits for its pair with the next one if it is not among them.
+    /// Number of frames whose pairs are solved. If the newest frame is not among them, it waits for its pair with the next one.
     paired: usize,
-    /// The expectation of a fast stream for the next pair.
+    /// What a fast stream expects of the next pair.
     prior: Option<Prior>,
     farther: Farther,
     held: HeldFrames,
     rounds: [Round; 2],
     identities: Identities,
-    /// The frame that got its pairs last.
+    /// The last frame whose pairs were solved.
     preview: Option<PreviewSource>,
 }
 
-/// A frame with what its own pairs tell.
+/// A frame with the results of its own pairs.
 #[derive(Debug)]
 pub(crate) struct PreviewSource {
     pub(crate) record: Rc<Record>,
     pub(crate) frame: Rc<Frame>,
-    /// Log-log-odds of object against background, nats.
+    /// Log-odds of object against background, nats.
     pub(crate) log_odds: Plane,
 }
 
@@ -55,14 +55,14 @@ pub(crate) struct Tracked {
     pub(crate) record: Rc<Record>,
     /// The object of every working pixel, 0 for the background.
     pub(crate) labels: Vec<u8>,
-    /// Log-odds of object against background with the evidence of other frames, nats.
+    /// Log-odds of object against background, joined with those of other frames, nats.
     pub(crate) log_odds: Plane,
-    /// Whether the clip goes on with a frame of the same scene, as far as that is known.
+    /// Whether a frame of the same scene follows, as far as that is known.
     pub(crate) goes_on: bool,
 }
 
 impl Tracker {
-    /// A tracker that keeps frames until they leave, or only what it needs of them.
+    /// A tracker that keeps whole frames until they leave, or only what it needs of them.
     pub(crate) fn new(options: ClipOptions, keeps_frames: bool) -> Result<Tracker> {
         options.pair.motions.validate()?;
         if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
@@ -84,9 +84,9 @@ impl Tracker {
             paired: 0,
             prior: None,
             farther: Farther::new(),
-            // A stream knows no frame after the newest one that has its pairs.
+            // A stream knows no frame after the newest one whose pairs are solved.
             held: HeldFrames::new(if options.look_ahead.is_none() { FARTHEST } else { 0 }),
-            // A stream has its frames' future in the first round alone.
+            // In a stream only the first round waits for later frames.
             rounds: options
                 .look_ahead
                 .map_or([MAX_LOOK_AHEAD; 2], |frames| [frames, 0])
@@ -105,8 +105,8 @@ impl Tracker {
         self.size
     }
 
-    /// Takes the next frame. Returns a frame that has waited long enough, if there is one, and what the new frame's pairs have told.
-    /// `known` has been told before by the same frames: nothing is solved again.
+    /// Takes the next frame. Returns a frame that has waited long enough, if there is one, and the solved pairs of the new frame. `known`
+    /// are its pairs if they were solved before.
     pub(crate) fn push(&mut self, frame: Frame, known: Option<Pairs>) -> Result<(Option<Tracked>, Pairs)> {
         let size = [frame.width(), frame.height()];
         if let Some([width, height]) = self.size
@@ -137,7 +137,7 @@ impl Tracker {
         Ok((self.take(last, newest, pairs.clone(), &settings), pairs))
     }
 
-    /// Goes on with what the pairs of the last frame and the newest one have told.
+    /// Continues with the solved pairs of the last frame and the newest one.
     fn take(
         &mut self,
         mut last: PendingFrame,
@@ -149,7 +149,7 @@ impl Tracker {
         self.prior = prior;
         newest.back = back;
         if let Some(FartherPair { log_odds, reach }) = self.farther.look(&last, &newest, settings) {
-            // Frames between in which nothing was seen are no evidence of ground.
+            // Frames in between that show no object do not count as background.
             let of_last = [&mut last.back, &mut onward].into_iter().flatten().map(|(log_odds, _)| log_odds);
             let between = self.held.newest_log_odds(reach - 1).chain(of_last);
             between.filter(|log_odds| !shows_object(log_odds)).for_each(|log_odds| log_odds.values_mut().fill(0.0));
@@ -163,7 +163,7 @@ impl Tracker {
         if self.options.look_ahead.is_none() {
             return tracked;
         }
-        // In a stream the newest frame is expected to go on as it came.
+        // In a stream, the newest frame is expected to keep its motion.
         let expected = newest.back.as_ref().map(|(_, back)| back.continued());
         self.go_on(newest, (None, expected))
     }
@@ -171,7 +171,7 @@ impl Tracker {
     /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
     pub(crate) fn finish(&mut self) -> Vec<Tracked> {
         let Some(mut last) = self.last.take() else { return Vec::new() };
-        // With quality fast, two frames alone are not looked at more closely either.
+        // With the quality `Fast`, two frames alone are not solved more thoroughly either.
         let closely = self.options.pair.quality == Quality::Best && last.back.is_some() && !last.repeats;
         if let Some(first) = self.first.take().filter(|_| closely) {
             let Pairs { onward, back, .. } = pairing::of_lone_pair(&first, &last, &self.options.pair);
@@ -198,22 +198,22 @@ impl Tracker {
         frames
     }
 
-    /// What is known of the frame that got its pairs last, once.
+    /// The last frame whose pairs were solved, once.
     pub(crate) fn preview(&mut self) -> Option<PreviewSource> {
         self.preview.take()
     }
 
-    /// Number of objects that were seen when all numbers had been given, and count as background.
+    /// Number of objects for which no number was left; they count as background.
     pub(crate) fn dropped(&self) -> usize {
         self.identities.dropped
     }
 
-    /// Objects that were parts of others at first, in order.
+    /// Objects that were parts of others at first, in order of frames.
     pub(crate) fn parted(&self) -> &[Parting] {
         &self.identities.parted
     }
 
-    /// Goes on with a frame that has its pairs, or as much as there will be of them.
+    /// Continues with a frame whose pairs are solved, as far as they will be.
     fn go_on(&mut self, pending: PendingFrame, onward: (Option<Plane>, Option<LayeredMotion>)) -> Option<Tracked> {
         let is_second_of_two = onward.1.is_none() && self.held.newest().is_some_and(|record| record.back.is_none());
         let frame = pending.frame.clone();
@@ -231,7 +231,7 @@ impl Tracker {
     }
 
     fn second_round(&mut self, first: Foreground) -> Option<Tracked> {
-        // Without frames to wait for, a second look tells little that the first does not: .0015 J on ten real clips.
+        // Without later frames, a second round gains little: .0015 J on ten real clips.
         let is_live = self.options.pair.quality == Quality::Fast && self.options.look_ahead == Some(0);
         if is_live || model().cuts_twice == 0 {
             return Some(self.tracked(first));

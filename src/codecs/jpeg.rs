@@ -1,5 +1,6 @@
-//! JPEG files, which phones append videos to and networks take pieces out of. A file is read to its own end, and no further. Decoders fill
-//! what is missing of a scan with grey, which would be segmented as if it were image content: here it is an error, unless it is allowed.
+//! JPEG files, to which phones append videos, and of which networks lose pieces. A file is read to its own end, and no further. Decoders
+//! fill missing parts of a scan with grey, which would be segmented like image content; here a missing part is an error, unless it is
+//! allowed.
 
 use crate::error::{Error, Result};
 
@@ -24,8 +25,8 @@ fn unreadable(reason: &str) -> Error {
     Error::UnreadableImage { reason: reason.into() }
 }
 
-/// Where the image ends: behind its own marker "end of image". Previews lie in segments, which are passed over; what comes behind the end
-/// may have any bytes. `None` where there is no end.
+/// Where the image ends: after its own marker "end of image". Previews lie in segments, which are skipped; after the end there may be any
+/// bytes. `None` without an end.
 fn end(bytes: &[u8]) -> Option<usize> {
     let mut at = 2;
     loop {
@@ -59,7 +60,7 @@ mod tests {
         file
     }
 
-    /// Without the bytes from one place to another, as shares of the file.
+    /// The file without the bytes between two positions, given as shares of its length.
     fn without(file: &[u8], from: f64, until: f64) -> Vec<u8> {
         let at = |share: f64| (share * file.len() as f64) as usize;
         [&file[..at(from)], &file[at(until)..]].concat()

@@ -22,10 +22,10 @@ pub(crate) enum Freedom {
     Affine,
 }
 
-/// The entries that have to stand still before the iterations end.
+/// The entries that must converge before the iterations end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Convergence {
-    /// The translation. The prior slows the linear terms down, so that they may still be on their way.
+    /// The translation. The prior slows the linear terms down, so they may not have converged.
     Translation,
     /// Every entry, for which there are twice as many iterations.
     Every,
@@ -38,7 +38,7 @@ pub(crate) struct Alignment {
     pub(crate) iterations: usize,
     pub(crate) convergence: Convergence,
     /// Squared residual, in variances, at which a pixel's weight has fallen to a quarter.
-    pub(crate) robustness: f32,
+    pub(crate) truncation: f32,
     /// Prior against linear terms, as a share of the translation's information.
     pub(crate) ridge: f64,
     /// Whether gain and bias are estimated with the motion.
@@ -52,13 +52,13 @@ impl Alignment {
             freedom: Freedom::Affine,
             iterations,
             convergence: Convergence::Translation,
-            robustness: model.robustness,
+            truncation: model.truncation,
             ridge,
             photometric: false,
         }
     }
 
-    /// The same until this has converged.
+    /// The same alignment until the given entries have converged.
     pub(crate) fn until(self, convergence: Convergence) -> Alignment {
         Alignment { convergence, ..self }
     }
@@ -69,7 +69,7 @@ pub(crate) fn ridge_of_label(label: usize, model: &Model) -> f64 {
     if label > 0 { model.ridge_object } else { model.ridge_background }
 }
 
-/// A region with a border that is half a pixel soft.
+/// A region whose border is softened by half a pixel.
 pub(crate) fn softened(region: &Plane) -> Plane {
     gaussian(region, 0.5)
 }
@@ -269,7 +269,7 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let (robustness, smallest) = (how.robustness, level.model.smallest_weight);
+        let (truncation, smallest) = (how.truncation, level.model.smallest_weight);
         let position = level.model.position_variance();
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / GREY) as f32);
         // The mean of both gradients, per pixel of this level.
@@ -295,7 +295,7 @@ impl RowBuffers {
                 None => given[..n].fill(1.0),
             }
             if given.iter().all(|&weight| weight <= smallest) {
-                // Nothing counts here, as in much of the box around a region.
+                // Nothing counts in this chunk, as in much of the box around a region.
                 (*weight, *residuals, *gx, *gy) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
                 continue;
             }
@@ -312,7 +312,7 @@ impl RowBuffers {
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let information = 1.0 / (noise + position * energy[k]);
-                let robust = robustness / (robustness + residual * residual * information);
+                let robust = truncation / (truncation + residual * residual * information);
                 let counts = at.inside(k) & if given[k] > smallest { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
                 weights_of[k] = counted(given[k] * information * robust * robust);
@@ -415,7 +415,7 @@ mod tests {
         let levels = build(first, second, 64);
         let level = &levels[0];
         let mut photometric = GainBias::default();
-        let how = Alignment { robustness: 9.0, photometric: true, ..Alignment::of_region(30, 0.0, &Model::DEFAULT) };
+        let how = Alignment { truncation: 9.0, photometric: true, ..Alignment::of_region(30, 0.0, &Model::DEFAULT) };
         let found = align(level, &AffineMotion::STATIC, &Support::everything(level), &mut photometric, how);
         for (x, y) in [(5.0, 5.0), (90.0, 10.0), (40.0, 75.0)] {
             let ([u, v], [p, q]) = (truth.flow(x, y), found.flow(x, y));

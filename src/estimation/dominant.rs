@@ -11,7 +11,7 @@ use crate::view::level::PairLevel;
 pub(crate) struct DominantSearch {
     /// Whether a change of brightness is estimated.
     pub(crate) brightness: bool,
-    /// The entries that have to converge.
+    /// The entries that must converge.
     pub(crate) convergence: Convergence,
 }
 
@@ -79,14 +79,14 @@ fn descend(
         freedom: Freedom::Affine,
         iterations: model.dominant_iterations,
         convergence: how.convergence,
-        robustness: model.robustness,
+        truncation: model.truncation,
         ridge: model.ridge_background,
         photometric: how.brightness,
     };
     let translation = Alignment {
         freedom: Freedom::Translation,
         iterations: model.dominant_iterations,
-        robustness: model.robustness_loose,
+        truncation: model.truncation_loose,
         ..affine
     };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {

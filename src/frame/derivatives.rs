@@ -27,9 +27,9 @@ pub struct Derivatives {
 
 /// Derivatives of the frames' luminance scaled to [0, 1], the scale of the paper's threshold.
 ///
-/// With `before` they are those at the time of `first`, from three frames; without it they are those half-way between
-/// `first` and `second`, by averages and differences of the two. EdgeWeights are replicated. The frames should have the
-/// same size; what one has more than another is not read.
+/// With `before` they are those at the time of `first`, from three frames; without it they are those half-way between `first` and `second`,
+/// by averages and differences of the two. Borders are replicated. The frames should have the same size; what one has more than another is
+/// not read.
 pub fn derivatives(first: &Frame, second: &Frame, before: Option<&Frame>) -> Derivatives {
     let (smoothed, changed) = match before {
         Some(before) => {

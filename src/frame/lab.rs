@@ -20,9 +20,9 @@ pub(crate) fn lab(colours: &[Plane; 3]) -> [Plane; 3] {
     planes
 }
 
-/// Steps of the table of linear intensities …
+/// Steps of the table of linear intensities.
 const LEVELS: usize = 255;
-/// … and of that of their roots.
+/// Steps of the table of their roots.
 const ROOTS: usize = 1024;
 
 /// The value of a table over 0…1, linear between its entries.

@@ -3,7 +3,7 @@
 use super::Frame;
 use super::scaling::Scaling;
 
-/// Steps per colour channel: 8³ colours are few enough to learn from one frame and still tell clothes from grass. Not varied.
+/// Steps per colour channel: 8³ colours are few enough to learn from one frame, and enough to distinguish clothes from grass. Not varied.
 const STEPS: usize = 8;
 /// Number of different colours.
 pub(crate) const COLOURS: usize = STEPS * STEPS * STEPS;

@@ -13,9 +13,9 @@ use crate::lanes::each_with;
 /// Standard deviation of the blur applied to all frames first, pixels. Bilinear warping averages noise at half-pixel shifts; without
 /// the blur such shifts would win in flat areas. Chosen on generated scenes.
 const PRE_BLUR: f32 = 0.5;
-/// A side longer than this is halved even if the other one becomes short, pixels: the working size of quality `fast` …
+/// A side longer than this is halved even if the other one becomes short, pixels: the working size of quality `fast`.
 const LONG: usize = 320;
-/// … but not below this. Not varied: only very narrow frames get there.
+/// Smallest side that such a halving leaves, pixels. Not varied: only very narrow frames reach it.
 const NARROW: usize = 4;
 
 /// One size of a frame. Immutable; pairs share its planes.
@@ -92,7 +92,7 @@ impl FramePyramid {
         FramePyramid { levels, scaling, unblurred, appearance: OnceCell::new() }
     }
 
-    /// The appearance of the frame, which must be the one that this was made of. It is computed the first time.
+    /// The appearance of the frame, which must be the one from which the pyramid was made. It is computed once.
     pub(crate) fn appearance(&self, frame: &Frame) -> &Rc<Appearance> {
         self.appearance.get_or_init(|| {
             let palette = Palette::new(frame, &self.scaling);

@@ -1,8 +1,8 @@
-//! From the full size of a frame to a size at which it is processed, and back.
+//! The full size of a frame and the size at which it is processed.
 
 use super::MIN_SIDE;
 
-/// The full size of frames and a smaller one, halved from it k times, each time rounded up: for 2ᵏ × 2ᵏ full-size pixels there is one.
+/// The full size of frames and a smaller one, halved k times and rounded up each time: one small pixel for 2ᵏ × 2ᵏ full-size pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Scaling {
     /// Width and height, full-size pixels.
@@ -66,7 +66,8 @@ impl Scaling {
         (0..self.small[0] * self.small[1]).map(|p| full[self.corner(p)]).collect()
     }
 
-    /// Sparse full-size values at the small size: the value in the middle of each pixel, or any that lies in it; `nothing` where none does.
+    /// Sparse full-size values at the small size: the value in the middle of each small pixel or, without one, any that lies in it; else
+    /// `nothing`.
     #[inline(never)]
     pub(crate) fn gathered<T: Copy + PartialEq>(&self, full: &[T], nothing: T) -> Vec<T> {
         let (width, step) = (self.full[0], self.step);

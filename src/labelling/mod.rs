@@ -1,8 +1,8 @@
-//! From motions to masks: the terms of the labelling energy, their solver, regions that are split and merged, and the way from
-//! labels of the working size to the full frame.
+//! From motions to masks: the terms of the labelling energy, their solver, splitting and merging of regions, and upsampling of labels to
+//! the full frame.
 //!
-//! Inside a labelling the background has the label [`BACKGROUND`], however few pixels it may have. How a result is numbered is a matter
-//! of its report.
+//! In every labelling the background has the label [`BACKGROUND`], however few pixels it has. Only the report of a pair numbers motions by
+//! size.
 
 pub(crate) mod confidence;
 pub(crate) mod options;

@@ -1,6 +1,6 @@
 //! Shadows that objects cast on the ground.
 //!
-//! A shadow moves with its object, so that the object's motion explains it. But only the light moves: the ground beneath keeps its place,
+//! A shadow moves with its object, so the object's motion explains it. But only the light moves: the ground beneath stays where it is, with
 //! its texture and its colours. A pixel of an object is given back to the background where a smooth change of light explains it and its
 //! colour is one of the ground.
 //!
@@ -9,7 +9,7 @@
 //! d̄(x)  = mean of d around x               the change of light, from pixels that it explains
 //! E(l)  = Σ ρ(own motion)                          over the pixels that stay with their object
 //!       + Σ ρ(d − d̄) + P + ln p(c | object)/p(c | ground)    over those given back
-//!       + borders
+//!       + edges
 //! ```
 //! p(c | object) is learned from the pixels of objects that no change of light explains. p(c | ground) is that of c or of the colour a step
 //! brighter, whichever is larger: the ground is darker in a shadow.
@@ -23,17 +23,18 @@ use crate::frame::palette::{COLOURS, Palette, brighter};
 use crate::frame::warp::warp;
 use crate::model::Model;
 use crate::motion::AffineMotion;
+use crate::side::Side;
 use crate::view::cost::{RobustKernel, cost};
 use crate::view::level::PairLevel;
 
-/// Cost that no pixel of the background pays.
+/// Cost that keeps every pixel of the background.
 const NEVER: f32 = 100.0;
 
-/// Gives shadows of objects, in labels of the working size, back to the background. `borders` are those of the labels.
+/// Gives shadows of objects, in labels of the working size, back to the background. `edge_weights` are those of the labels.
 pub(crate) fn return_shadows(
     level: &PairLevel,
     palette: &Palette,
-    borders: &EdgeWeights,
+    edge_weights: &EdgeWeights,
     motions: &[AffineMotion],
     labels: &mut [u8],
     solver: Solver,
@@ -50,7 +51,7 @@ pub(crate) fn return_shadows(
             (*kept, *given_back) = (*own, lit + level.model.light_penalty + ratios[palette.index(p)]);
         }
     }
-    let found = borders.solve(&[given_back, kept], solver);
+    let found = edge_weights.solve(&[given_back, kept], solver);
     for (label, kept) in labels.iter_mut().zip(&found) {
         if is_background(*kept) {
             *label = BACKGROUND as u8;
@@ -58,7 +59,7 @@ pub(crate) fn return_shadows(
     }
 }
 
-/// Cost of the background's motion with a smooth change of light.
+/// Cost of the background's motion at every pixel, with a smooth change of light.
 fn cost_of_light(level: &PairLevel, background: &AffineMotion) -> Plane {
     let (model, window) = (RobustKernel::labels(level.model), level.model.light_window);
     let mut difference = warp(&level.second, &level.scaled(background));
@@ -82,23 +83,25 @@ fn cost_of_light(level: &PairLevel, background: &AffineMotion) -> Plane {
     costs
 }
 
-/// Log-likelihood ratio of object against ground of every colour, nats; none where there are too few pixels to learn from.
+/// Log-likelihood ratio of object against ground for every colour, nats; `None` where there are too few pixels to learn from.
 fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Vec<f32>> {
     let mut counts = vec![[0.0f32; 2]; COLOURS];
     let mut totals = [0.0f32; 2];
     let unexplained = RobustKernel::labels(model).outside();
     for (p, (&label, &lit)) in labels.iter().zip(lit.values()).enumerate() {
-        let side = usize::from(!is_background(label));
-        if side == 0 || lit >= unexplained {
+        let side = Side::object_if(!is_background(label));
+        if side == Side::Ground || lit >= unexplained {
             counts[palette.index(p)][side] += 1.0;
             totals[side] += 1.0;
         }
     }
-    let [ground, object] = totals;
+    let (ground, object) = (totals[Side::Ground], totals[Side::Object]);
     let (prior, most) = (model.colour_prior, model.largest_cost());
-    let ratio = |(colour, &[of_ground, of_object]): (usize, &[f32; 2])| {
-        let of_ground = brighter(colour).map_or(of_ground, |brighter| f32::max(of_ground, counts[brighter][0]));
-        libm::logf((of_object / object + prior) / (of_ground / ground + prior)).clamp(-most, most)
+    let ratio = |(colour, count): (usize, &[f32; 2])| {
+        let of_ground = count[Side::Ground];
+        let of_ground =
+            brighter(colour).map_or(of_ground, |brighter| f32::max(of_ground, counts[brighter][Side::Ground]));
+        libm::logf((count[Side::Object] / object + prior) / (of_ground / ground + prior)).clamp(-most, most)
     };
     (ground >= model.fewest_of_colours as f32 && object >= model.fewest_of_colours as f32)
         .then(|| counts.iter().enumerate().map(ratio).collect())
@@ -156,10 +159,10 @@ mod tests {
     fn returned(shadow_colour: [f32; 3]) -> [usize; 2] {
         let (mut level, palette, mut labels) = scene(shadow_colour);
         level.noise = 2.0;
-        let borders = EdgeWeights::uniform(SIZE[0], SIZE[1], 8.0);
+        let edge_weights = EdgeWeights::uniform(SIZE[0], SIZE[1], 8.0);
         let motions = [AffineMotion::STATIC, AffineMotion::translation(3.0, 0.0)];
         let before = labels.clone();
-        return_shadows(&level, &palette, &borders, &motions, &mut labels, Solver::BEST);
+        return_shadows(&level, &palette, &edge_weights, &motions, &mut labels, Solver::BEST);
         let lost = |rows: std::ops::Range<usize>| {
             (0..labels.len()).filter(|p| rows.contains(&(p / SIZE[0])) && labels[*p] != before[*p]).count()
         };

@@ -16,7 +16,7 @@ const RADIUS: usize = 4;
 /// Side of a tile, full-size pixels. For speed.
 const TILE: usize = 32;
 
-/// Labels below `of` of the small size at the full one, which `guide` has.
+/// Labels of the small size, all below `of`, at full size, that of `guide`.
 pub(crate) fn upsample(labels: &[u8], scaling: &Scaling, of: usize, guide: &Plane, model: &Model) -> Vec<u8> {
     if scaling.step == 1 {
         return labels.to_vec();

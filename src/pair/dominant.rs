@@ -11,15 +11,15 @@ use crate::view::level::PairLevel;
 
 /// Where the dominant motion comes from.
 pub(crate) enum Dominant<'a> {
-    /// It is looked for, near one that is expected if there is one.
+    /// It is searched for, near an expected motion if there is one.
     Sought(Option<&'a AffineMotion>),
-    /// It is known.
+    /// It is given.
     Known(&'a AffineMotion),
     /// The background is at rest behind these objects.
     Rest(&'a Objects<'a>),
 }
 
-/// Objects before a background that may be at rest: their motions, and labels of the working size, whose rows are `width` long.
+/// Objects before a background that may be at rest: their motions, and labels of the working size in rows of `width` pixels.
 pub(crate) struct Objects<'a> {
     pub(super) motions: &'a [AffineMotion],
     pub(super) labels: &'a [u8],
@@ -27,7 +27,8 @@ pub(crate) struct Objects<'a> {
 }
 
 impl Objects<'_> {
-    /// The change of brightness. Along a single motion that of plain ground would be that of the objects.
+    /// The change of brightness, measured along the motions of all labels. Along a single motion, the objects' would pass for that of
+    /// ground without texture.
     fn brightness_at_rest(&self, level: &PairLevel) -> GainBias {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
         let step = level.stride << level.index;
@@ -36,7 +37,7 @@ impl Objects<'_> {
 }
 
 impl Pair {
-    /// Settles the dominant motion, removes the change of brightness along it, if that is estimated, and measures the noise.
+    /// Determines the dominant motion, removes the change of brightness along it, if that is estimated, and measures the noise.
     pub(crate) fn settle_dominant(&mut self, dominant: Dominant<'_>, settings: &Settings) -> AffineMotion {
         let motion = match dominant {
             Dominant::Sought(expected) => self.find_dominant(expected, settings),
@@ -73,7 +74,7 @@ impl Pair {
         align(base, &motion, &Support::everything(base), &mut GainBias::default(), how)
     }
 
-    /// A sample of the base level much as [`Dominant::Rest`] would leave it, for a fraction of the time.
+    /// A sample of the base level, much as [`Dominant::Rest`] would leave it, in a fraction of the time.
     pub(super) fn sample_of_rest(&self, objects: &Objects<'_>, settings: &Settings) -> PairLevel {
         let mut level = self.levels[self.base].clone();
         for _ in 0..rest_rounds(settings) {
@@ -89,7 +90,7 @@ impl Pair {
     }
 }
 
-/// How often the change of brightness and the noise of a background at rest take turns.
+/// How often the estimates of the change of brightness and of the noise alternate when the background is at rest.
 fn rest_rounds(settings: &Settings) -> usize {
     if settings.brightness() { settings.model.rest_rounds } else { 0 }
 }

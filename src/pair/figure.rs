@@ -5,23 +5,24 @@
 //! ```text
 //! score(S) = a centre + b plane + c edge + d jump + e gain + f kept
 //! ```
-//! *centre* is how central the pixels of S are, and *plane* the logarithm of how far their flow is from that of one plane: both are means
-//! over S less means over the rest. *edge* is the mean, along the border of S, of the logarithm of the gradient there against that of the
-//! whole picture: objects end at edges, parts of the ground seldom do. The others are shares of all there is, so that two objects score
-//! higher than one of them: *jump* of the jumps of the flow along borders, *gain* of what motions explain better than that of the background,
-//! *kept* of what is left when the largest [group](Regions::groups) is the ground.
+//! *centre* is how central the pixels of S are, and *plane* the logarithm of the distance of their flow from that of one plane: both are
+//! means over S minus means over the rest. *edge* is the mean, along the border of S, of the logarithm of the gradient relative to that of
+//! the whole picture: objects end at edges, parts of the ground seldom do. The others are shares of totals, so that two objects score
+//! higher than one of them: *jump* is the share of all jumps of the flow that lies on the border of S, *gain* the share of what motions
+//! explain better than the background's, *kept* the share of what lies outside the largest [group](Regions::groups).
 //!
-//! The main subject, where that is asked for, is one thing:
+//! The main subject, on request, is a single thing:
 //!
 //! ```text
 //! score(S) = a like + b jump + c centre + d edge − e frame
 //! ```
-//! *like* is the overlap of S and the figure, *jump* the mean jump of the flow along the border of S against the largest motion, *frame* the
-//! root of the share of its outline that lies on the border of the frame. Where several things move, most of them are lost by it.
+//! *like* is the overlap of S and the figure, *jump* the mean jump of the flow along the border of S relative to the largest motion,
+//! *frame* the root of the share of its outline that lies on the border of the frame. Where several things move, most of them are then
+//! lost.
 //!
-//! The weights make the figure overlap the true one most on real pairs with one object, with a second one pasted in, and on generated scenes;
-//! those of the main subject on the real pairs alone. Each feature wins on sequences that it was not fitted to. Depth order at borders, focus,
-//! residuals, shapes, deformation, colours and sizes won nothing beside them.
+//! The weights maximise the overlap of the figure with the true one on real pairs with one object, on these with a second one pasted in,
+//! and on generated scenes; those of the main subject on the real pairs alone. Each feature gains on sequences that it was not fitted to.
+//! Depth order at borders, focus, residuals, shapes, deformation, colours and sizes gain nothing in addition.
 
 use super::groups::Regions;
 use super::planar_flow::distances_to_plane;
@@ -32,20 +33,23 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, costs};
 use crate::view::level::PairLevel;
 
-/// Largest share of the border of the frame in the figure. Guard: scenes without objects have none that surrounds them.
+/// Largest share of the border of the frame that the figure may have. Guard: scenes without objects have no figure that the ground
+/// surrounds.
 const MOST_OF_FRAME: f64 = 0.5;
-/// Largest share of the picture. Guard: an object may fill half of it; in scenes without objects far more would be figure.
+/// Largest share of the picture that the figure may have. Guard: an object may fill half of it; in scenes without objects far more would be
+/// figure.
 const MOST_OF_PICTURE: f64 = 0.6;
-/// Distance to the plane, pixels of the working size, below which all are alike.
+/// Distance to the plane, pixels of the working size, below which all distances count the same.
 const NEAR: f64 = 0.1;
-/// Motion that every border is measured against at least, pixels of the working size.
+/// Smallest motion to which jumps at borders are related, pixels of the working size.
 const LEAST_MOTION: f64 = 0.5;
 /// Mean squared gradient below which edges are noise, squared grey levels per pixel.
 const LEAST_GRADIENT: f64 = 0.25;
-/// How fast centrality falls: 1/e at .35 of the frame's sides from its middle.
+/// Rate at which centrality falls: 1/e at .35 of the frame's sides from its middle.
 const CENTRAL: f64 = 8.0;
 
-/// The groups of the regions of a pair: [`BACKGROUND`], and those of the figure in order of their first region. The main subject is one.
+/// The group of every region: [`BACKGROUND`], or a number of the figure's groups in the order of their first regions. The main subject is
+/// one group.
 pub(super) fn groups(
     mut regions: Regions<'_>,
     motions: &[AffineMotion],
@@ -73,25 +77,25 @@ pub(super) fn groups(
     joined.into_iter().enumerate().map(number).collect()
 }
 
-/// What is known of the regions.
+/// What is measured of the regions.
 struct Known {
     /// Share of all pixels.
     areas: Vec<f64>,
-    /// Share of the frame's border.
+    /// Share of the frame's border that each region has.
     frame: Vec<f64>,
-    /// Length of that border, pixels.
+    /// Length of the frame's border, pixels.
     around: f64,
     centres: Vec<f64>,
     planes: Vec<f64>,
     gains: Vec<f64>,
-    /// Zero of what the largest group is made of.
+    /// 0 for the regions of the largest group.
     kept: Vec<f64>,
-    /// Length of the border of every two regions …
+    /// Length of the border between every two regions.
     borders: Vec<f64>,
-    /// … the sum of its edges, and its median jump times the length.
+    /// Sum of the edges along it, and its median jump times its length.
     edges: Vec<f64>,
     jumps: Vec<f64>,
-    /// The largest motion of a region against the background.
+    /// The largest motion of a region relative to the background.
     largest: f64,
 }
 
@@ -111,10 +115,10 @@ impl Known {
             .into_iter()
             .map(|distance| distance.map(|distance| libm::log(NEAR + distance)))
             .collect();
-        let told: Vec<(f64, f64)> =
+        let measured: Vec<(f64, f64)> =
             planes.iter().zip(&areas).filter_map(|(plane, area)| plane.zip(Some(*area))).collect();
-        let area = told.iter().map(|(_, area)| area).sum::<f64>();
-        let mean = told.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
+        let area = measured.iter().map(|(_, area)| area).sum::<f64>();
+        let mean = measured.iter().map(|(plane, area)| plane * area).sum::<f64>() / area.max(f64::MIN_POSITIVE);
         let (mut borders, mut jumps) = (vec![0.0; n * n], vec![0.0; n * n]);
         for k in 0..n * n {
             let pair = [k / n, k % n];
@@ -135,7 +139,7 @@ impl Known {
         }
     }
 
-    /// The subset with the highest score, a bit for each region; where there is one group it is ground.
+    /// The subset with the highest score, one bit per region; empty if there is only one group, which is then ground.
     fn figure(&self, model: &Model) -> u32 {
         let kept = (0..self.areas.len()).filter(|&k| self.kept[k] > 0.0).map(|k| 1 << k).sum();
         self.best(kept, &|subset| {
@@ -145,12 +149,12 @@ impl Known {
         })
     }
 
-    /// The main subject, where something is the figure.
+    /// The subset of the main subject; empty if the figure is empty.
     fn subject(&self, figure: u32, model: &Model) -> u32 {
         self.best(figure, &|subset| Some(self.score_of_subject(subset, figure, model)))
     }
 
-    /// The subset with the highest score, the other one where none has any.
+    /// The subset with the highest score; `otherwise` if none has a score.
     fn best(&self, otherwise: u32, score: &dyn Fn(u32) -> Option<f64>) -> u32 {
         let mut best = (f64::NEG_INFINITY, otherwise);
         for subset in (1..(1 << self.areas.len()) - 1).filter(|_| otherwise != 0) {
@@ -185,7 +189,7 @@ impl Known {
             - model.subject_frame * (on_frame / outline.max(1.0)).sqrt()
     }
 
-    /// The mean over a subset less that over the rest.
+    /// The mean over a subset minus that over the rest.
     fn excess(&self, subset: u32, of: &[f64]) -> f64 {
         let mean = |subset: u32| {
             let weighted: f64 = members(subset, of.len()).map(|k| self.areas[k] * of[k]).sum();
@@ -199,7 +203,7 @@ impl Known {
         self.across(subset, of) / self.across(subset, &self.borders).max(1.0)
     }
 
-    /// The sum over all pairs of a region in a subset and one in the rest.
+    /// The sum over all pairs of a region in the subset and one outside.
     fn across(&self, subset: u32, of: &[f64]) -> f64 {
         let n = self.areas.len();
         members(subset, n).map(|i| self.within(!subset, &of[i * n..][..n])).sum()
@@ -210,21 +214,21 @@ impl Known {
     }
 }
 
-/// Area below which a mean is none, share of the frame.
+/// Area below which a mean counts as 0, share of the frame.
 const LEAST_AREA: f64 = 1e-6;
 
 fn members(subset: u32, of: usize) -> impl Iterator<Item = usize> {
     (0..of).filter(move |k| subset >> k & 1 == 1)
 }
 
-/// The group with most pixels; the first of equals.
+/// The group with the most pixels; on ties the first.
 fn largest_group(groups: &[usize], areas: &[f64]) -> usize {
     let mut sizes = vec![0.0; groups.len()];
     areas.iter().zip(groups).for_each(|(area, &group)| sizes[group] += area);
     (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
 }
 
-/// How central the pixels of every region are, 0…1: a person who films holds the camera on what it is about.
+/// How central the pixels of every region are, 0…1: people keep what they film in the middle.
 fn centres(labels: &[u8], width: usize, areas: &[f64]) -> Vec<f64> {
     let height = labels.len() / width;
     let falling = |place: usize, side: usize| {
@@ -241,7 +245,7 @@ fn centres(labels: &[u8], width: usize, areas: &[f64]) -> Vec<f64> {
     centres.iter().zip(areas).map(|(centre, area)| centre / (area * pixels).max(1.0)).collect()
 }
 
-/// The sum along the border of every two regions of the logarithm of the gradient against that of the whole picture.
+/// For every two regions, the sum along their border of the logarithm of the gradient relative to that of the whole picture.
 fn edges(labels: &[u8], n: usize, level: &PairLevel) -> Vec<f64> {
     let energy = level.energy.values();
     let mean = energy.iter().map(|&energy| f64::from(energy)).sum::<f64>() / energy.len() as f64;
@@ -256,7 +260,7 @@ fn edges(labels: &[u8], n: usize, level: &PairLevel) -> Vec<f64> {
     edges
 }
 
-/// By how much the motion of every region lowers the costs that its pixels have under the motion of the background, on a sample.
+/// How much the motion of every region lowers the costs of its pixels compared with the background's motion, on a sample.
 fn gains(motions: &[AffineMotion], labels: &[u8], level: &PairLevel) -> Vec<f64> {
     let sample = level.thinned();
     let costs = costs(&sample, motions, RobustKernel::labels(level.model));

@@ -1,5 +1,5 @@
-//! The motions of the first frame of a pair at the working size, for clips, which go on from there: no numbering, no full-size labels, no
-//! evidence for the number.
+//! The motions of the first frame of a pair at the working size, for clips, which process them further: without numbering, full-size labels
+//! and scores of their number.
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
@@ -14,7 +14,7 @@ use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, cheapest, costs};
 
-/// The motions of a frame to another one, and where they are. The background has label [`BACKGROUND`].
+/// The motions of a frame to another one, and the pixels of each. The background has the label [`BACKGROUND`].
 #[derive(Clone, Debug)]
 pub(crate) struct FrameMotions {
     /// Pixels of the working size.
@@ -25,9 +25,9 @@ pub(crate) struct FrameMotions {
     pub(crate) probabilities: Vec<Plane>,
     /// The group of every motion; that of the ground is [`BACKGROUND`].
     pub(crate) groups: Vec<usize>,
-    /// Expected of the next pair by a fast stream.
+    /// What a fast stream expects of the next pair.
     prior: Option<Prior>,
-    /// Mean of the smallest cost of any motion, as a share of the largest cost there is.
+    /// Mean over the pixels of the smallest cost of any motion, relative to the largest possible cost, 0…1.
     unexplained: f32,
 }
 
@@ -37,39 +37,40 @@ impl FrameMotions {
         self.unexplained > 0.5
     }
 
-    /// Expected of the next pair by a fast stream.
+    /// What a fast stream expects of the next pair.
     pub(crate) fn prior(&self) -> Option<Prior> {
         self.prior.clone()
     }
 }
 
-/// A fast stream expects of the next pair that everything keeps its motion.
+/// What a fast stream expects of the next pair: everything keeps its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
     pub(crate) motions: Vec<AffineMotion>,
-    /// Cost up to which these motions are enough.
+    /// Cost up to which these motions suffice.
     pub(crate) enough: f64,
-    /// Cost after the last search. Motions that are followed are searched anew at the latest when they cost much more.
+    /// Cost after the last search for motions. Followed motions are searched anew when they cost much more.
     pub(crate) searched: f64,
 }
 
 impl Prior {
-    /// Whether a prior from outside the program can be used.
+    /// Whether a prior from outside the program is usable.
     pub(crate) fn is_valid(&self) -> bool {
         !self.motions.is_empty() && self.motions.iter().all(AffineMotion::is_finite)
     }
 }
 
-/// Knowledge about a pair before it is solved.
+/// What is expected of a pair before it is solved.
 pub(crate) enum Expected<'a> {
     Nothing,
-    /// The pair the other way round was solved with the inverse of these motions, and these labels of the working size are likely here.
+    /// The pair in the opposite direction was solved with the inverse of these motions, and these labels of the working size are likely
+    /// here.
     Inverse {
         motions: &'a [AffineMotion],
         labels: Vec<u8>,
     },
-    /// The labels of a prior's motions are likely to go on. Where they do not explain the pair, its motions are candidates.
+    /// The labels of a prior's motions, carried on, are likely. Where they do not explain the pair, its motions are candidates.
     Labels(&'a Prior, Vec<u8>),
 }
 
@@ -93,7 +94,7 @@ pub(crate) fn frame_motions(
     let (mut labelled, limits) = followed.unwrap_or_else(|| {
         let labelled = hypotheses::solve(pair(), likely, settings, &mut ());
         let cost = if settings.follows {
-            // Of a pair prepared as one that is followed: costs are in units of its noise.
+            // The pair is prepared as one that is followed, so that costs are in units of its noise.
             let mut followed = pair();
             followed.settle_dominant(Dominant::Sought(Some(&labelled.motions[BACKGROUND])), settings);
             motions::cost(&followed, &labelled.motions)
@@ -110,7 +111,7 @@ pub(crate) fn frame_motions(
     let most = model.largest_cost();
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
-    // Where a shadow was given back to the background, a change of light explains it as well as any motion does.
+    // Where a shadow was given back to the background, a change of light explains the pixel as well as a motion does.
     for (p, cost) in costs[BACKGROUND].values_mut().iter_mut().enumerate() {
         if is_background(labels[p]) && !is_background(with_shadows[p]) {
             *cost = smallest.values()[p];
@@ -124,8 +125,8 @@ pub(crate) fn frame_motions(
     FrameMotions { motions, labels, probabilities, groups, prior, unexplained }
 }
 
-/// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;
-/// none if they do not explain the pair, or frames are so narrow that they are not halved to the size at which motions are selected.
+/// The labels and motions that continue the expected ones, the cost up to which they suffice from now on, and the cost after the last
+/// search. `None` if they do not explain the pair, or if the frames are too narrow to be halved to the size at which motions are selected.
 fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Settings) -> Option<(LabelledPair, [f64; 2])> {
     if pair.draft > 0 || pair.selection > 0 {
         return None;
@@ -136,7 +137,7 @@ fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Setting
     let (motions, cost) = motions::follow(&pair, dominant, objects, &mut labels, settings);
     // Costs rise when a motion is missing, but also when more is occluded.
     let enough = if cost < prior.enough {
-        // Else costs that rise little by little would never lead to a look for others.
+        // Otherwise costs that rise slowly would never lead to a search.
         prior.enough.min((1.0 + model.follow_tolerance) * cost)
     } else if cost < (1.0 + model.follow_tolerance_searched) * prior.searched && !is_missing(&pair, &motions, settings)
     {
@@ -148,14 +149,14 @@ fn follow(mut pair: Pair, prior: &Prior, mut labels: Vec<u8>, settings: &Setting
     Some((label(pair, motions, None, start, settings, &mut ()), [enough, prior.searched]))
 }
 
-/// Whether another motion would pay for itself.
+/// Whether another motion would gain more than its penalty.
 fn is_missing(pair: &Pair, motions: &[AffineMotion], settings: &Settings) -> bool {
     let mut more = motions.to_vec();
     motions::add_missing(pair, &mut more, settings.most.min(motions.len() + 1), settings);
     more.len() > motions.len()
 }
 
-/// The labels and motions of a pair that was solved the other way round.
+/// The labels and motions of a pair that was solved in the opposite direction.
 fn inverted(mut pair: Pair, motions: &[AffineMotion], mut labels: Vec<u8>, settings: &Settings) -> LabelledPair {
     let (background, objects) = (&motions[BACKGROUND], &motions[BACKGROUND + 1..]);
     let dominant = match *background {

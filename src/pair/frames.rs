@@ -1,4 +1,4 @@
-//! Two frames at several sizes: what motions and labels are compared on.
+//! Two frames at several sizes, on which motions and labels are compared.
 
 use std::rc::Rc;
 
@@ -8,10 +8,10 @@ use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::scaling::Scaling;
 use crate::view::level::{PairLevel, levels};
 
-/// The levels of a pair, from the working size down. A pair of the same frames the other way round is one with the frames swapped.
+/// The levels of a pair, from the working size down. The pair of the opposite direction has the frames swapped.
 #[derive(Clone)]
 pub(crate) struct Pair {
-    /// PairLevel 0 is the working size.
+    /// Level 0 is the working size.
     pub(crate) levels: Vec<PairLevel>,
     /// Index of the level on which the dominant motion is found and others are proposed.
     pub(crate) base: usize,
@@ -21,7 +21,7 @@ pub(crate) struct Pair {
     pub(crate) draft: usize,
     /// Pictures and colours that the labels follow, at the sizes of the levels.
     pub(super) appearance: Rc<Appearance>,
-    /// From the frames to the working size.
+    /// Between the frames and the working size.
     pub(crate) scaling: Scaling,
 }
 
@@ -29,11 +29,11 @@ impl Pair {
     /// The pair of two frames.
     pub(crate) fn of_frames([first, second]: [&Frame; 2], settings: &Settings) -> Pair {
         let [pyramid, second] = [first, second].map(|frame| settings.pyramid(frame));
-        // The pyramids end here: the pair has the planes to itself and need not copy what it changes.
+        // The pyramids are not used afterwards: the pair owns the planes, and need not copy what it changes.
         Pair::new(first, &pyramid, &second, settings)
     }
 
-    /// `pyramid` is that of `first`.
+    /// The pair of two frames; `pyramid` is that of `first`.
     pub(super) fn new(first: &Frame, pyramid: &FramePyramid, second: &FramePyramid, settings: &Settings) -> Pair {
         let levels = levels(&pyramid.levels, &second.levels, settings.model);
         let within =
@@ -47,7 +47,7 @@ impl Pair {
         &self.levels[0]
     }
 
-    /// From the working size to the level on which labels are drafted.
+    /// Between the working size and the level on which labels are drafted.
     pub(super) fn draft_scaling(&self) -> Scaling {
         Scaling::halved(self.scaling.small, self.draft)
     }

@@ -3,19 +3,19 @@
 //! ```text
 //! ln P/(1−P) = ε − α ln r − β √b₁ + γ √min(b₂, b),    r = (j + κ)/(m + κ)
 //! ```
-//! P is the probability that two neighbouring regions are parts of one thing. j is the median jump of the flow across their border, m the
-//! largest motion against the background in these frames and κ the error of the position that a motion predicts: r is 1 where nothing jumps
-//! further, and small where the flow is continuous. b₁ ≥ b₂ are the shares of the two outlines that lie on the border of the frame: parts of
-//! the background often reach it both, an object and the background seldom do. Before a camera at rest nothing that moves is background:
-//! r = 1 and b₂ = 0 of what borders on it. All of it is measured at the working size.
+//! P is the probability that two neighbouring regions are parts of one thing, j the median jump of the flow across their border, m the
+//! largest motion relative to the background in these frames, and κ the error of the position that a motion predicts: r is 1 at the largest
+//! jumps, and small where the flow is continuous. b₁ ≥ b₂ are the shares of the two outlines that lie on the border of the frame: two parts
+//! of the background often both reach it, an object and the background seldom do. Before a camera at rest nothing that moves is background:
+//! r = 1 and b₂ = 0 for regions next to it. All of this is measured at the working size.
 //!
 //! The weights are a maximum likelihood fit to real pairs and generated scenes. The absolute jump, the share of the outline, sizes, colours of
 //! the two regions, image edges along the border, the fit of one slanted plane to both flows and the direction of their difference were tried,
 //! too; none improves the groups of held-out pairs.
 //!
-//! Regions are joined pair by pair, the likeliest first, as long as they are more likely one thing than two, and what is known of the joined
-//! region is measured again along its whole border. A chain of small jumps therefore does not join two regions that differ along their own
-//! border; otherwise a slowly moving limb would tie a whole animal to the ground.
+//! Regions are joined pair by pair, the likeliest first, as long as P is above ½, and a joined region is measured again along its whole
+//! border. A chain of small jumps therefore does not join two regions that differ along their own border; otherwise a slowly moving limb
+//! would tie a whole animal to the ground.
 
 use crate::labelling::regions::description::border_lengths;
 use crate::labelling::{BACKGROUND, across_borders};
@@ -23,13 +23,13 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 
-/// The regions of a labelling, and what lies between them.
+/// The regions of a labelling, and the borders between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Regions<'a> {
     regions: Vec<Region>,
     /// For every [`pair`] of labels, the difference of their flows at each pixel pair of the border, pixels of the labels.
     jumps: Vec<Vec<f64>>,
-    /// The largest motion of a region against the background, pixels of the labels.
+    /// The largest motion of a region relative to the background, pixels of the labels.
     largest: f64,
     /// Whether the background is at rest.
     at_rest: bool,
@@ -39,9 +39,9 @@ pub(crate) struct Regions<'a> {
 /// A region, or several that are joined.
 #[derive(Clone, Copy, Debug, Default)]
 struct Region {
-    /// Pixel pairs of its outline within the frame …
+    /// Pixel pairs on its outline inside the frame.
     inner: usize,
-    /// … and sides of its pixels on the border of the frame.
+    /// Sides of its pixels on the border of the frame.
     outer: usize,
 }
 
@@ -53,7 +53,7 @@ impl Region {
 }
 
 impl<'a> Regions<'a> {
-    /// `motions` are in pixels of the labels.
+    /// The regions of some labels; `motions` are in pixels of the labels.
     pub(crate) fn new(motions: &[AffineMotion], labels: &[u8], width: usize, model: &'a Model) -> Regions<'a> {
         let n = motions.len();
         let mut regions = vec![Region::default(); n];
@@ -82,18 +82,18 @@ impl<'a> Regions<'a> {
         along.len() as f64 * median_f64(along).unwrap_or(0.0)
     }
 
-    /// The largest motion of a region against the background, pixels of the labels.
+    /// The largest motion of a region relative to the background, pixels of the labels.
     pub(super) fn largest_motion(&self) -> f64 {
         self.largest
     }
 
-    /// Share of the border of the frame of every region.
+    /// Share of the border of the frame that every region has.
     pub(super) fn shares_of_frame(&self) -> Vec<f64> {
         let all: usize = self.regions.iter().map(|region| region.outer).sum();
         self.regions.iter().map(|region| region.outer as f64 / all as f64).collect()
     }
 
-    /// Probability, 0…1, that two regions are parts of one thing; none where their border is too short to tell.
+    /// Probability, 0…1, that two regions are parts of one thing; `None` where their border is too short to decide.
     pub(crate) fn likelihood(&mut self, [i, j]: [usize; 2]) -> Option<f64> {
         let n = self.regions.len();
         let along = &mut self.jumps[pair(n, i, j)];
@@ -114,7 +114,7 @@ impl<'a> Regions<'a> {
         Some(f64::from(1.0 / (1.0 + libm::expf(-log_odds as f32))))
     }
 
-    /// The group of every region, named by its smallest label.
+    /// The group of every region: the smallest label in it.
     pub(crate) fn groups(mut self) -> Vec<usize> {
         let n = self.regions.len();
         let mut group: Vec<usize> = (0..n).collect();
@@ -125,7 +125,7 @@ impl<'a> Regions<'a> {
         group
     }
 
-    /// The two regions that are most likely one thing, the smaller label first; none if none are more likely one than two.
+    /// The two regions that are most likely one thing, the smaller label first; `None` if no two are more likely one than two.
     fn likeliest(&mut self) -> Option<[usize; 2]> {
         let n = self.regions.len();
         let mut best = (0.5, None);
@@ -167,14 +167,14 @@ fn sides_on_frame(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     sides
 }
 
-/// Share of the outline of each label that lies on the border of the frame; 0 of a label without pixels.
+/// Share of the outline of each label that lies on the border of the frame; 0 for a label without pixels.
 pub(crate) fn shares_on_frame(labels: &[u8], of: usize, width: usize) -> Vec<f64> {
     let inner = border_lengths(labels, of, width);
     let outer = sides_on_frame(labels, of, width);
     inner.into_iter().zip(outer).map(|(inner, outer)| Region { inner, outer }.on_frame()).collect()
 }
 
-/// The largest motion of a region against the background, root mean square over its pixels; 0 where there is no other region.
+/// The largest motion of a region relative to the background, root mean square over its pixels; 0 if there is no other region.
 fn largest_motion(motions: &[AffineMotion], labels: &[u8], width: usize) -> f64 {
     let mut squares = vec![(0.0, 0.0); motions.len()];
     for (p, &label) in labels.iter().enumerate() {
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn all_evidence_counts() {
+    fn all_features_count() {
         let within = likelihood(1.0, 1.0, [10..30, 10..30]);
         assert!(likelihood(1.0, 2.0, [10..30, 10..30]) < within, "a larger jump");
         let [wide, high] = [likelihood(1.0, 1.0, [0..30, 10..30]), likelihood(1.0, 1.0, [10..30, 0..30])];

@@ -1,8 +1,9 @@
-//! The hypotheses about the background: it does what the dominant motion says, or nothing.
+//! Two hypotheses about the background: it moves with the dominant motion, or it is at rest.
 //!
-//! The dominant motion explains more pixels than any other *single* motion. Plain ground fits every motion, so that it may be one that
-//! spans several objects although the camera is at rest. Where most pixels speak for rest, both hypotheses are therefore solved to the end, each
-//! with objects and a change of brightness of its own, and the one that describes the frames in fewer nats is taken.
+//! The dominant motion explains more pixels than any other *single* motion. Ground without texture fits every motion, so the dominant
+//! motion may be one that spans several objects although the camera is at rest. Where most pixels favour rest, both hypotheses are
+//! therefore solved to the end, each with its own objects and change of brightness, and the one that describes the frames in fewer nats is
+//! taken.
 
 use super::dominant::{Dominant, Objects};
 use super::frames::Pair;
@@ -19,7 +20,7 @@ use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
-/// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.
+/// Solves a pair under the hypothesis with the shorter description. `likely` are candidate motions of objects.
 pub(super) fn solve(
     mut pair: Pair,
     likely: &[AffineMotion],
@@ -56,7 +57,7 @@ pub(super) fn solve(
     if rest < motion { at_rest } else { moving }
 }
 
-/// Solves a pair whose background is known.
+/// Solves a pair under one hypothesis.
 fn under(
     pair: Pair,
     background: AffineMotion,
@@ -74,7 +75,7 @@ fn under(
     labelled
 }
 
-/// Carries a search on at the finer working size of `pair`: motions are refined, and labels solved once.
+/// Continues a search at the finer working size of `pair`: refines the motions, and solves the labels once.
 pub(super) fn carry_on(
     found: LabelledPair,
     mut pair: Pair,
@@ -98,8 +99,8 @@ pub(super) fn carry_on(
     labelled
 }
 
-/// Whether the pixels of the background are described in fewer nats at rest, which needs no parameters. A dominant motion that was fitted
-/// across objects on plain ground is recognised here, once the objects have motions of their own.
+/// Whether the pixels of the background are described in fewer nats at rest, which needs no parameters. This detects a dominant motion that
+/// was fitted across objects on ground without texture, once the objects have motions of their own.
 fn rest_is_shorter(LabelledPair { pair, motions, labels, .. }: &LabelledPair) -> bool {
     let (level, labels) = (&pair.levels[pair.draft], pair.draft_scaling().thinned(labels));
     let of_background = |plane: &Plane| -> f64 {
@@ -111,8 +112,8 @@ fn rest_is_shorter(LabelledPair { pair, motions, labels, .. }: &LabelledPair) ->
     0.5 * (at_rest - moving) < motion_penalty(counts(&labels, 1)[BACKGROUND])
 }
 
-/// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans
-/// may be explained so much worse at rest that it outweighs the ground around it.
+/// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, and costs are not summed, because an
+/// object that `motion` spans may cost so much more at rest that it outweighs the ground around it.
 fn rest_is_likely(level: &PairLevel, motion: &AffineMotion) -> bool {
     let [rest, moving] = [AffineMotion::STATIC, *motion].map(|motion| ScoredMotion::new(level, motion).cost);
     let pixels = || rest.values().iter().zip(moving.values());

@@ -1,8 +1,8 @@
 //! The label of every working pixel.
 //!
-//! On the draft level, motions that do not pay for themselves are pruned, costs are corrected for occlusion, and regions are merged and
-//! split. At the working size labels are then solved once more, with colours, and small components removed. In the end, shadows are given
-//! back to the background.
+//! On the draft level, motions whose gain is below their penalty are removed, costs are corrected for occlusion, and regions are merged and
+//! split. At the working size, labels are then solved once more, with colours, and small components are removed. Finally, shadows are
+//! given back to the background.
 
 use super::frames::Pair;
 use super::observer::Observer;
@@ -28,7 +28,7 @@ pub(super) struct LabelledPair {
     pub(super) pair: Pair,
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Vec<u8>,
-    /// The best motion that was rejected, here or during selection, because it did not pay for itself.
+    /// The best motion that was rejected, here or during selection, because its gain was below its penalty.
     pub(super) rejected: Option<AffineMotion>,
 }
 
@@ -43,13 +43,13 @@ impl LabelledPair {
 
 /// Where the labels of a pair start from.
 pub(super) enum Start {
-    /// The cheapest motion of each pixel.
+    /// Each pixel starts with its cheapest motion.
     Costs,
     /// Labels that are expected at the working size. Regions are merged and split, or taken as they are.
     Expected { labels: Vec<u8>, regroups: bool },
 }
 
-/// The energy of the labels on a level: the motions, their costs, the weights of borders, and the labels of least energy so far.
+/// The energy of the labels on a level: the motions, their costs, the weights of edges, and the labels of least energy so far.
 struct LabelEnergy<'a> {
     pair: &'a Pair,
     level: &'a PairLevel,
@@ -181,7 +181,7 @@ impl<'a> LabelEnergy<'a> {
         self.borders.solve(&self.costs, options.solver)
     }
 
-    /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
+    /// Removes the motion that saves least and solves again, as long as there is one whose gain is below its penalty.
     fn prune(&mut self) {
         let most = self.settings.most;
         while self.motions.len() > self.settings.least {
@@ -216,7 +216,7 @@ impl<'a> LabelEnergy<'a> {
         self.prune();
     }
 
-    /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
+    /// Updates the costs: a motion costs less at pixels that it moves behind another object.
     fn hide_occluded(&mut self) {
         let object_bias = self.settings.labelling.object_bias;
         self.costs = with_visibility(self.level, &self.motions, &self.uncorrected, &self.labels, object_bias);

@@ -1,4 +1,4 @@
-//! The motions of a hypothesis: they are proposed and selected beside the dominant one, which is the first, then refined level by level.
+//! The motions of a hypothesis: the first is the dominant one, the others are proposed and selected, then refined level by level.
 
 use super::frames::Pair;
 use super::observer::Observer;
@@ -18,15 +18,16 @@ use crate::view::brightness::GainBias;
 use crate::view::level::PairLevel;
 
 impl Settings {
-    /// The penalty of a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
-    fn price(&self, level: &PairLevel) -> f64 {
+    /// The penalty of a motion on a level, in summed costs; small if the number of motions is given, so that every motion that helps is
+    /// added.
+    fn penalty(&self, level: &PairLevel) -> f64 {
         if self.least > 1 { 1.0 } else { motion_penalty_on(level) }
     }
 
     /// How motions are added on a level.
-    fn deflation(&self, level: &PairLevel) -> GreedySelection {
+    fn greedy(&self, level: &PairLevel) -> GreedySelection {
         GreedySelection {
-            price: self.price(level),
+            penalty: self.penalty(level),
             most: self.most,
             tries: self.tries,
             window: self.model.cost_window,
@@ -39,7 +40,7 @@ impl Settings {
         refit(level, selected, self.model.refit_rounds, self.refinement);
     }
 
-    /// Refines motions that come from a sample of the working pixels on all of them.
+    /// Refines motions that were estimated on a sample of the working pixels on all of them.
     fn complete(&self, pair: &Pair, selected: &mut Vec<ScoredMotion>) {
         if self.completes {
             let level = pair.finest();
@@ -48,15 +49,15 @@ impl Settings {
         }
     }
 
-    /// Takes motions away that do not pay for themselves, unless their number is given.
+    /// Removes motions whose gain is below their penalty, unless the number of motions is given.
     fn prune(&self, level: &PairLevel, selected: &mut Vec<ScoredMotion>) {
         if self.least == 1 {
-            prune(selected, self.price(level));
+            prune(selected, self.penalty(level));
         }
     }
 }
 
-/// The motions selected beside the dominant one, and the best proposal that was rejected.
+/// The motions selected in addition to the dominant one, and the best proposal that was rejected.
 pub(super) fn select(
     pair: &Pair,
     dominant: AffineMotion,
@@ -75,15 +76,15 @@ pub(super) fn select(
     observer.stage_begins("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
-    observer.proposed(pair, &selected[0], &proposals, settings.deflation(level));
-    let rejected = add_motions(level, &mut selected, &proposals, settings.deflation(level));
+    observer.proposed(pair, &selected[0], &proposals, settings.greedy(level));
+    let rejected = add_motions(level, &mut selected, &proposals, settings.greedy(level));
     observer.selected(pair, &selected);
     settings.refit(level, &mut selected);
     (selected, rejected)
 }
 
-/// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels. Returns the best
-/// proposal of these that was rejected.
+/// Refines the motions from the selection level up to the working size, and adds motions that only show at finer levels. Returns the best
+/// of these proposals that was rejected.
 pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
     let level = &pair.levels[pair.selection];
     settings.refit(level, selected);
@@ -100,9 +101,9 @@ pub(super) fn refine(pair: &Pair, selected: &mut Vec<ScoredMotion>, settings: &S
     rejected
 }
 
-/// Adds motions to those on a thinned level that only show there, and refines all. Returns the best proposal that was rejected.
+/// Adds motions that only show on a thinned level, and refines all motions. Returns the best proposal that was rejected.
 fn add_fine(level: &PairLevel, selected: &mut Vec<ScoredMotion>, settings: &Settings) -> Option<AffineMotion> {
-    let how = GreedySelection { tries: settings.model.tries_fast, ..settings.deflation(level) };
+    let how = GreedySelection { tries: settings.model.tries_fast, ..settings.greedy(level) };
     let proposals = fine_proposals(level, selected, settings.tiles);
     let rejected = add_motions(level, selected, &proposals, how);
     settings.refit(level, selected);
@@ -118,7 +119,7 @@ pub(super) fn add_detail(pair: &Pair, motions: &mut Vec<AffineMotion>, settings:
     rejected
 }
 
-/// The motions alone.
+/// The motions without their costs.
 pub(super) fn motions_of(selected: &[ScoredMotion]) -> Vec<AffineMotion> {
     selected.iter().map(|one| one.motion).collect()
 }
@@ -128,13 +129,13 @@ fn scored_on(level: &PairLevel, motions: &[AffineMotion]) -> Vec<ScoredMotion> {
     motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect()
 }
 
-/// The cost of a sample of the working pixels, each under the motion that fits it best.
+/// The summed cost of a sample of the working pixels, each under the motion that fits it best.
 pub(super) fn cost(pair: &Pair, motions: &[AffineMotion]) -> f64 {
     smallest_cost(&scored_on(&pair.finest().thinned(), motions)).total()
 }
 
-/// The motions with which labels of the working size go on, each refined on the pixels that it is expected to have; those that have become
-/// needless are left out, together with their pixels. And the cost of the sample that they were refined on.
+/// Refines each motion on the pixels that expected labels of the working size give it. Motions that are no longer needed are removed
+/// together with their pixels. Also returns the cost of the sample on which the motions were refined.
 pub(super) fn follow(
     pair: &Pair,
     dominant: AffineMotion,
@@ -163,13 +164,13 @@ pub(super) fn follow(
     (motions_of(&selected), cost)
 }
 
-/// Adds motions from single windows, at most `most`, that pay for themselves beside these. The first is the dominant one.
+/// Adds at most `most` motions from single windows whose gain exceeds their penalty. The first motion is the dominant one.
 pub(super) fn add_missing(pair: &Pair, motions: &mut Vec<AffineMotion>, most: usize, settings: &Settings) {
     let level = &pair.levels[pair.selection];
     let dominant = &motions[BACKGROUND];
     let flow = local_flow(&pair.levels, dominant, pair.base);
     let proposals = from_tiles(&pair.levels[pair.base], dominant, &flow, settings.tiles);
     let mut selected = scored_on(level, motions);
-    add_motions(level, &mut selected, &proposals, GreedySelection { most, ..settings.deflation(level) });
+    add_motions(level, &mut selected, &proposals, GreedySelection { most, ..settings.greedy(level) });
     motions.extend(selected[motions.len()..].iter().map(|one| one.motion));
 }

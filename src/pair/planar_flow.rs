@@ -1,12 +1,12 @@
-//! How far the flow of each region is from that of one plane.
+//! The distance of the flow of each region from the flow of one plane.
 //!
 //! A camera that moves before a plane sees the flow
 //!
 //! ```text
 //! u = a₁ + a₂ x + a₃ y + (a₇ x + a₈ y) x,    v = a₄ + a₅ x + a₆ y + (a₇ x + a₈ y) y
 //! ```
-//! (Longuet-Higgins, "The visual ambiguity of a moving plane", 1984). It is fitted to the flow of the regions at points with texture, such
-//! that points far from it do not count: a ground that recedes is one plane with several affine motions, an object is not part of it.
+//! (Longuet-Higgins, "The visual ambiguity of a moving plane", 1984). It is fitted robustly to the flow of the regions at textured points,
+//! so that points far from it do not count: receding ground is one plane with several affine motions, and an object is not part of it.
 
 use crate::frame::filter::gaussian;
 use crate::linear::Triangle;
@@ -14,19 +14,19 @@ use crate::motion::AffineMotion;
 use crate::order::median_f64;
 use crate::view::level::PairLevel;
 
-/// Entries of the flow of a plane.
+/// Number of entries of the flow of a plane.
 const ENTRIES: usize = 8;
-/// Distance of the points, pixels.
+/// Spacing of the points, pixels.
 const STEP: usize = 6;
-/// Standard deviation of the window in which there is texture or not, pixels …
+/// Standard deviation of the window in which texture is measured, pixels.
 const WINDOW: f32 = 2.0;
-/// … and the mean squared gradient from which on there is, squared grey levels per pixel.
+/// Smallest mean squared gradient of textured points, squared grey levels per pixel.
 const TEXTURE: f32 = 3.0;
-/// Fewest points from which the distance of a region is known.
+/// Fewest points for which the distance of a region is computed.
 const FEWEST: usize = 5;
-/// Distance at which the weight of a point has fallen to a quarter, pixels …
+/// Distance at which the weight of a point has fallen to a quarter, pixels.
 const NEAR: f64 = 0.7;
-/// … and in the first round; it is halved from round to round.
+/// The same in the first round; it is halved in every round.
 const NEAR_AT_FIRST: f64 = 11.2;
 /// Rounds of the fit.
 const ROUNDS: usize = 8;
@@ -36,11 +36,11 @@ struct Point {
     region: usize,
     /// From the centre, in widths of the frame.
     place: [f64; 2],
-    /// Pixels.
+    /// Pixels per frame.
     flow: [f64; 2],
 }
 
-/// The median distance of the flow of each region to that of the plane, pixels of the level; none where there are too few points.
+/// The median distance of the flow of each region from that of the plane, pixels of the level; `None` where there are too few points.
 pub(super) fn distances_to_plane(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<Option<f64>> {
     let points = points(level, motions, labels);
     let plane = fitted(&points);
@@ -63,7 +63,7 @@ fn points(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<Poi
     points
 }
 
-/// The plane that most points fit.
+/// The plane that fits the most points.
 fn fitted(points: &[Point]) -> Vec<f64> {
     let mut plane = vec![0.0; ENTRIES];
     for round in 0..ROUNDS {
@@ -88,7 +88,7 @@ fn fitted(points: &[Point]) -> Vec<f64> {
 /// Share of each entry's information that is added to it, so that few points suffice.
 const RIDGE: f64 = 1e-9;
 
-/// The flow of a plane is linear in its entries.
+/// The flow of a plane at a point, (u, v), is linear in its entries: the two rows of coefficients.
 fn rows([x, y]: [f64; 2]) -> [[f64; ENTRIES]; 2] {
     [[1.0, x, y, 0.0, 0.0, 0.0, x * x, x * y], [0.0, 0.0, 0.0, 1.0, x, y, x * y, y * y]]
 }

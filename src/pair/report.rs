@@ -1,10 +1,9 @@
-//! The result: labels at full size, statistics of every motion, evidence for their number. Motions are numbered by pixel count, here
-//! and nowhere else.
+//! The result: labels at full size, statistics of every motion, and scores of their number. Only here are motions numbered by pixel count.
 
 use serde::Serialize;
 
+mod candidates;
 mod doubt;
-mod evidence;
 mod junctions;
 mod statistics;
 mod unknown;
@@ -41,33 +40,34 @@ pub struct Segmentation {
     pub count: usize,
     /// The motions by decreasing number of pixels; `motions[i].label == i`.
     pub motions: Vec<SegmentedMotion>,
-    /// One label per pixel, row by row; [`UNLABELLED`] where the data cannot tell (only on request).
+    /// One label per pixel of the first frame, row by row: an index of `motions`, or [`UNLABELLED`] where the frames do not determine it
+    /// (only on request).
     #[serde(skip)]
     pub labels: Vec<u8>,
-    /// Which neighbouring motions may be one thing, by labels.
+    /// The borders of neighbouring motions that may belong to one thing, by labels.
     pub junctions: Vec<Junction>,
-    /// Evidence for the number of motions.
+    /// Scores of different numbers of motions.
     pub evidence: PairEvidence,
     /// Number of unlabelled pixels.
     pub unlabelled: usize,
-    /// Confidence of every label, row by row, if requested: 255 times the probability of the pixel's motion, given how well all
-    /// motions explain the pixel and its surroundings and which labels surround it. Of an object it is the probability that it is one and
-    /// not a part of the background at another depth: less where the object is cut by the frame's border, and in frames
-    /// that no motions explain well. 255 is certain, 0 unlabelled. The probability is calibrated on real pairs and generated
-    /// scenes: of the pixels with probability P, about the share P is right. It is low where no motion fits.
+    /// Confidence of every label, row by row, on request: 255 times the probability that the label is right; 0 for unlabelled pixels. It
+    /// follows from how well all motions explain the pixel and its surroundings, and from the labels around it. For an object it is the
+    /// probability that the pixel belongs to an object, and not to background at another depth: it is lower where the object is cut by the
+    /// border of the frame, and in frames that no motions explain well. It is calibrated on real pairs and generated scenes: of the pixels
+    /// with probability P, about the share P is right.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,
 }
 
-/// Evidence for the number of motions of a pair.
+/// Scores of different numbers of motions of a pair.
 #[non_exhaustive]
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PairEvidence {
-    /// Description lengths of both frames in nats, from one motion up to one more than were found; smaller is better. For fewer
-    /// motions the least worthy are removed one by one; for one more the best rejected motion is added. Labels are solved for each
-    /// number with the same costs, on a level whose longer side is at most 224 pixels unless the frame is narrow. The stages of
-    /// the pipeline decide on more than this list, so the number found need not have the smallest score.
+    /// Description lengths of both frames in nats, from one motion to one more than were found; smaller is better. For fewer motions, the
+    /// least useful ones are removed one by one; for one more, the best rejected motion is added. Labels are solved for each number with
+    /// the same costs, on a level whose longer side is at most 224 pixels unless the frame is narrow. The pipeline decides by more than
+    /// this list, so the number found need not have the smallest score.
     pub candidates: Vec<Candidate>,
 }
 
@@ -81,7 +81,7 @@ pub(super) fn report(
     let pair = &labelled.pair;
     let level = pair.finest();
     let (size, model) = ([level.width(), level.height()], level.model);
-    let candidates = evidence::evidence(&labelled, settings);
+    let candidates = candidates::scored_candidates(&labelled, settings);
     let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
         costs(level, &labelled.motions, RobustKernel::labels(model))

@@ -13,31 +13,31 @@ use crate::options::{MotionCount, Quality, SegmentOptions};
 pub(crate) struct Settings {
     /// How often the frames are halved to reach the working size.
     pub(crate) halvings: usize,
-    /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
+    /// Largest longer side of the base level, pixels. There the dominant motion is found and others are proposed.
     pub(crate) base_side: usize,
-    /// Longer side of the level on which motions are first selected at most, pixels.
+    /// Largest longer side of the level on which motions are first selected, pixels.
     pub(crate) selection_side: usize,
-    /// Longer side of the level on which labels are drafted at most, pixels.
+    /// Largest longer side of the level on which labels are drafted, pixels.
     pub(crate) draft_side: usize,
-    /// The coarsest level keeps the shorter side at least this long, pixels.
+    /// Smallest shorter side of the coarsest level, pixels.
     pub(crate) smallest_side: usize,
     /// Highest degree of the multibody polynomial.
     pub(crate) degrees: usize,
-    /// Measurements that the polynomial is fitted to, at most.
+    /// Largest number of measurements to which the polynomial is fitted.
     pub(crate) measurements: usize,
-    /// Proposals from single windows, at most.
+    /// Largest number of proposals from single windows.
     pub(crate) tiles: usize,
-    /// Proposals tried in earnest per round of the selection.
+    /// Number of proposals refined per round of the selection.
     pub(crate) tries: usize,
-    /// The entries that have to converge when the dominant motion is found …
+    /// The entries that must converge when the dominant motion is found.
     pub(crate) dominant: Convergence,
-    /// … and when motions are refined on their pixels during selection.
+    /// The entries that must converge when motions are refined on their pixels during selection.
     pub(crate) refinement: Convergence,
-    /// Whether motions that were refined on a sample of the working pixels are refined on all of them in the end.
+    /// Whether motions that were refined on a sample of the working pixels are finally refined on all of them.
     pub(crate) completes: bool,
     /// Largest number of motions.
     pub(crate) most: usize,
-    /// Number of motions below which none is taken away again.
+    /// Smallest number of motions: none is removed below it.
     pub(crate) least: usize,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,
@@ -47,13 +47,13 @@ pub(crate) struct Settings {
     pub(crate) returns_shadows: bool,
     /// Whether a pair starts from the labels of the one before, where there is one.
     pub(crate) follows: bool,
-    /// Whether the main subject alone is figure.
+    /// Whether only the main subject is figure.
     pub(crate) subject: bool,
-    /// The numbers that never change.
+    /// The constants that do not depend on quality, options or size.
     pub(crate) model: &'static Model,
 }
 
-/// How often frames are halved with quality `fast`, to this side of the working size and, where they are large, to that.
+/// How often frames are halved with quality `fast`: to `side` or, if they are large, to `of_large`.
 fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2], model: &Model) -> usize {
     Scaling::within(size, if size[0].max(size[1]) > model.detail_side() { of_large } else { side }).halvings()
 }
@@ -120,17 +120,18 @@ impl Settings {
             },
         };
         if let MotionCount::Given(n) = options.motions {
-            // The caller knows better than the penalty: anything that helps is added, nothing needed is taken away.
+            // The number is given: every motion that helps is added, and none is removed below it.
             settings.most = n;
             settings.least = n;
         }
         settings
     }
 
-    /// The settings for the pairs of a clip. Motions are selected on the base level and, with quality `best`, refined on all working pixels
-    /// in the end: on clips that nothing was tuned on as good as a selection at the working size, for half the time. They do not wait for
-    /// linear terms: fast streams lost by it, in small frames unrelated ones were explained too well for a cut to be seen, and whole clips
-    /// gained no more than chance. Shadows are given back with both qualities, as they would be carried from frame to frame.
+    /// The settings for the pairs of a clip. Motions are selected on the base level and, with quality `best`, finally refined on all
+    /// working pixels: on clips that nothing was tuned on this is as good as a selection at the working size, in half the time. Linear
+    /// terms need not converge: waiting for them made fast streams worse, explained small unrelated frames too well for a cut to be seen,
+    /// and gained no more than chance in whole clips. Shadows are given back with both qualities, because they would be carried from frame
+    /// to frame.
     pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let settings = Settings::new(options, size, &Model::DEFAULT);
         let [dominant, refinement] = [Convergence::Translation; 2];
@@ -138,8 +139,8 @@ impl Settings {
         Settings { dominant, refinement, selection_side, completes, returns_shadows: true, ..settings }
     }
 
-    /// The settings for the pair of a clip of two frames, which have no others to put right what they tell: as those of a clip, with motions
-    /// selected where those of a pair are. In longer clips it costs half as much again, and neither masks nor corrections gained by it.
+    /// The settings for the pair of a clip of two frames, where no other frames correct the result: as those of a clip, with motions
+    /// selected on the level of a pair. In longer clips this costs half as much again, and improves neither masks nor corrections.
     pub(crate) fn of_lone_pair(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let Settings { selection_side, completes, .. } = Settings::new(options, size, &Model::DEFAULT);
         Settings { selection_side, completes, ..Settings::of_clip(options, size) }
@@ -158,8 +159,8 @@ impl Settings {
         Settings { halvings, selection_side: fine_side, draft_side: fine_side, labelling, follows: true, ..settings }
     }
 
-    /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
-    /// `fast` or the size of the frames asks for no more.
+    /// The settings with which a search is continued at a finer working size, so that large frames get their detail; `None` with quality
+    /// `fast`, or if the frames are not large.
     pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
         let halvings = Scaling::within(size, self.model.detail_side()).halvings();
         let finer = self.halvings > 1 && halvings < self.halvings;

@@ -1,4 +1,4 @@
-//! Notes what the stages of a pair find, in pixels of the full frame.
+//! Records what the stages of a pair find, in pixels of the full frame.
 
 use super::{
     Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, PairStages, SelectedMotion,
@@ -21,7 +21,7 @@ use crate::pair::segment_observed;
 use crate::pair::settings::Settings;
 use crate::view::level::PairLevel;
 
-/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, of which it notes what it is told.
+/// [`segment_pair`](crate::segment_pair) with what its stages found: the same pipeline with an observer.
 ///
 /// # Errors
 /// As [`segment_pair`](crate::segment_pair).
@@ -40,7 +40,7 @@ pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptio
     })
 }
 
-/// All that was found of a pair.
+/// Everything that was found of a pair.
 #[derive(Default)]
 struct Recorder {
     hypotheses: Vec<Background>,
@@ -71,7 +71,7 @@ impl Observer for Recorder {
             local_flow,
             measured: measured(level, &dominant, flow, settings, scale),
             candidates: candidates(level, &dominant, flow, settings, pair.scaling.step as f64),
-            price: 0.0,
+            penalty: 0.0,
             selected: Vec::new(),
             selection: Labelling::default(),
             refined: Vec::new(),
@@ -84,7 +84,7 @@ impl Observer for Recorder {
     /// Scores the candidates. Those that the hypothesis did not begin with were known before.
     fn proposed(&mut self, pair: &Pair, dominant: &ScoredMotion, proposals: &[AffineMotion], how: GreedySelection) {
         let Some(hypothesis) = self.hypotheses.last_mut() else { return };
-        hypothesis.price = how.price;
+        hypothesis.penalty = how.penalty;
         let candidates = &mut hypothesis.candidates;
         let known = proposals.iter().skip(candidates.len());
         let known = known.map(|motion| candidate(motion, CandidateSource::Hypothesis, pair.scaling.step as f64));
@@ -177,7 +177,7 @@ fn candidate(motion: &AffineMotion, source: CandidateSource, reduction: f64) -> 
     CandidateMotion { matrix: motion.scaled(reduction), source, gain: 0.0, support: 0.0 }
 }
 
-/// The cheapest motion of each pixel, on the selection level: what single pixels say before any asks its neighbours.
+/// The cheapest motion of each pixel on the selection level, without regard to its neighbours.
 fn cheapest_labels(pair: &Pair, scored: &[ScoredMotion]) -> Labelling {
     let level = &pair.levels[pair.selection];
     let motions: Vec<AffineMotion> = scored.iter().map(|one| one.motion).collect();

@@ -1,4 +1,4 @@
-//! GainBias change (gain and bias) between the first frame and the second.
+//! Change of brightness, gain and bias, from the first frame to the second.
 
 use std::rc::Rc;
 
@@ -30,7 +30,7 @@ impl GainBias {
         GainBias { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * GREY }
     }
 
-    /// Refined between the first frame and the second under the zero motion.
+    /// Refined between the two frames under the zero motion.
     pub(crate) fn refined_at_rest(mut self, level: &PairLevel) -> GainBias {
         for _ in 0..level.model.brightness_iterations {
             self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
@@ -57,7 +57,7 @@ impl GainBias {
             footprint.inside.then(|| footprint.sample(second.values()))
         };
         let width = level.width();
-        // Taken once: they are the same in every step.
+        // Computed once: they are the same in every step.
         let samples: Vec<Option<f32>> = (0..level.first.values().len()).map(|p| sample(p % width, p / width)).collect();
         let start = GainBias::from_moments(&level.first, second, level.model);
         (0..level.model.brightness_iterations)
@@ -67,7 +67,7 @@ impl GainBias {
     /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.
     fn step(self, level: &PairLevel, sample: impl Fn(usize, usize) -> Option<f32>) -> GainBias {
         let variance = f64::from(level.noise * level.noise);
-        let robustness = f64::from(level.model.robustness);
+        let truncation = f64::from(level.model.truncation);
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in 0..level.first.values().len() {
             let (x, y) = (p % level.width(), p / level.width());
@@ -75,7 +75,7 @@ impl GainBias {
             let first = level.first.values()[p];
             let i = f64::from(first) / GREY;
             let r = f64::from(value) - f64::from(first) - self.bias - self.gain * i;
-            let robust = robustness / (robustness + r * r / variance);
+            let robust = truncation / (truncation + r * r / variance);
             let w = robust * robust;
             q += w;
             qi += w * i;

@@ -19,7 +19,7 @@ use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::view::level::PairLevel;
 
-/// Least noise, grey levels: rounding both frames makes √(1/12 + 1/12).
+/// Smallest noise, grey levels: rounding both frames makes √(1/12 + 1/12).
 pub(crate) const SMALLEST_NOISE: f32 = 0.408;
 
 /// The two constants of the cost.
@@ -35,7 +35,7 @@ impl RobustKernel {
     /// For estimating motions.
     #[inline(always)]
     pub(crate) fn estimation(model: &Model) -> RobustKernel {
-        RobustKernel { truncation: model.robustness, position_sigma: model.position_sigma }
+        RobustKernel { truncation: model.truncation, position_sigma: model.position_sigma }
     }
 
     /// For labelling pixels.

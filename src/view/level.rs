@@ -1,4 +1,4 @@
-//! One size of two frames, with gradients: what alignment and labelling compare.
+//! Two frames at one size, with gradients, as alignment and labelling compare them.
 
 use std::rc::Rc;
 

@@ -1,7 +1,7 @@
-//! Calls on clips. What there is of a clip stays in the module between calls; the caller gives it a number.
+//! Calls on clips. The module keeps a clip between calls, under a number that the caller gives it.
 //!
 //! A stream is pushed frame by frame until it is finished. A whole clip is pushed, then concluded (or restored from its saved state); after
-//! that it gives labels of any frame and takes what a person says. All calls return `null` if there is no such clip, or it is not that far.
+//! that it gives labels of any frame and takes annotations. All calls return `null` if there is no such clip, or if it is in another state.
 //!
 //! The handle is a number, not an exported object, because the package replaces the instance after a panic: a pointer into the old instance
 //! would be used in the new one. A number that is used only once is simply not found there.
@@ -25,14 +25,14 @@ thread_local! {
     static CLIPS: RefCell<Vec<(u32, Clip)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// What there is of a clip.
+/// The state of a clip.
 enum Clip {
     Stream(StreamSegmenter),
     Pairs(ClipSegmenter),
     Segmented {
         clip: SegmentedClip,
         job: Option<ClipJob>,
-        /// Whether it came as bytes.
+        /// Whether it was restored from bytes.
         restored: bool,
     },
 }
@@ -54,9 +54,9 @@ pub fn begin_clip(clip: u32, whole: bool, options: &JsValue) -> Result<(), JsVal
     Ok(())
 }
 
-/// Adds a frame, `{ data, width, height }`. A stream returns a frame that has waited long enough as `{ index, labels, objects,
-/// background }`, or `undefined` if there is none. A whole clip returns what the frame's pairs have told as bytes, or `undefined` if these
-/// bytes were `known`; bytes that are damaged, or of another version, other options or other frames count as unknown.
+/// Adds a frame, `{ data, width, height }`. A stream returns a frame that has waited long enough as `{ index, labels, objects, background
+/// }`, or `undefined` if there is none. A whole clip returns the solved pairs of the frame as bytes, or `undefined` if these bytes were
+/// `known`; bytes that are damaged, or of another version, other options or other frames are ignored.
 ///
 /// # Errors
 /// A `VeroneseError` of code `frame-size-mismatch`, or `invalid-input` for a malformed frame. The clip can continue with another frame.
@@ -85,7 +85,7 @@ fn push_pairs(segmenter: &mut ClipSegmenter, frame: Frame, known: Option<Vec<u8>
     segmenter.push(frame).map(|pairs| bytes(&pairs.to_bytes()))
 }
 
-/// What the pairs of a whole clip tell so far of the newest frame whose pairs are all solved, as [`push_clip`] of a stream returns it;
+/// A preview of the newest frame whose pairs are all solved, from these pairs alone, as [`push_clip`] of a stream returns a frame;
 /// `undefined` if there is none that was not returned before.
 #[wasm_bindgen(js_name = previewClip)]
 pub fn preview_clip(clip: u32) -> Result<JsValue, JsValue> {
@@ -145,12 +145,12 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
     segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
 }
 
-/// Begins to apply all that a person says of a concluded clip, as `Annotations` of pkg/src/calls/messages.ts. Returns
-/// `{ wanted, changed, changes, objects }`: the index of the frame to take next, `undefined` at the end, those of the frames that have changed, and
-/// at the end what objects have gained and lost, and the numbers of all objects before any edit.
+/// Begins to apply annotations to a concluded clip, given as `Annotations` of pkg/src/calls/messages.ts. Returns `{ wanted, changed,
+/// changes, objects }`: the index of the frame to take next, `undefined` at the end; the indices of the changed frames; and at the end the
+/// pixels that objects have gained and lost, and the numbers of all objects before merges and deletions.
 ///
 /// # Errors
-/// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
+/// A `VeroneseError` of code `invalid-option` or `object-locked`. The clip is then unchanged.
 #[wasm_bindgen(js_name = annotateClip)]
 pub fn annotate_clip(clip: u32, annotations: &JsValue) -> Result<JsValue, JsValue> {
     let mut given = Some(annotations_of(annotations));
@@ -160,8 +160,8 @@ pub fn annotate_clip(clip: u32, annotations: &JsValue) -> Result<JsValue, JsValu
     })
 }
 
-/// Takes the frame that the annotations want. Returns what [`annotate_clip`] does, with the frames that have changed since the call before for
-/// the first time.
+/// Takes the frame that the annotations want. Returns what [`annotate_clip`] does, with the frames that have changed for the first time
+/// since the previous call.
 ///
 /// # Errors
 /// As [`frame_of_clip`].
@@ -205,7 +205,7 @@ fn take(clip: u32) -> Option<Clip> {
     })
 }
 
-/// What `work` makes of a clip, or `null`. Not generic: each call would have a copy of its own.
+/// What `work` returns for a clip, or `null`. Not generic, so that it is compiled only once.
 fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Error>>) -> Result<JsValue, JsValue> {
     let done = CLIPS.with_borrow_mut(|clips| {
         let (_, clip) = clips.iter_mut().find(|(number, _)| *number == clip)?;
@@ -214,10 +214,10 @@ fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Err
     Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
 }
 
-/// What is done with a clip that is concluded and with what is said of it.
+/// Work on a concluded clip and on the job of its annotations.
 type Work<'a> = &'a mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipJob>) -> Result<JsValue, Error>;
 
-/// [`step`] for a clip that is concluded. Frames that are not those of a state are the state's fault.
+/// [`step`] for a concluded clip. If frames are not those of a restored state, the error is about the state.
 fn segmented(clip: u32, work: Work<'_>) -> Result<JsValue, JsValue> {
     step(clip, &mut |clip| match clip {
         Clip::Segmented { clip, job, restored } => Some(work(clip, job).map_err(|error| match error {
@@ -236,14 +236,14 @@ fn indices(indices: &[usize]) -> JsValue {
     list(indices, |index| (*index as f64).into())
 }
 
-/// How far a job has come; `known` of its changed frames were told before.
+/// The progress of a job; the first `known` of its changed frames were returned before.
 fn news(clip: &SegmentedClip, job: &ClipJob, known: usize) -> JsValue {
-    let told = Record::new().set("changed", &indices(&job.changed()[known..]));
+    let progress = Record::new().set("changed", &indices(&job.changed()[known..]));
     match job.wanted() {
-        Some(index) => told.count("wanted", index),
+        Some(index) => progress.count("wanted", index),
         None => {
             let objects = clip.objects();
-            told.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
+            progress.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
         }
     }
     .into_value()
@@ -259,7 +259,7 @@ fn changed(changed: &Changed) -> JsValue {
         .into_value()
 }
 
-/// The package has checked them.
+/// Annotations from their plain object, whose values the package has checked.
 fn annotations_of(value: &JsValue) -> Annotations {
     let frames = |name| -> Option<Vec<Accepted>> {
         let list = each(value, name)?;
@@ -349,7 +349,7 @@ fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
     Ok(options)
 }
 
-/// None for `'all'`.
+/// `None` for `'all'`.
 fn look_ahead(value: &JsValue) -> Result<Option<usize>, Failure> {
     match (value.as_string().as_deref(), value.as_f64()) {
         (Some("all"), _) => Ok(None),

@@ -6,8 +6,8 @@ A frame is an array of ``uint8`` of shape ``(height, width, 3)``, ``(height, wid
 makes such an array of (a tensor, a buffer), a picture of Pillow, or the path or the bytes of a PNG, JPEG, WebP, BMP or PNM file. Sides are 16
 to 4096 pixels. Pixels are copied when a call takes them.
 
-Calls release the interpreter's lock: other threads go on, and Ctrl-C ends a call at once. A mistake in a frame, an option or a file
-is a :class:`VeroneseError` with a stable ``code``, the same as on the command line.
+Calls release the interpreter's lock: other threads continue, and Ctrl-C ends a call at once. An invalid frame, option or file raises
+a :class:`VeroneseError` with a stable ``code``, the same as on the command line.
 """
 
 from __future__ import annotations
@@ -79,14 +79,14 @@ __all__ = [
 ]
 
 Frame = Union[NDArray[np.uint8], SupportsArray, Picture, bytes, bytearray, memoryview, str, "os.PathLike[str]"]
-"""An array of pixels or what has one, a picture of Pillow, or the bytes or the path of an image file."""
+"""An array of pixels or an object that NumPy makes one of, a picture of Pillow, or the bytes or the path of an image file."""
 
 Progress = Callable[[str, int, int], object]
 """Called when a stage begins, with its name, its index and the number of stages. An exception that it raises ends the call."""
 
 ClipProgress = Callable[[str, int, Optional[int]], object]
 """Called when work on a frame begins, with the stage (``"pairs"``, ``"corrections"`` or ``"labels"``), the frame's index and the number of
-frames, ``None`` where it is not known. An exception that it raises ends the clip, or takes back what is being said."""
+frames, ``None`` where it is not known. An exception that it raises ends the clip, or undoes the annotations that are being applied."""
 
 
 def segment_pair(
@@ -100,17 +100,19 @@ def segment_pair(
     subject: bool = False,
     progress: Optional[Progress] = None,
 ) -> Segmentation:
-    """Segments two frames: how many things move, how each one moves, and which pixels belong to it.
+    """Segments two frames: estimates how many motions there are, each motion, and the pixels that follow it.
+
+    Labels are those of the pixels of ``first``. They number the motions from 0 by decreasing number of pixels.
 
     To correct masks, segment the two frames as a clip (:func:`segment_clip`), which takes corrections.
 
     :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
     :param quality: ``"best"`` for accuracy, ``"fast"`` for live use.
-    :param mark_unknown: gives label 255 to a pixel that is hidden or outside in the second frame, has no texture around it, or whose label
+    :param mark_unknown: gives label 255 to a pixel that is occluded or outside in the second frame, has no texture around it, or whose label
         would more likely be wrong than right.
     :param confidence: adds the confidence of every label.
-    :param subject: takes the main subject for the one object, as for a cut-out, and all else for ground: what else moves is not told apart
-        from it. The group of its motions is 1.
+    :param subject: treats the main subject as the only object, as for a cut-out, and everything else as background, even if it moves. The
+        group of its motions is 1.
     """
     return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, subject, progress)
 
@@ -140,30 +142,30 @@ def segment_clip(
 
     All frames must have one size. If the source raises or a frame is unusable, the frames before it come first, then the error.
 
-    Nothing that was painted, given, prompted, named, accepted or locked changes when something else is said. An object that was found
-    automatically changes by the pixels that another one takes from it or gives back.
+    Objects that were painted, given as masks, prompted, named, accepted or locked change only by annotations of themselves. An object that
+    was found automatically changes by the pixels that annotated objects take from it or give back.
 
     :param motions: the number of motions in each pair of consecutive frames.
-    :param mark_unknown: gives label 255 to pixels whose evidence does not tell an object from the background.
-    :param subject: takes the main subject for the one object, as for a cut-out, and all else for background.
-    :param look_ahead: the number of frames that each frame waits for, 0 to 8, or ``"all"``: as many as matter, of a whole clip. Default: 8
+    :param mark_unknown: gives label 255 to pixels whose log-odds do not decide between object and background.
+    :param subject: treats the main subject as the only object, as for a cut-out, and everything else as background.
+    :param look_ahead: the number of later frames that each frame waits for, 0 to 8, or, for a whole clip, ``"all"``: as many as matter. Default: 8
         for a stream, ``"all"`` for a whole clip. A number makes a stream of a sequence, unless one of the options below is given.
     :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. An object that was found
         under one of their numbers gets the lowest free one.
-    :param corrections: what is certain in some frames, with the numbers of an earlier run. A correction of a frame that has a mask goes
-        before it where it says anything. All count together, in any order; prompts may be among them.
-    :param prompts: clicks and boxes that point to objects in some frames, after what is painted.
-    :param locked: numbers of objects of which nothing changes a pixel, but annotations of themselves in the same call. Saying anything new of
-        one that a ``state`` has locked is a mistake, ``object-locked``. Where it is given, it replaces what a ``state`` has; so do the next two.
-    :param named: numbers of objects that only what is said of themselves changes.
-    :param accepted: indices of frames that are right, or :class:`Accepted` with their labels. Only what is painted or pointed to in such a
-        frame changes labels there, and the objects in it are followed from it as from a correction. Without labels it has those of now: as masks
-        and a ``state`` have it, before corrections.
-    :param state: what :meth:`Clip.state` gave for the same frames: no pair is solved again. ``motions``, ``quality``, ``subject`` and ``look_ahead``
-        are those of the state then.
+    :param corrections: labels that are certain in some frames, with the numbers of an earlier run. Where a correction is not 255, it replaces
+        the mask of its frame. All are applied together, in any order; prompts may be among them.
+    :param prompts: clicks and boxes that point to objects in some frames. They are applied after ``masks`` and ``corrections``.
+    :param locked: numbers of objects whose pixels no annotation changes, except annotations of themselves in the same call. A new annotation
+        of an object that a ``state`` has locked raises ``object-locked``. This option replaces the locks of a ``state``; so do the next two.
+    :param named: numbers of objects that change only by annotations of themselves.
+    :param accepted: indices of frames whose labels are right, or :class:`Accepted` with their labels. Labels in such a frame change only by
+        annotations of the frame itself, and its objects are followed from it as from a correction. Without labels, those after the masks and
+        the ``state``, before corrections, are accepted.
+    :param state: the result of :meth:`Clip.state` for the same frames: no pair is solved again. ``motions``, ``quality``, ``subject`` and
+        ``look_ahead`` are then those of the state.
     """
-    said = (masks, corrections, prompts, locked, named, accepted)
-    return _veronese.segment_clip(frames, motions, quality, mark_unknown, subject, look_ahead, *said, state, progress)
+    annotations = (masks, corrections, prompts, locked, named, accepted)
+    return _veronese.segment_clip(frames, motions, quality, mark_unknown, subject, look_ahead, *annotations, state, progress)
 
 
 def fit_points(

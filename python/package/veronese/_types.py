@@ -24,13 +24,13 @@ Click = Tuple[int, int, Literal[1, -1]]
 """Column and row of a pixel, and 1 if it belongs to an object, -1 if it does not."""
 
 class SupportsArray(Protocol):
-    """What NumPy makes an array of, such as a tensor."""
+    """An object that NumPy makes an array of, such as a tensor."""
 
     def __array__(self) -> NDArray[np.uint8]: ...
 
 
 class Picture(Protocol):
-    """A picture as Pillow has it."""
+    """A picture of Pillow."""
 
     @property
     def mode(self) -> str: ...
@@ -38,7 +38,7 @@ class Picture(Protocol):
 
 
 Propagation = Literal["both", "forward", "backward", "none"]
-"""Where the annotations of a frame spread: to the frames before and after it, to one side alone, or nowhere."""
+"""The frames to which the annotations of a frame spread: those before and after it, those on one side, or none."""
 
 
 class VeroneseError(Exception):
@@ -77,17 +77,17 @@ class SegmentedMotion:
     bbox: Box
     """Bounding box of its pixels."""
     group: int
-    """Motions of one rigid background share a group; group 0 has the most pixels."""
+    """Number of the group: motions that are parts of one thing share it; group 0 is the background."""
 
 
 @dataclass(frozen=True)
 class Junction:
-    """The common border of two motions of a :class:`Segmentation`."""
+    """The common border of two motions of a :class:`Segmentation`, and how likely both belong to one thing."""
 
     labels: Tuple[int, int]
     """The labels of the two motions, the smaller first."""
     likelihood: float
-    """Probability that the two motions are of one thing, 0 to 1."""
+    """Probability, 0 to 1, that the two motions belong to one thing: one object, or one background."""
     border: int
     """Length of the border in pixels of the frame, measured at the working size."""
 
@@ -103,7 +103,7 @@ class Segmentation:
     motions: List[SegmentedMotion]
     """By decreasing number of pixels: ``motions[i].label == i``."""
     labels: Labels
-    """255 is unlabelled."""
+    """One label per pixel of the first frame, an index of ``motions``; 255 is unlabelled."""
     junctions: List[Junction]
     """Neighbouring motions, by labels. Borders of a few pixels are left out."""
     candidates: List[Candidate]
@@ -111,7 +111,7 @@ class Segmentation:
     unlabelled: int
     """Number of pixels with label 255."""
     confidence: Optional[NDArray[np.uint8]]
-    """255 times the probability that the label of a pixel is right, if it was asked for."""
+    """255 times the probability that the label of each pixel is right; ``None`` unless it was asked for."""
     quality: Literal["best", "fast"]
 
     def __repr__(self) -> str:
@@ -122,7 +122,7 @@ class Segmentation:
         return indexed_png(self.labels)
 
     def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
+        """The image that a notebook shows."""
         return self.png()
 
 
@@ -208,7 +208,7 @@ class ClipObject:
     confidence: float
     """Mean probability that its pixels belong to an object, 0 to 1."""
     matrix: Optional[Matrix]
-    """Motion of its largest part to the next frame; ``None`` if there is none. In a stream, its motion from the frame before, continued."""
+    """Motion of its largest part to the next frame; ``None`` if there is none. In a stream, its motion from the previous frame, continued."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,7 +231,7 @@ class ClipFrame:
         return indexed_png(self.labels)
 
     def _repr_png_(self) -> bytes:
-        """What a notebook shows."""
+        """The image that a notebook shows."""
         return self.png()
 
 
@@ -277,7 +277,7 @@ class ClipTracks:
     objects: List[ClipTrack]
     """By number, which is the order of appearance."""
     background: List[BackgroundMotion]
-    """For each frame that goes on to a next one."""
+    """One entry for each frame that is followed by another frame of its scene."""
     dropped: int
     """Number of objects beyond 254, which count as background."""
 
@@ -287,7 +287,7 @@ class ClipTracks:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mask:
-    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled."""
+    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 for unlabelled pixels."""
 
     frame: int
     labels: Labels
@@ -302,17 +302,18 @@ class Mask:
 class Correction:
     """Labels of one frame of a clip that are certain.
 
-    255 says nothing. Without ``object`` the labels are a map: it is about the objects that it names (a number that no object has makes a new
-    one), and 0 is where none of these is. A map of 0 and 255 alone is an eraser: at its zeros there is no object. A correction
-    replaces what was painted in its frame of the same object, or as a map; one that says nothing takes it back.
+    Pixels with the label 255 are not annotated. Without ``object`` the labels are a label map: it annotates the objects whose numbers it
+    contains (a number that no object has makes a new object), and 0 marks pixels that belong to none of these. A map of 0 and 255 alone is
+    an eraser: it removes all objects from its zeros. A correction replaces the earlier one of the same object in its frame, or the earlier
+    label map; one of 255 alone removes it.
     """
 
     frame: int
     labels: Labels
     propagate: Optional[Propagation] = None
-    """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
+    """Default: as the label map or mask of this frame that is given with it, otherwise ``"both"``."""
     object: Optional[int] = None
-    """The object that it is about, 1 to 254: the labels are its number, 0 where it is not, and 255. It is about no other object."""
+    """The only annotated object, 1 to 254: the labels are its number, 0 outside it, and 255."""
 
     def __repr__(self) -> str:
         return f"Correction({self.frame}, {_size(self.labels)}{f', object={self.object}' if self.object else ''})"
@@ -320,27 +321,27 @@ class Correction:
 
 @dataclass(frozen=True)
 class Prompt:
-    """Points to an object in one frame of a clip, found or not: its mask there is made at once, and the object is followed from there.
+    """Points to an object in one frame of a clip, whether it was found or not. Its mask in this frame is made at once and propagated.
 
-    Clicks and a box together describe one object; it needs a box or a click that is its own. A prompt replaces an earlier one of its object
-    and frame; one without clicks and box takes it back. It says nothing of other objects.
+    Clicks and a box together describe one object; a box or a click inside the object is needed. A prompt replaces an earlier one of its object
+    and frame; one without clicks and box removes it. It does not annotate other objects.
     """
 
     frame: int
     object: int
     """The number of the object, 1 to 254; one that no object has makes a new object."""
     box: Optional[Box] = None
-    """Has all of the object."""
+    """A rectangle that contains the whole object."""
     click: Optional[Tuple[int, int]] = None
-    """Column and row of a pixel of the object: in short for a click ``(x, y, 1)``."""
+    """Column and row of a pixel of the object, short for a click ``(x, y, 1)``."""
     clicks: Sequence[Click] = ()
     propagate: Optional[Propagation] = None
-    """Default: that of a label map or mask of the frame which is given with it, otherwise ``"both"``."""
+    """Default: as the label map or mask of this frame that is given with it, otherwise ``"both"``."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Accepted:
-    """A frame of a clip that is right with these labels, of all its pixels."""
+    """A frame of a clip for which these labels of all pixels are right."""
 
     frame: int
     labels: Labels
@@ -351,15 +352,15 @@ class Accepted:
 
 @dataclass(frozen=True)
 class ClipChange:
-    """Pixels of an object in a frame that annotations have changed."""
+    """Numbers of pixels that an object has gained and lost in a frame by annotations."""
 
     frame: int
     object: int
     """Its number; 0 for the background."""
     gained: int
-    """Number of pixels that it has now and had not."""
+    """Number of pixels that it has now and did not have before."""
     lost: int
-    """Number of pixels that it had and has no more."""
+    """Number of pixels that it had before and does not have now."""
 
 
 def _size(labels: Labels) -> str:

@@ -46,38 +46,38 @@ def segment_clip(
 class Clip:
     """The frames of a clip, in order, as they are finished.
 
-    It frees what it holds when it is closed, collected or raises. Of a whole clip that is finished, any frame can be asked for again,
-    corrected and looked at: nothing is segmented anew.
+    It frees its memory when it is closed, collected or raises. Any frame of a finished whole clip can be asked for again and corrected;
+    no pair is solved again.
     """
 
     def __iter__(self) -> Iterator[ClipFrame]: ...
     def __next__(self) -> ClipFrame: ...
     def frame(self, index: int) -> ClipFrame:
-        """A frame of a whole clip as it is now, as often as it is asked for."""
-    def correct(self, *said: Union[Correction, Prompt]) -> List[int]:
-        """Says what is certain in frames of a whole clip, or points to objects there. Returns the indices of the frames that change.
+        """A frame of a whole clip with its current labels."""
+    def correct(self, *annotations: Union[Correction, Prompt]) -> List[int]:
+        """Annotates frames of a whole clip by label maps, strokes and prompts. Returns the indices of the frames that change.
 
-        Nothing that was said of other objects changes, see :func:`segment_clip`. Numbers are those before any :meth:`merge` or :meth:`delete`.
-        What is interrupted changes nothing.
+        Other annotated objects do not change, see :func:`segment_clip`. Numbers are those before any :meth:`merge` or :meth:`delete`.
+        A call that is interrupted changes nothing.
         """
     def lock(self, objects: Sequence[int]) -> None:
-        """The objects of which nothing changes a pixel; all others can be changed from now on."""
+        """Locks these objects: no annotation changes their pixels. All others are unlocked."""
     def name(self, objects: Sequence[int]) -> None:
-        """The objects that only what is said of themselves changes, besides those of which something was said."""
+        """Names these objects: like annotated objects, they change only by annotations of themselves."""
     def accept(self, frames: Sequence[Union[int, Accepted]]) -> List[int]:
-        """The frames that are right, as they are or with labels; all others are open from now on. Returns the indices of those that change."""
+        """Accepts these frames, as they are or with labels, and no others. Returns the indices of the frames that change."""
     def merge(self, *objects: int) -> List[int]:
-        """Makes objects one, which keeps the number of the first. Returns the indices of the frames that change. It cannot be undone."""
+        """Merges objects under the number of the first. Returns the indices of the frames that change. It cannot be undone."""
     def delete(self, *objects: int) -> List[int]:
-        """Makes objects background. Returns the indices of the frames that change. It cannot be undone."""
+        """Turns objects into background. Returns the indices of the frames that change. It cannot be undone."""
     def changes(self) -> List[ClipChange]:
-        """What objects have gained and lost by what was said last, by frame, then by object: by the options of the clip, or by the last call of
-        :meth:`correct`, :meth:`accept`, :meth:`lock` or :meth:`name`. What :meth:`merge` and :meth:`delete` change is not counted."""
+        """The pixels that objects have gained and lost by the last annotations, by frame, then by object: those of the options of the clip, or of
+        the last call of :meth:`correct`, :meth:`accept`, :meth:`lock` or :meth:`name`. :meth:`merge` and :meth:`delete` are not counted."""
     def state(self) -> bytes:
-        """What is known of a whole clip, corrections included, for the option ``state``: some kilobytes per frame."""
+        """A whole clip with its annotations, for the option ``state``: some kilobytes per frame."""
     def tracks(self) -> ClipTracks:
-        """The objects of the frames returned so far, as they are now: frames that have changed are read again."""
+        """The tracks of the objects in the frames returned so far, with current labels: frames that have changed are read again."""
     def close(self) -> None:
-        """Frees what the clip holds."""
+        """Frees the memory of the clip."""
     def __enter__(self) -> Clip: ...
     def __exit__(self, *_exception: object) -> None: ...

@@ -1,4 +1,4 @@
-//! Annotations of a clip, read from the classes of the package: masks, corrections, prompts, and frames that are right.
+//! Annotations of a clip, read from the classes of the package: masks, corrections, prompts and accepted frames.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::frames::label_image;
 use crate::options::{invalid, whole};
 use crate::results::class;
 
-/// The values of the options of that name.
+/// The values of the options of these names.
 #[derive(Default)]
 pub(crate) struct Given<'a, 'py> {
     pub(crate) masks: Option<&'a Bound<'py, PyAny>>,
@@ -26,17 +26,17 @@ pub(crate) struct Given<'a, 'py> {
 #[derive(Default)]
 pub(crate) struct FrameAnnotations {
     pub(crate) annotations: Annotations,
-    /// Of each image of labels the option, the frame, width and height.
+    /// For each image of labels: the option, the frame, width and height.
     images: Vec<(&'static str, usize, [usize; 2])>,
 }
 
-/// The label of an unlabelled pixel.
+/// The label of a pixel that is not annotated.
 const NOTHING: u8 = u8::MAX;
 
-/// Something with where it spreads, if that is given.
+/// Something with the frames to which it spreads, if these are given.
 type Spreading<T> = (T, Option<Spread>);
 
-/// Reads one thing after another.
+/// Reads the entries one after another.
 #[derive(Default)]
 struct Reader {
     /// Number of frames.
@@ -48,7 +48,7 @@ struct Reader {
 }
 
 impl FrameAnnotations {
-    /// Checks all that needs no frame.
+    /// Checks everything that does not need the size of the frames.
     pub(crate) fn of(given: &Given<'_, '_>, length: usize) -> PyResult<FrameAnnotations> {
         let mut reader = Reader { length, ..Reader::default() };
         if let Some(masks) = given.masks {
@@ -63,10 +63,10 @@ impl FrameAnnotations {
         let accepted = given.accepted.map(|accepted| reader.accepted(accepted)).transpose()?;
         let locked = given.locked.map(|locked| objects("locked", locked)).transpose()?;
         let named = given.named.map(|named| objects("named", named)).transpose()?;
-        Ok(reader.said(Annotations { locked, named, accepted, ..Annotations::default() }))
+        Ok(reader.finished(Annotations { locked, named, accepted, ..Annotations::default() }))
     }
 
-    /// Whether labels fill frames of this size, and prompts lie within them.
+    /// Checks that labels fill frames of this size, and that prompts lie within them.
     pub(crate) fn check(&self, [width, height]: [usize; 2]) -> Result<(), Failure> {
         if let Some((option, frame, [w, h])) = self.images.iter().find(|(.., size)| *size != [width, height]) {
             let reason = format!("that of frame {frame} has {w}×{h} pixels, a frame has {width}×{height}");
@@ -85,7 +85,7 @@ impl FrameAnnotations {
         }
     }
 
-    /// The same of the first frames alone.
+    /// The annotations of the first frames alone.
     pub(crate) fn of_first(self, frames: usize) -> Annotations {
         let Annotations { mut masks, mut corrections, mut prompts, mut accepted, .. } = self.annotations;
         masks.retain(|mask| mask.frame < frames);
@@ -108,7 +108,7 @@ impl Reader {
         Ok(())
     }
 
-    /// `place`: which of several it is.
+    /// `place` says which of several entries it is.
     fn entry(&mut self, option: &'static str, forms: &[&str], place: &str, entry: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut form = None;
         for name in forms {
@@ -190,8 +190,8 @@ impl Reader {
         Ok(labels)
     }
 
-    /// Without a direction of its own it spreads as the label map of its frame.
-    fn said(self, rest: Annotations) -> FrameAnnotations {
+    /// The annotations. Those without a direction of their own spread as the label map of their frame.
+    fn finished(self, rest: Annotations) -> FrameAnnotations {
         let maps = self.masks.iter().chain(&self.corrections).filter(|(painted, _)| painted.object.is_none());
         let ways: BTreeMap<usize, Spread> = maps.filter_map(|(map, spread)| Some((map.frame, (*spread)?))).collect();
         let of_frame = |frame: usize| ways.get(&frame).copied().unwrap_or_default();
@@ -262,7 +262,7 @@ fn prompt(entry: &Bound<'_, PyAny>, frame: usize, wrong: &dyn Fn(&str) -> Failur
     Ok(Prompt { frame, object, clicks, within, spread: Spread::Both })
 }
 
-/// A field that is not None.
+/// The value of a field, unless it is `None`.
 fn given<'py>(entry: &Bound<'py, PyAny>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
     Ok(Some(entry.getattr(name)?).filter(|value| !value.is_none()))
 }

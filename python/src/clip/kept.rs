@@ -17,7 +17,7 @@ pub(crate) enum Kept {
         clip: SegmentedClip,
         /// The job of annotations, and the clip before.
         job: Option<(ClipJob, SegmentedClip)>,
-        /// Whether it came as bytes.
+        /// Whether it was restored from bytes.
         restored: bool,
     },
 }
@@ -86,7 +86,7 @@ impl Kept {
         summary
     }
 
-    /// Frames that are not those of a state are the state's fault.
+    /// Frames that are not those of a restored state are an error of the state.
     pub(crate) fn segmented<R>(
         &mut self,
         work: impl FnOnce(&mut SegmentedClip) -> veronese::Result<R>,
@@ -117,7 +117,7 @@ impl Kept {
         Ok(step(job))
     }
 
-    /// Ends the last annotations: they hold, or are taken back.
+    /// Ends the last annotations: they are kept or undone.
     pub(crate) fn settle(&mut self, holds: bool) {
         if let Kept::Segmented { clip, job, .. } = self
             && let Some((_, before)) = job.take()

@@ -56,7 +56,7 @@ impl Source {
         }
     }
 
-    /// The number of frames, where they can be read again.
+    /// The number of frames, if they can be read again.
     pub(crate) fn length(&self) -> Option<usize> {
         match self {
             Source::Iterator(_) => None,
@@ -65,7 +65,7 @@ impl Source {
         }
     }
 
-    /// A frame; of an iterator it is the next one. None at the end.
+    /// A frame; of an iterator it is the next one. `None` at the end.
     pub(crate) fn read(&self, py: Python<'_>, index: usize) -> PyResult<Option<Given>> {
         if self.length().is_some_and(|length| index >= length) {
             return Ok(None);

@@ -23,17 +23,17 @@ impl Tracks {
         self.frames.insert(frame.index, (frame.objects.clone(), frame.background));
     }
 
-    /// Frames that have changed.
+    /// Marks frames that have changed.
     pub(crate) fn changed(&mut self, frames: &[usize]) {
         self.stale.extend(frames.iter().filter(|frame| self.frames.contains_key(frame)));
     }
 
-    /// Frames that are to be looked at again.
+    /// Frames that must be read again.
     pub(crate) fn stale(&self) -> Vec<usize> {
         self.stale.iter().copied().collect()
     }
 
-    /// Ends a stream: nothing moves on from its last frame.
+    /// Ends a stream: no object moves on from its last frame.
     pub(crate) fn end(&mut self) {
         if let Some(mut last) = self.frames.last_entry() {
             let (objects, background) = last.get_mut();

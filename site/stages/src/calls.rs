@@ -242,7 +242,7 @@ pub fn segment_pair_stages(first: &JsValue, second: &JsValue, options: &JsValue)
 
 fn background(background: &Background) -> JsValue {
     let Background { dominant, base, noise, residual, derivatives, local_flow, measured, .. } = background;
-    let Background { candidates, price, selected, selection, refined, refinement, .. } = background;
+    let Background { candidates, penalty, selected, selection, refined, refinement, .. } = background;
     let Background { draft, labelling: of_working_size, .. } = background;
     let [u, v] = local_flow;
     let planes = Record::new()
@@ -259,7 +259,7 @@ fn background(background: &Background) -> JsValue {
         .set("localFlow", &Record::new().set("u", &plane(u)).set("v", &plane(v)).into_value())
         .set("measurements", &measured.as_ref().map_or(JsValue::NULL, measured_pixels))
         .list("candidates", candidates, candidate)
-        .number("price", *price)
+        .number("price", *penalty)
         .list("selected", selected, selected_motion)
         .set("selection", &labelling(selection))
         .list("refined", refined, selected_motion)

@@ -1,4 +1,4 @@
-//! Which frames tell where an object is, and what they tell.
+//! Anchors: the annotated frames from which an object is propagated.
 
 use super::features::FrameFeatures;
 use super::plan::Anchor;
@@ -8,18 +8,19 @@ use crate::clip::annotation::{ObjectSet, Seed, Spread};
 use crate::clip::frame_annotation::FrameAnnotation;
 use crate::clip::segmented_clip::SegmentedClip;
 
-/// Pixels under the number of an object found automatically.
+/// How an annotation covers the pixels of an object found automatically: numbers of pixels.
 #[derive(Clone, Copy, Default)]
 struct Covered {
     all: usize,
-    /// Those annotated as ground by a label map that names no object.
+    /// Pixels erased by a label map without object numbers.
     ground: usize,
-    /// Those annotated as another object's.
+    /// Pixels annotated as another object.
     others: usize,
 }
 
 impl SegmentedClip {
-    /// The anchors of each object in a scene, by number: the frames annotated about it, and if there are any those accepted with it.
+    /// For each object number, the object's anchors in a scene: the frames that annotate it and, if there are any, the frames accepted with
+    /// it.
     #[inline(never)]
     pub(super) fn anchors(&self, [first, last]: [usize; 2]) -> Vec<Vec<Anchor>> {
         let of = |object: u8| {
@@ -42,8 +43,8 @@ impl SegmentedClip {
         (0..UNLABELLED).map(of).collect()
     }
 
-    /// Decides which objects each frame of a scene is an anchor of: those that it names, and those found automatically that it erases partly.
-    /// An object that another one takes over in some frame needs no annotation.
+    /// Decides of which objects each frame of a scene is an anchor: those that it annotates by number, and those found automatically that
+    /// it erases in part. An erased object that another one takes over in some frame is left out unless it is annotated by number.
     #[inline(never)]
     pub(super) fn update_anchors(&mut self, [first, last]: [usize; 2]) {
         let names = |clip: &SegmentedClip, t: usize, object: u8| {
@@ -57,7 +58,7 @@ impl SegmentedClip {
                 let covered = self.covered(t, annotation);
                 for (label, Covered { all, ground, others }) in covered.into_iter().enumerate().skip(1) {
                     is_taken[label] |= 2 * others > all;
-                    // A lock that came later takes nothing back.
+                    // A lock that was set later takes nothing back.
                     let is_free = !self.locked[label] || annotation.anchored.contains(&(label as u8));
                     erases[label] = ground > 0 && ground + others < all && is_free;
                 }
@@ -77,7 +78,7 @@ impl SegmentedClip {
         }
     }
 
-    /// The seeds of an object in a frame at the size of its features, and where they spread.
+    /// The seeds of an object in a frame, at the size of the features, and the frames to which they spread.
     #[inline(never)]
     pub(super) fn seeds_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<(Vec<Seed>, Spread)> {
         let frame = &self.frames[t];
@@ -95,8 +96,8 @@ impl SegmentedClip {
         Some((seeds, spread))
     }
 
-    /// Whether somebody has painted over an object as a whole as it was found in a frame: what was painted is its mask then, though
-    /// nothing was said of the ground around. It goes by what was found, so that it matters not what else was said before.
+    /// Whether strokes cover a whole object as it was found in a frame. The painted pixels are then its mask, although the ground around it
+    /// was not annotated. This depends only on what was found, so the order of annotations does not matter.
     #[inline(never)]
     pub(super) fn paints_over(&self, t: usize, object: u8) -> bool {
         let Some(seeds) = self.frames[t].annotation.as_ref().and_then(|of| of.painted_seeds(object)) else {
@@ -106,14 +107,14 @@ impl SegmentedClip {
         strokes::paints_over(&self.found_at(t, scaling.small), object, &scaling.gathered(&seeds, Seed::Nothing))
     }
 
-    /// 1 where a person has seen an object of a frame when strokes were drawn, at the size of the features.
+    /// The mask of an object that the frame showed right after strokes were drawn: 1 inside, at the size of the features.
     #[inline(never)]
     pub(super) fn seen_at(&self, t: usize, object: u8, features: &FrameFeatures) -> Option<Vec<u8>> {
         let seen = self.frames[t].annotation.as_ref()?.seen(object)?;
         Some(features.scaling.gathered(&seen, UNLABELLED))
     }
 
-    /// How an annotation covers each object found automatically, by number.
+    /// For each object found automatically, by number, how an annotation covers it.
     #[inline(never)]
     fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {
         let (found, _) = self.found(t);

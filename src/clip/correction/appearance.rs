@@ -1,49 +1,52 @@
-//! Appearance of an object and of the ground around it: how often each colour was seen at each place relative to the object's centre.
+//! Appearance of an object and of the ground around it: a histogram over colour and position relative to the object's centre.
 //!
-//! Two counts for every cell of place and colour, of the object's pixels and of others: those of corrected frames, which stay, and those of
-//! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
+//! Each cell of position and colour counts pixels of the object and of the ground. Counts of annotated frames stay, counts of the frames
+//! passed since then decay. Cells with few pixels back off to wider cells, and these to the colour's share over all positions.
 
 use super::features::{CHROMA, COLOURS, FrameFeatures, LIGHTNESS};
 use crate::clip::annotation::Seed;
 use crate::clip::options::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
+use crate::side::Side;
 
-/// Counts of pixels: object, ground.
+/// Weighted numbers of pixels, by [`Side`].
 type Counts = [f32; 2];
 
-/// Where pixels are learned from.
+/// Where counted pixels come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// The seeds of annotations.
+    /// Seeds of annotations.
     Annotated,
-    /// The frames passed.
+    /// Frames that the propagation has passed.
     Recent,
     /// Frames in which the object was found automatically.
     Found,
 }
 
 #[derive(Clone, Debug)]
+/// The histogram: a grid of cells for each colour seen.
 pub(super) struct AppearanceModel {
     /// Columns and rows of cells.
     size: [usize; 2],
     /// Side of a cell, pixels.
     cell: f32,
-    /// One more than the place of each colour in the counts; 0 for one that was never seen.
+    /// For each colour, one more than its index in `seen`; 0 if it was not seen.
     places: Vec<u16>,
+    /// The colours seen, in the order of their first occurrence.
     seen: Vec<u16>,
-    /// Cells of all colours seen, from annotations and from recent frames.
+    /// Cells of all colours seen, counted in annotations and in recent frames.
     annotated: Vec<Counts>,
     recent: Vec<Counts>,
-    /// Cells of frames in which the object was found automatically; and of each colour, how often it was found and how often annotated.
-    /// Annotations silence what was found where they disagree.
+    /// Cells counted in frames in which the object was found automatically; and for each colour, how often it was found and how often
+    /// annotated. Where annotations disagree with what was found, that counts less.
     found: Vec<Counts>,
     found_of: Vec<Counts>,
     annotated_of: Vec<Counts>,
 }
 
 impl AppearanceModel {
-    /// Nothing yet, of an object as large as a mask.
+    /// An empty model for an object as large as a mask.
     pub(super) fn of(mask: &Plane) -> AppearanceModel {
         let (width, height) = (mask.width(), mask.height());
         let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
@@ -51,7 +54,7 @@ impl AppearanceModel {
         AppearanceModel::new(&around, model().cell * width.max(height) as f32)
     }
 
-    /// Nothing yet, of an object within an area.
+    /// An empty model for an object within an area, with cells of the given side in pixels.
     pub(super) fn new(area: &Area, cell: f32) -> AppearanceModel {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().cells_around;
         let size = [cells(area.width()), cells(area.height())];
@@ -72,16 +75,16 @@ impl AppearanceModel {
         self.size[0] * self.size[1]
     }
 
-    /// Place of pixel (x, y) in cells, for an object with the given centre.
+    /// Position of the pixel (x, y) in cells, for an object with the given centre.
     fn at(&self, x: usize, y: usize, centre: [f32; 2]) -> [f32; 2] {
         let place = |at: usize, centre: f32, size: usize| {
-            // Below the last cell, as the next one is read, too.
+            // Below the last cell, because the next one is read as well.
             ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).max(0.0).min(size as f32 - 1.001)
         };
         [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
     }
 
-    /// Recent counts fade.
+    /// Multiplies the recent counts by `left`, 0…1.
     pub(super) fn fade(&mut self, left: f32) {
         self.recent.iter_mut().flatten().for_each(|count| *count *= left);
     }
@@ -91,19 +94,19 @@ impl AppearanceModel {
         self.recent.fill([0.0; 2]);
     }
 
-    /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
+    /// Adds the pixels of a frame with a weight. `sides` gives the side of a pixel, `None` if it is not counted.
     pub(super) fn learn(
         &mut self,
         features: &FrameFeatures,
         centre: [f32; 2],
         source: Source,
         weight: f32,
-        sides: &dyn Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> Option<Side>,
     ) {
         self.learn_within(features, &features.area(), centre, source, weight, sides);
     }
 
-    /// [`learn`](Self::learn) from an area. Not generic, as `learn`: each call would have a copy of its own.
+    /// [`learn`](Self::learn) from an area. Not generic, so that it is compiled only once.
     pub(super) fn learn_within(
         &mut self,
         features: &FrameFeatures,
@@ -111,15 +114,12 @@ impl AppearanceModel {
         centre: [f32; 2],
         source: Source,
         weight: f32,
-        sides: &dyn Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> Option<Side>,
     ) {
         let width = features.size[0];
         for y in area.rows.clone() {
             for x in area.columns.clone() {
-                let side = sides(y * width + x);
-                if side > 1 {
-                    continue;
-                }
+                let Some(side) = sides(y * width + x) else { continue };
                 let place = self.place_of(features.colours[y * width + x]);
                 let [u, v] = self.at(x, y, centre);
                 let cell = place * self.cells() + (v + 0.5) as usize * self.size[0] + (u + 0.5) as usize;
@@ -138,13 +138,13 @@ impl AppearanceModel {
         }
     }
 
-    /// Learns the seeds of a frame.
+    /// Learns from the seeds of a frame.
     pub(super) fn learn_seeds(&mut self, features: &FrameFeatures, centre: [f32; 2], seeds: Option<&[Seed]>) {
         let Some(seeds) = seeds else { return };
         self.learn(features, centre, Source::Annotated, 1.0, &|p| match seeds[p] {
-            Seed::Object => 0,
-            Seed::Other => 1,
-            Seed::Nothing | Seed::Dropped => 2,
+            Seed::Object => Some(Side::Object),
+            Seed::Other => Some(Side::Ground),
+            Seed::Nothing | Seed::Dropped => None,
         });
     }
 
@@ -163,29 +163,29 @@ impl AppearanceModel {
         usize::from(*place) - 1
     }
 
-    /// Probability of the object at every pixel of an area, for an object with the given centre.
+    /// Probability of the object at every pixel of an area, 0…1, for an object with the given centre.
     pub(super) fn read(&self, features: &FrameFeatures, area: &Area, centre: [f32; 2]) -> Vec<f32> {
         let (cells, width) = (self.cells(), features.size[0]);
         let mut blurred: Vec<Counts> = self
             .annotated
             .iter()
             .zip(&self.recent)
-            .map(|(annotated, recent)| [annotated[0] + recent[0], annotated[1] + recent[1]])
+            .map(|(annotated, recent)| Side::BOTH.map(|side| annotated[side] + recent[side]))
             .collect();
         for (place, &colour) in self.seen.iter().enumerate() {
             let trust = self.trust(colour);
             let cells = place * cells..(place + 1) * cells;
             for (sum, found) in blurred[cells.clone()].iter_mut().zip(&self.found[cells]) {
-                *sum = [sum[0] + trust[0] * found[0], sum[1] + trust[1] * found[1]];
+                *sum = Side::BOTH.map(|side| sum[side] + trust[side] * found[side]);
             }
         }
         let mut total = [0.0f32; 2];
         for counts in &blurred {
-            total = [total[0] + counts[0], total[1] + counts[1]];
+            total = Side::BOTH.map(|side| total[side] + counts[side]);
         }
         let mut line = vec![[0.0; 2]; self.size[0].max(self.size[1])];
         blurred.chunks_exact_mut(cells).for_each(|plane| self.blur(plane, &mut line));
-        // One plane of cells for each colour of the area, made when it first occurs.
+        // One grid of cells for each colour of the area, computed when the colour first occurs.
         let mut known = vec![0u16; COLOURS];
         let mut planes: Vec<Counts> = Vec::new();
         let mut wide: Vec<Counts> = Vec::new();
@@ -201,9 +201,9 @@ impl AppearanceModel {
                     wide.extend_from_slice(&planes[from..]);
                     (0..2).for_each(|_| self.blur(&mut wide[from..], &mut line));
                     let mut sum = [0.0f32; 2];
-                    planes[from..].iter().for_each(|counts| sum = [sum[0] + counts[0], sum[1] + counts[1]]);
-                    let [object, ground] = [0, 1].map(|k| sum[k] / total[k].max(1e-6) + 1e-5);
-                    shares.push(object / (object + ground));
+                    planes[from..].iter().for_each(|counts| sum = Side::BOTH.map(|side| sum[side] + counts[side]));
+                    let of = Side::BOTH.map(|side| sum[side] / total[side].max(1e-6) + 1e-5);
+                    shares.push(of[Side::Object] / (of[Side::Object] + of[Side::Ground]));
                     known[usize::from(colour)] = shares.len() as u16;
                 }
                 let k = usize::from(known[usize::from(colour)]) - 1;
@@ -214,30 +214,34 @@ impl AppearanceModel {
                 let sample = |counts: &[Counts]| {
                     let window = &counts[first..first + self.size[0] + 2];
                     let [a, b, c, d] = [window[0], window[1], window[self.size[0]], window[self.size[0] + 1]];
-                    [0, 1].map(|s| {
+                    Side::BOTH.map(|s| {
                         let (top, bottom) = (a[s] + fx * (b[s] - a[s]), c[s] + fx * (d[s] - c[s]));
                         top + fy * (bottom - top)
                     })
                 };
                 let (near, wider) = (sample(&planes), sample(&wide));
                 let back_off = model().back_off;
-                let of_wider = (wider[0] + model().places * back_off * shares[k])
-                    / (wider[0] + wider[1] + model().places * back_off);
-                probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
+                let of_wider = (wider[Side::Object] + model().places * back_off * shares[k])
+                    / (wider[Side::Object] + wider[Side::Ground] + model().places * back_off);
+                let all = near[Side::Object] + near[Side::Ground] + back_off;
+                probabilities.push((near[Side::Object] + back_off * of_wider) / all);
             }
         }
         probabilities
     }
 
-    /// How far the labels found automatically are trusted for a colour, 0…1: that it is the object's, and that it is ground.
+    /// How far the labels found automatically are trusted for a colour, 0…1: that a pixel labelled as the object is the object, and that
+    /// one labelled as ground is ground.
     pub(super) fn trust(&self, colour: u16) -> Counts {
         let [mut annotated, mut found] = [[[0.0; 2]]; 2];
         self.gather(colour, &self.annotated_of, &mut annotated);
         self.gather(colour, &self.found_of, &mut found);
-        let ([object, ground], [found]) = (annotated[0], found);
-        let heard = |found: f32| (model().silences * (object + ground) / found.max(1e-6)).min(1.0);
-        [(ground, found[0]), (object, found[1])]
-            .map(|(disagrees, found)| 1.0 - heard(found) * disagrees / (object + ground + 1.0))
+        let ([annotated], [found]) = (annotated, found);
+        let all = annotated[Side::Object] + annotated[Side::Ground];
+        Side::BOTH.map(|side| {
+            let weight = (model().outweighed * all / found[side].max(1e-6)).min(1.0);
+            1.0 - weight * annotated[side.other()] / (all + 1.0)
+        })
     }
 
     /// [`trust`](Self::trust) of the colour of every pixel.
@@ -247,7 +251,7 @@ impl AppearanceModel {
         features.colours.iter().map(&mut of).collect()
     }
 
-    /// Adds the counts of a colour and of those beside it.
+    /// Adds the counts of a colour and of its neighbours in colour space, weighted.
     fn gather(&self, colour: u16, counts: &[Counts], plane: &mut [Counts]) {
         let colour = usize::from(colour);
         let [l, a, b] = [colour / (CHROMA * CHROMA), colour / CHROMA % CHROMA, colour % CHROMA];
@@ -278,7 +282,7 @@ impl AppearanceModel {
             for k in 0..count {
                 let (before, after) = (line[k.saturating_sub(1)], line[(k + 1).min(count - 1)]);
                 // [1 2 1]/4.
-                plane[first + k * step] = [0, 1].map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
+                plane[first + k * step] = Side::BOTH.map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
             }
         };
         (0..rows).for_each(|row| along(row * columns, 1, columns));
@@ -304,15 +308,15 @@ mod tests {
         (64..88).contains(&x) && (36..60).contains(&y)
     }
 
-    /// The object, and a patch of some colour beside it.
+    /// The object, and a patch of a colour beside it.
     fn features(beside: [u8; 3]) -> FrameFeatures {
         let colour = |x, y| if is_object(x, y) { RED } else { beside };
         FrameFeatures::painted(SIZE, |x, y| if is_object(x, y) || is_beside(x, y) { colour(x, y) } else { GREY })
     }
 
     fn appearance_of(features: &FrameFeatures, source: Source) -> AppearanceModel {
-        let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
-        let mut appearance = AppearanceModel::of(&features.plane(&|p| side(p) == 0));
+        let side = |p: usize| Some(Side::object_if(is_object(p % SIZE[0], p / SIZE[0])));
+        let mut appearance = AppearanceModel::of(&features.plane(&|p| side(p) == Some(Side::Object)));
         appearance.learn(features, CENTRE, source, 1.0, &side);
         appearance
     }
@@ -329,7 +333,7 @@ mod tests {
             assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9, "{source:?}");
             assert!(at(&appearance, &features, [76, 48], CENTRE) < 0.1, "{source:?}: the same colour elsewhere");
             assert!(at(&appearance, &features, [50, 48], CENTRE) < 0.1, "{source:?}: ground beside it");
-            // The place goes with the object.
+            // The cells move with the object.
             assert!(at(&appearance, &features, [76, 48], [76.0, 48.0]) > 0.9, "{source:?}");
             assert!(at(&appearance, &features, [32, 48], [-12.0, 48.0]) < 0.1, "{source:?}");
         }
@@ -344,19 +348,19 @@ mod tests {
     }
 
     #[test]
-    fn annotations_silence_what_was_found() {
+    fn annotations_outweigh_what_was_found() {
         let features = features(RED);
         let mut appearance = appearance_of(&features, Source::Found);
         let red = features.colours[48 * SIZE[0] + 32];
         assert_eq!(appearance.trust(red), [1.0, 1.0]);
         assert!(at(&appearance, &features, [32, 48], CENTRE) > 0.9);
-        // Half of it is ground: so is what was found of the other half.
+        // Half of the object is annotated as ground, so what was found in the other half is not trusted either.
         appearance.learn(&features, CENTRE, Source::Annotated, 1.0, &|p| {
-            if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
+            (is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48).then_some(Side::Ground)
         });
-        let [object, ground] = appearance.trust(red);
-        assert!(object < 0.05 && ground == 1.0, "{object}, {ground}");
-        let silenced = at(&appearance, &features, [32, 54], CENTRE);
-        assert!(silenced < 0.5, "{silenced}");
+        let trust = appearance.trust(red);
+        assert!(trust[Side::Object] < 0.05 && trust[Side::Ground] == 1.0, "{trust:?}");
+        let outweighed = at(&appearance, &features, [32, 54], CENTRE);
+        assert!(outweighed < 0.5, "{outweighed}");
     }
 }

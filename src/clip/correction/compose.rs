@@ -1,7 +1,7 @@
-//! The layer of a frame from the proposals of its objects.
+//! The layer of a frame, composed from the proposals of its objects.
 //!
-//! Locked objects come first, then a person's own hand in this frame, then objects that are not to change, then proposals: the likeliest one
-//! has the pixel.
+//! Precedence: locked objects, then what a person painted in this frame, then objects that do not change, then proposals, of which the one
+//! with the highest log-odds gets the pixel.
 
 use super::features::FrameFeatures;
 use super::proposal::Proposal;
@@ -16,15 +16,15 @@ use crate::frame::Frame;
 use crate::labelling::upsampling::upsample;
 use crate::model::Model;
 
-/// A frame whose layer is made anew.
+/// A frame whose layer is composed anew.
 pub(super) struct Composition<'a> {
     pub(super) clip: &'a SegmentedClip,
     pub(super) index: usize,
     pub(super) frame: &'a Frame,
     pub(super) features: &'a FrameFeatures,
-    /// The objects that change, and their proposals if they are there.
+    /// The objects that change, each with its proposal if it has one.
     pub(super) proposals: &'a [(u8, Option<Proposal>)],
-    /// Objects that something is added to, and that nothing is taken back of.
+    /// Objects whose annotations were only added to, never taken back.
     pub(super) extended: &'a ObjectSet,
     /// Full-size labels found automatically.
     pub(super) found: &'a [u8],
@@ -32,31 +32,31 @@ pub(super) struct Composition<'a> {
     pub(super) before: &'a [u8],
 }
 
-/// Rules that no proposal changes.
+/// What no proposal may change.
 struct Rules {
     annotation: FrameAnnotation,
     /// Full-size painted labels; empty if there are none.
     painted: Vec<u8>,
     /// Labels of the layer so far.
     layer: Vec<u8>,
-    /// Objects of a user in this frame.
+    /// Annotated objects that reach this frame.
     users: ObjectSet,
-    /// Objects that only annotations of themselves change.
+    /// Objects that change only by annotations of themselves.
     protected: ObjectSet,
     is_accepted: bool,
 }
 
-/// The layer while it is made, at full size.
+/// The layer under construction, at full size.
 struct Draft {
     labels: Vec<u8>,
-    /// Log-odds of the objects that have the pixels.
+    /// Log-odds of the object that has each pixel, nats.
     log_odds: Vec<f32>,
-    /// Pixels that keep the object they have.
+    /// Whether each pixel keeps its object.
     is_held: Vec<bool>,
 }
 
 impl Composition<'_> {
-    /// The layer, if it says anything.
+    /// The layer; `None` if it has no label.
     pub(super) fn layer(&self) -> Option<Layer> {
         let (clip, state) = (self.clip, &self.clip.frames[self.index]);
         let annotation = state.annotation.clone().unwrap_or_default();
@@ -81,19 +81,19 @@ impl Composition<'_> {
         })
     }
 
-    /// Whether an object changes.
+    /// Whether an object is among those that change.
     fn changes(&self, object: u8) -> bool {
         self.proposals.iter().any(|(of, _)| *of == object)
     }
 
-    /// Objects of a user that do not change keep their pixels, and all objects do in an accepted frame.
+    /// Annotated objects that do not change keep their pixels; in an accepted frame all objects keep theirs.
     fn held(&self, rules: &Rules) -> Draft {
         let Rules { layer, users, protected, is_accepted, .. } = rules;
         let holds = |label: u8| {
             let k = usize::from(label);
             (users[k] || protected[k] || *is_accepted) && !self.changes(label)
         };
-        // A pixel that was taken from an object before it was protected stays taken.
+        // A pixel that was taken from an object before the object was protected stays taken.
         let holds_found = |p: usize| layer[p] == UNLABELLED && self.is_protected_below(rules, p);
         let is_held = |(p, &label): (usize, &u8)| match label {
             0 => false,
@@ -110,13 +110,13 @@ impl Composition<'_> {
         Draft { labels, log_odds: vec![0.0; layer.len()], is_held }
     }
 
-    /// Whether the object that was found at a pixel is one that does not change.
+    /// Whether the object found at a pixel is protected and does not change.
     fn is_protected_below(&self, rules: &Rules, p: usize) -> bool {
         let below = self.found[p];
         rules.protected[usize::from(below)] && !rules.users[usize::from(below)] && !self.changes(below)
     }
 
-    /// Each pixel that is not held goes to the likeliest of the objects that propose it.
+    /// Gives each pixel that is not held to the proposing object with the highest log-odds.
     fn propose(&self, rules: &Rules, draft: &mut Draft) {
         for (object, proposal) in self.proposals {
             let mask = self.mask(rules, *object, proposal.as_ref());
@@ -124,7 +124,7 @@ impl Composition<'_> {
                 let log_odds = |of: &Proposal| of.log_odds_at(self.pixel(p), self.features.size[0]);
                 proposal.as_ref().map_or(0.0, log_odds).max(f32::MIN_POSITIVE)
             };
-            // The ground of a label map stays ground, but for objects that were there.
+            // The ground of a label map stays ground, except for objects that were there.
             let is_free =
                 |p: usize| !draft.is_held[p] && (rules.painted.get(p) != Some(&0) || rules.layer[p] == *object);
             for p in (0..mask.len()).filter(|&p| mask[p] > 0 && is_free(p)) {
@@ -136,7 +136,7 @@ impl Composition<'_> {
         }
     }
 
-    /// The full-size mask that an object proposes.
+    /// The full-size mask that an object proposes: 1 inside.
     fn mask(&self, rules: &Rules, object: u8, proposal: Option<&Proposal>) -> Vec<u8> {
         let (features, width) = (self.features, self.frame.width());
         let mut mask = vec![0; self.found.len()];
@@ -145,7 +145,7 @@ impl Composition<'_> {
         }
         if let Some(mut seeds) = rules.annotation.seeds(object) {
             let base = rules.annotation.base(object);
-            // In its frame a person paints over what is seen there, whatever was found.
+            // In this frame, strokes are compared with the mask that was shown, not with the one that was found.
             let painted_over = base.as_ref().filter(|base| strokes::paints_over(base, 1, &seeds));
             if let Some(base) = painted_over {
                 strokes::fill(&mut seeds, base, 1);
@@ -165,8 +165,8 @@ impl Composition<'_> {
         mask
     }
 
-    /// Where an object is as far as the annotations of this frame tell nothing: 1 where it was found, or, if it was not, where it has been
-    /// so far, as long as nothing that was said of it is taken back.
+    /// The mask of an object in a frame without annotations of it: where it was found or, if it was not found, where it has been so far,
+    /// provided that none of its annotations was taken back. 1 inside.
     fn known(&self, object: u8) -> Option<Vec<u8>> {
         let objects = self.clip.objects_of_found();
         let is_found = |label: &u8| u8::from(objects[usize::from(*label)] == object);
@@ -178,7 +178,7 @@ impl Composition<'_> {
         is_there.then(|| self.before.iter().map(|label| u8::from(*label == object)).collect())
     }
 
-    /// Nothing is left around an object of another one whose place it takes, but where it is painted not to be.
+    /// Gives the rim that is left of a found object to the object that has taken most of it, except where that one is painted as ground.
     fn absorb_rims(&self, rules: &Rules, draft: &mut Draft) {
         let width = self.frame.width();
         let takes = |from: u8, other: u8| {
@@ -193,22 +193,22 @@ impl Composition<'_> {
         for (object, _) in self.proposals {
             let painted = rules.annotation.painted_of(*object).unwrap_or_default();
             for (label, _) in
-                draft.labels.iter_mut().zip(painted).filter(|(label, said)| *said == 0 && **label == *object)
+                draft.labels.iter_mut().zip(painted).filter(|(label, painted)| *painted == 0 && **label == *object)
             {
                 *label = UNLABELLED;
             }
         }
     }
 
-    /// A person's hand takes pixels of other annotated objects, but of protected ones only in an accepted frame, and of locked and named ones
-    /// nowhere.
+    /// Gives painted pixels to their object, also those of other annotated objects; those of protected objects only in an accepted frame,
+    /// and those of locked and named ones never.
     fn paint(&self, rules: &Rules, draft: &mut Draft) {
         let erases = rules.annotation.names_no_object();
         for (p, &label) in rules.painted.iter().enumerate().filter(|(_, label)| **label != UNLABELLED) {
             let below = usize::from(if rules.layer[p] == UNLABELLED { self.found[p] } else { rules.layer[p] });
             let is_named = self.clip.locked[below] || self.clip.named[below];
             let is_kept = draft.is_held[p] && (is_named || rules.protected[below] && !rules.is_accepted);
-            // The ground of a label map is that of the objects that it names.
+            // The ground of a label map applies only to the objects that it names.
             let is_others = match label {
                 0 => draft.labels[p] != UNLABELLED && !erases,
                 label => !self.changes(label),
@@ -219,7 +219,7 @@ impl Composition<'_> {
         }
     }
 
-    /// A protected object gets no pixel back that it had lost.
+    /// A protected object does not get back pixels that it had lost.
     fn give_nothing_back(&self, rules: &Rules, draft: &mut Draft) {
         for (p, label) in draft.labels.iter_mut().enumerate().filter(|(_, label)| **label == UNLABELLED) {
             if rules.layer[p] != UNLABELLED && self.is_protected_below(rules, p) {
@@ -228,7 +228,7 @@ impl Composition<'_> {
         }
     }
 
-    /// The pixel of the working size that a full-size pixel belongs to.
+    /// The working-size pixel that contains a full-size pixel.
     fn pixel(&self, p: usize) -> usize {
         self.features.scaling.small_pixel(p)
     }

@@ -1,4 +1,4 @@
-//! The features of a frame that propagation uses: colours, colour cells and borders.
+//! The features of a frame that propagation uses: colours, colour cells and edge weights.
 
 use crate::clip::options::model;
 use crate::frame::area::Area;
@@ -11,14 +11,14 @@ use crate::labelling::terms::smoothness::EdgeWeights;
 use crate::model::Model;
 use crate::view::cost::SMALLEST_NOISE;
 
-/// Number of colour cells along L, and along a and b, of which only the middle half is told apart.
+/// Number of colour cells along L, and along a and b, of which only the middle half of the range is resolved.
 pub(super) const LIGHTNESS: usize = 22;
 pub(super) const CHROMA: usize = 24;
 pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
 
 /// The colour cell of a pixel.
 fn colour_cell([l, a, b]: [f32; 3]) -> u16 {
-    // From −64 on, half a cell further: the first and the last cell are open.
+    // The range begins at −64, shifted by half a cell: the first and the last cell are unbounded.
     let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
     let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
     ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
@@ -28,16 +28,16 @@ fn colour_cell([l, a, b]: [f32; 3]) -> u16 {
 #[derive(Clone, Debug)]
 pub(super) struct FrameFeatures {
     pub(super) size: [usize; 2],
-    /// From the full size.
+    /// Between the full size and this one.
     pub(super) scaling: Scaling,
     /// Colour cell of every pixel.
     pub(super) colours: Vec<u16>,
-    /// L, a, b …
+    /// L, a and b, blurred.
     pub(super) fine: [Plane; 3],
-    /// … and at a quarter of the size.
+    /// L, a and b at a quarter of the size.
     pub(super) coarse: [Plane; 3],
-    /// Weights of edges, in units of the smoothness.
-    pub(super) borders: EdgeWeights,
+    /// Edge weights for a smoothness of 1.
+    pub(super) edge_weights: EdgeWeights,
 }
 
 impl FrameFeatures {
@@ -51,8 +51,8 @@ impl FrameFeatures {
         let colours =
             (0..size[0] * size[1]).map(|p| colour_cell(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = EdgeWeights::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
-        FrameFeatures { size, scaling, colours, fine, coarse, borders }
+        let edge_weights = EdgeWeights::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
+        FrameFeatures { size, scaling, colours, fine, coarse, edge_weights }
     }
 }
 
@@ -69,12 +69,12 @@ impl FrameFeatures {
         self.size.map(|side| 0.5 * side as f32)
     }
 
-    /// A plane of values.
+    /// A plane with a value for each pixel.
     pub(super) fn plane_of(&self, value: &dyn Fn(usize) -> f32) -> Plane {
         Plane::from_vec(self.size[0], self.size[1], (0..self.pixels()).map(value).collect())
     }
 
-    /// 1 at some pixels, else 0.
+    /// A plane of 1 at the pixels inside, 0 elsewhere.
     pub(super) fn plane(&self, inside: &dyn Fn(usize) -> bool) -> Plane {
         self.plane_of(&|p| f32::from(u8::from(inside(p))))
     }

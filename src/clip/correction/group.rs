@@ -1,4 +1,4 @@
-//! Objects that are propagated together: each has the pixels that none of the others has better reason to have.
+//! Objects that are propagated together and compete for pixels.
 
 use super::features::FrameFeatures;
 use super::placement::Placement;
@@ -7,39 +7,39 @@ use super::propagator::{Observation, Prediction};
 use super::proposal::{Proposal, log_odds_at};
 use super::track::Track;
 use crate::clip::annotation::{Direction, Seed, Spread};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::order::sort_few;
 
-/// A frame, and all that is known there.
+/// A frame, with all that is known about the objects in it.
 pub(super) struct Scene<'a> {
     pub(super) features: &'a FrameFeatures,
-    /// The seeds of an object by its number, if there are any, and where they spread.
+    /// For an object number, its seeds in the frame, if there are any, and the frames to which they spread.
     pub(super) seeds: &'a dyn Fn(u8) -> Option<(Vec<Seed>, Spread)>,
-    /// 1 where a person has seen an object, by its number, when strokes were drawn.
+    /// For an object number, the mask that the frame showed right after strokes were drawn: 1 inside.
     pub(super) seen: &'a dyn Fn(u8) -> Option<Vec<u8>>,
     /// Labels found automatically.
     pub(super) found: &'a [u8],
-    /// From this frame to the one before in the direction of the propagation, and from that one to this.
+    /// Motion to the previous frame in the direction of propagation, and from that frame to this one.
     pub(super) flows: Option<[&'a LayeredMotion; 2]>,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub(super) tracks: Vec<Track>,
-    /// Numbers of the objects that change. The others compete with them.
+    /// Numbers of the objects that change. The others only compete with them.
     pub(super) changing: Vec<u8>,
 }
 
 impl Group {
-    /// Objects of so many frames.
+    /// A group in a clip of so many frames.
     pub(super) fn new(Members { anchors, changing }: Members, frames: usize) -> Group {
         let tracks = anchors.into_iter().map(|(object, anchors)| Track::new(object, anchors, frames));
         Group { tracks: tracks.collect(), changing }
     }
 
-    /// The proposals for a frame of those that change. `is_kept`: they wait for the way back.
+    /// The proposals of the changing objects for a frame. With `is_kept`, each track also keeps its proposal for the backward pass.
     pub(super) fn visit(
         &mut self,
         frame: usize,
@@ -89,7 +89,7 @@ impl Group {
         proposals
     }
 
-    /// Where the objects are. The more is seen of one, the further in front it is.
+    /// Places the objects from front to back: the larger the visible share of an object, the further in front it is.
     fn place(&mut self, frame: usize, direction: Direction, of: &[Observation<'_>]) -> Vec<Option<Placement>> {
         let share = |track: &mut Track| track.coming(frame, direction).map_or(0.0, |propagator| propagator.share());
         let shares: Vec<f32> = self.tracks.iter_mut().map(share).collect();
@@ -108,9 +108,9 @@ impl Group {
     }
 }
 
-/// The log-odds of each object against everything else: the others are part of that.
+/// Turns the log-odds of each object into those against everything else, including the other objects.
 fn compete(predictions: &mut [Option<Prediction>], width: usize) {
-    // Where a hidden one is to appear again, no other grows.
+    // Where a hidden object is expected to reappear, no other object grows.
     let awaited: Vec<Option<Plane>> = predictions.iter().flatten().map(|of| of.awaited.clone()).collect();
     for (k, of) in predictions.iter_mut().flatten().enumerate() {
         for (_, awaited) in awaited.iter().enumerate().filter(|(j, _)| *j != k) {
@@ -149,35 +149,35 @@ mod tests {
         crate::clip::correction::plan::Anchor { frame, spread: Spread::Both, is_whole: true }
     }
 
-    /// The seeds of an object that a label map names.
-    fn of_object(said: &[u8], number: u8) -> Vec<Seed> {
+    /// The seeds of an object in a label map.
+    fn of_object(labels: &[u8], number: u8) -> Vec<Seed> {
         let of = |&label: &u8| match label {
             UNLABELLED => Seed::Nothing,
             label if label == number => Seed::Object,
             _ => Seed::Other,
         };
-        said.iter().map(of).collect()
+        labels.iter().map(of).collect()
     }
 
     #[test]
     fn two_rivals_share_no_pixel() {
-        // Side by side and of one colour; the border between them was said in one frame alone.
+        // Two objects of one colour side by side; only one frame annotates the border between them.
         let features = FrameFeatures::painted(SIZE, |x, y| match (20..68).contains(&x) && (20..44).contains(&y) {
             true => [190, 70, 60],
             false => [110, 120, 115],
         });
         let inside = |p: usize| (20..44).contains(&(p / SIZE[0]));
-        let said = |p: usize| match p % SIZE[0] {
+        let label = |p: usize| match p % SIZE[0] {
             20..44 if inside(p) => 1,
             44..68 if inside(p) => 2,
             _ => 0,
         };
-        let said: Vec<u8> = (0..features.pixels()).map(said).collect();
+        let labels: Vec<u8> = (0..features.pixels()).map(label).collect();
         let tracks = [1, 2].map(|number| Track::new(number, vec![anchor(0)], 3)).to_vec();
         let mut group = Group { tracks, changing: vec![1, 2] };
         let found = vec![0; features.pixels()];
         for t in 0..3 {
-            let seeds = |number: u8| (t == 0).then(|| (of_object(&said, number), Spread::Both));
+            let seeds = |number: u8| (t == 0).then(|| (of_object(&labels, number), Spread::Both));
             let scene = Scene { features: &features, seeds: &seeds, seen: &|_| None, found: &found, flows: None };
             let proposals = group.visit(t, Direction::Forward, false, &scene);
             let mut owners = vec![0; features.pixels()];
@@ -199,8 +199,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_later_counts_before_it() {
-        // Found as one; a stroke on the left part here, and in a later frame one that says what the right part is not.
+    fn later_annotations_count_in_earlier_frames() {
+        // Both parts were found as one object. This frame has a stroke on the left part, a later frame has a stroke that excludes the right
+        // part.
         let place = |x: usize, y: usize| match (20..44).contains(&y) {
             true if (20..44).contains(&x) => 1,
             true if (44..68).contains(&x) => 2,
@@ -215,10 +216,10 @@ mod tests {
             (0..features.pixels()).map(|p| if is_in(&p) { label } else { UNLABELLED }).collect()
         };
         let (here, later) = (stroke(1, 1), stroke(2, 0));
-        let shares = [false, true].map(|hears| {
+        let shares = [false, true].map(|learns| {
             let mut track = Track::new(1, vec![anchor(0), anchor(3)], 4);
-            for said in [&here, &later].into_iter().filter(|_| hears) {
-                track.learn_seeds(&features, &of_object(said, 1), &found);
+            for labels in [&here, &later].into_iter().filter(|_| learns) {
+                track.learn_seeds(&features, &of_object(labels, 1), &found);
             }
             let mut group = Group { tracks: vec![track], changing: vec![1] };
             let seeds = |number: u8| Some((of_object(&here, number), Spread::Both));
@@ -235,8 +236,8 @@ mod tests {
     }
 
     #[test]
-    fn one_comes_out_behind_its_like() {
-        // Cut from one cloth; the first passes behind the second, which stands still, and is quite hidden for a while.
+    fn an_object_reappears_from_behind_a_like_one() {
+        // Both have the same texture. The first passes behind the second, which rests, and is completely hidden for a while.
         let mut random = Random::from_seed(7);
         let patches: Vec<[u8; 3]> =
             (0..10 * 8).map(|_| [20, 30, 25].map(|step| 60 + step * random.uniform(0.0, 4.0) as u8)).collect();
@@ -263,7 +264,7 @@ mod tests {
             let truth: Vec<u8> = (0..SIZE[0] * SIZE[1]).map(|p| owner(t, p % SIZE[0], p / SIZE[0])).collect();
             let features = features(t);
             let seeds = |number: u8| (t == 0).then(|| (of_object(&truth, number), Spread::Both));
-            // As pairs of frames measure it: to the frame before, and from there.
+            // Motions to the previous frame and back, as pairs of frames measure them.
             let flow = |t: usize, step: f64| LayeredMotion {
                 width: SIZE[0],
                 labels: (0..features.pixels()).map(|p| u8::from(owner(t, p % SIZE[0], p / SIZE[0]) == 1)).collect(),

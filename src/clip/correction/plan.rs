@@ -3,17 +3,17 @@
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Direction, ObjectSet, Spread};
 
-/// A frame that tells where an object is, and where that spreads.
+/// A frame from whose annotations an object is propagated, and in which directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Anchor {
     pub(super) frame: usize,
     pub(super) spread: Spread,
-    /// Whether the object's mask there is a person's as a whole.
+    /// Whether a person has given the object's whole mask there.
     pub(super) is_whole: bool,
 }
 
 impl Direction {
-    /// The frame in which an object begins that has these anchors, in ascending order.
+    /// The frame in which the propagation of an object begins, given its anchors in ascending order of frames.
     pub(super) fn first(self, anchors: &[Anchor]) -> Option<usize> {
         let spreads = |anchor: &&Anchor| anchor.spread.goes(self);
         let anchor = match self {
@@ -24,16 +24,16 @@ impl Direction {
     }
 }
 
-/// Objects that are propagated together, because the same frames tell of them.
+/// Objects that are propagated together because they have anchors in the same frames.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Members {
     /// Objects and their anchors.
     pub(super) anchors: Vec<(u8, Vec<Anchor>)>,
-    /// Those that change. The others compete with them for pixels.
+    /// The objects that change. The others compete with them for pixels.
     pub(super) changing: Vec<u8>,
 }
 
-/// A frame that is needed.
+/// A visit of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Visit {
     pub(super) frame: usize,
@@ -42,15 +42,15 @@ pub(super) struct Visit {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Task {
-    /// To learn annotations that spread to all frames, and the appearance of some objects where they were found automatically.
+    /// Learn the annotations that spread to all frames, and the appearance of some objects where they were found automatically.
     Learn(Vec<u8>),
-    /// An anchor to which nothing is propagated.
+    /// Apply the annotations of an anchor that no propagation reaches.
     Anchor,
-    /// `is_kept`: its labels wait for the way back.
+    /// Propagate to the frame. With `is_kept`, its proposals are kept for the backward pass.
     Propagate { direction: Direction, is_kept: bool },
 }
 
-/// Which objects are propagated together, by number, given those that change and the anchors of all.
+/// Groups the changing objects with those that share anchors with them. Both arguments are indexed by object number.
 pub(super) fn groups(changing: &ObjectSet, anchors: &[Vec<Anchor>]) -> Vec<Members> {
     let mut groups: Vec<Members> = Vec::new();
     for object in (1..UNLABELLED).filter(|&object| changing[usize::from(object)]) {
@@ -68,10 +68,10 @@ pub(super) fn groups(changing: &ObjectSet, anchors: &[Vec<Anchor>]) -> Vec<Membe
     groups
 }
 
-/// The visits of a scene in their order, the last one first. `found` tells in which frames an object was found automatically.
+/// The visits of a scene, in reverse order. `found` gives the frames in which an object was found automatically.
 ///
-/// Learning comes first; then anchors that nothing reaches; then the way forward from the first anchor of all, and the way back from the
-/// last. Frames that both pass are final on the way back.
+/// Frames to learn from come first; then anchors that no propagation reaches; then the forward pass from the first anchor of any object,
+/// and the backward pass from the last one. Frames of both passes become final in the backward pass.
 pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn Fn(u8) -> Vec<usize>) -> Vec<Visit> {
     let objects = || groups.iter().flat_map(|group| &group.anchors);
     let begins = |direction: Direction| objects().filter_map(move |(_, anchors)| direction.first(anchors));
@@ -103,7 +103,7 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
         visits.extend((from..=last).map(|frame| Visit { frame, task: task(frame) }));
     }
     if let Some(furthest) = backward {
-        // The last frame of the way back was final on the way forward.
+        // The last frame of the backward pass became final in the forward pass.
         let end = if forward.is_some_and(|from| from <= furthest) { furthest } else { furthest + 1 };
         let task = Task::Propagate { direction: Direction::Backward, is_kept: false };
         visits.extend((first..end).rev().map(|frame| Visit { frame, task: task.clone() }));
@@ -112,9 +112,9 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
     visits
 }
 
-/// A few of the frames, evenly from the last one back.
+/// A few of the frames, evenly spaced from the last one back.
 fn sample(frames: &[usize]) -> Vec<usize> {
-    /// As many as tell the looks of an object; for speed.
+    /// Enough to learn the appearance of an object; more would cost time.
     const MOST: usize = 8;
     let count = frames.len().min(MOST);
     (0..count).map(|k| frames[frames.len() - 1 - k * frames.len() / count]).collect()
@@ -128,7 +128,7 @@ mod tests {
         frames.iter().map(|&(frame, spread)| Anchor { frame, spread, is_whole: false }).collect()
     }
 
-    /// Tasks of the visits, in short: learn, anchor, forward, forward but kept, backward.
+    /// The tasks of the visits as letters: learn, anchor, forward, forward and kept, backward.
     fn order(scene: [usize; 2], members: &[(u8, Vec<Anchor>)], found: &dyn Fn(u8) -> Vec<usize>) -> String {
         let group = Members { anchors: members.to_vec(), changing: vec![members[0].0] };
         let name = |visit: &Visit| match visit.task {

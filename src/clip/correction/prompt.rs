@@ -1,30 +1,31 @@
-//! An object from a click or a box: its mask in one frame at once.
+//! The mask of an object in one frame, from clicks or a box.
 //!
-//! As in GrabCut (Rother, Kolmogorov, Blake, SIGGRAPH 2004), what the object and the ground around it look like is learned from a mask, a
-//! cut makes the next mask of that, and so on. Besides colours, the labels found automatically and the motions to the neighbouring frames
-//! count: what lies mostly inside speaks for the object.
+//! As in GrabCut (Rother, Kolmogorov, Blake, SIGGRAPH 2004), the appearance of the object and of the ground around it is learned from a
+//! mask, a cut with this appearance makes the next mask, and so on. Besides colours, the labels found automatically and the motions to the
+//! neighbouring frames are used: a label that lies mostly inside the mask raises the log-odds of the object.
 //!
-//! * A box begins with the ellipse in it; outside there is no object.
-//! * How far the object of a click reaches is open. Discs of several sizes begin, and the regions with one label or motion that the click
-//!   is in; the masks that come of them vote, each by how well it agrees with the others. What has enough votes is the object.
+//! * A box begins with its inscribed ellipse; outside the box there is no object.
+//! * The size of a clicked object is unknown. Fits begin with discs of several sizes around the click, and with the regions of one label or
+//!   motion that contain it. The resulting masks vote, each weighted by how well it agrees with the others. Pixels with enough votes are
+//!   the object.
 //!
-//! Clicks refine a mask in their order: each adds the part around it, or takes it away, as far as looks and labels near it say, and
-//! changes nothing else; a separate piece goes as a whole. How far that reaches is open as well, up to what is as the click says already.
-//! Where a click says that the mask is wrong, another one that came of earlier clicks may be right: what that changes around the click is a
-//! part, too. People click the middle of what is wrong, so parts vote by how near the click is to the deepest of their pixels.
-//! Other annotations make no difference to the mask: the same prompt always points to the same object, and takes nothing from what others
-//! have.
+//! Further clicks refine the mask in their order. Each adds the part around it or removes it, as far as the colours and labels near it
+//! suggest, and changes nothing else; a separate piece is removed as a whole. The size of a part is unknown as well; it reaches at most to
+//! the nearest pixel that already is as the click demands. Where a click shows that the mask is wrong, another mask of the earlier fits may
+//! be right: its difference around the click is a candidate part, too. People click the middle of a wrong region, so parts vote by how near
+//! the click is to the deepest of their pixels. Other annotations do not influence the mask: the same prompt always gives the same object,
+//! and takes no pixels from other annotated objects.
 
 use std::ops::Range;
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
-use super::label_evidence::LabelEvidence;
+use super::label_ratios::LabelRatios;
 use super::proposal::{CERTAIN, cut, logit};
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Click, Prompt};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::segmented_clip::SegmentedClip;
 use crate::components::{Connectivity, components};
 use crate::frame::Frame;
@@ -32,34 +33,35 @@ use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::labelling::upsampling::upsample;
 use crate::model::Model;
+use crate::side::Side;
 
-/// A frame, and the evidence for a prompt.
+/// A frame, and what is known for a prompt in it.
 struct View<'a> {
     features: &'a FrameFeatures,
-    /// Labels found automatically, and those of the motions to the next frame and the one before.
+    /// Labels found automatically, and the motion labels to the next frame and to the previous one.
     found: Vec<Vec<u8>>,
-    /// Seeds of the clicks so far: 0 for the object, 1 for ground, 2 for nothing.
-    sure: Vec<u8>,
-    /// Where the object may be.
+    /// The side that the clicks so far give to a pixel, if any.
+    sure: Vec<Option<Side>>,
+    /// The area in which the object may be.
     limit: Area,
-    /// The mask as the clicks so far leave it.
+    /// The mask after the clicks so far: 1 inside.
     mask: Vec<u8>,
-    /// Masks that may be meant instead: of every beginning so far, with what clicks have changed since.
+    /// Alternative masks: the results of every beginning so far, with the changes of later clicks.
     others: Vec<Vec<u8>>,
 }
 
-/// The beginning of a fit.
+/// The initial state of a fit.
 struct Beginning {
-    /// Where the object may be.
+    /// The area in which the object may be.
     area: Area,
     /// Log-odds of the object at every pixel, nats.
     log_odds: Vec<f32>,
-    /// 0 for the object, 1 for ground, 2 for what is open.
-    sides: Vec<u8>,
+    /// The side of every pixel; `None` where it is open.
+    sides: Vec<Option<Side>>,
 }
 
-/// The outline of the object that a prompt points to: its number at its pixels, 0 elsewhere, 255 where an object is that
-/// keeps what it has. `shown` are the labels of the frame.
+/// The full-size outline of a prompt's object: its number inside, 0 outside, 255 where another annotated object keeps its pixels. `shown`
+/// are the labels of the frame.
 #[inline(never)]
 pub(super) fn outline(
     clip: &SegmentedClip,
@@ -84,7 +86,8 @@ pub(super) fn outline(
         rows: scaled(y..y + rows, features.size[1]),
     });
     let nothing = vec![0; features.pixels()];
-    let mut view = View { features, found, sure: vec![2; features.pixels()], limit, mask: nothing, others: Vec::new() };
+    let mut view =
+        View { features, found, sure: vec![None; features.pixels()], limit, mask: nothing, others: Vec::new() };
     let clicks: Vec<(usize, bool)> =
         prompt.clicks.iter().map(|Click { at: [x, y], inside }| (y * width + x, *inside)).collect();
     if prompt.within.is_some() {
@@ -95,7 +98,7 @@ pub(super) fn outline(
         let centre = view.place(click);
         for p in 0..features.pixels() {
             if view.square(p, centre, [model().click; 2]) < 1.0 {
-                view.sure[p] = u8::from(!inside);
+                view.sure[p] = Some(Side::object_if(*inside));
             }
         }
         view.refine(click, *inside);
@@ -105,7 +108,7 @@ pub(super) fn outline(
         let area = Area { columns: x..x + columns, rows: y..y + rows };
         let is_empty = !area.pixels(width).any(|p| mask[p] > 0);
         let mut within = vec![0; mask.len()];
-        // One that is too small to see anything in is all object.
+        // A box that is too small to resolve anything is the object as a whole.
         area.pixels(width).for_each(|p| within[p] = if is_empty { 1 } else { mask[p] });
         mask = within;
     }
@@ -124,6 +127,7 @@ pub(super) fn outline(
 }
 
 impl View<'_> {
+    /// The mask of the object in the box.
     fn boxed(&self) -> Vec<u8> {
         let area = self.limit.clone();
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
@@ -133,13 +137,13 @@ impl View<'_> {
         self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &seen)
     }
 
-    /// Adds to the mask the part around a click that is the object's, or takes away the part around one that is not.
+    /// Adds to the mask the part around a click inside the object, or removes the part around a click outside it.
     fn refine(&mut self, click: usize, inside: bool) {
         if (self.mask[click] > 0) == inside {
             return;
         }
         if !self.mask.contains(&1) {
-            // The first click is in the middle of many a part of the object, too: its depth says little.
+            // The first click is in the middle of many parts of the object, too, so its depth is not informative.
             let parts = self.parts(click, inside);
             self.mask = self.elected(&parts, &agreements(&parts), click);
             self.others = parts;
@@ -160,7 +164,7 @@ impl View<'_> {
         }
     }
 
-    /// The parts by which the mask may change as a click says, of beginnings of several sizes.
+    /// Candidate parts by which a click may change the mask, from beginnings of several sizes.
     fn parts(&self, click: usize, inside: bool) -> Vec<Vec<u8>> {
         let (pixels, [width, height]) = (self.features.pixels(), self.features.size);
         let centre = self.place(click);
@@ -171,17 +175,17 @@ impl View<'_> {
         };
         let same = (0..pixels).filter(|&p| (self.mask[p] > 0) == inside).map(|p| self.square(p, centre, [1.0; 2]));
         let reach = same.fold(f32::INFINITY, f32::min).sqrt().max(2.0);
-        // From the side of a cell on, or half the way to what is as the click says.
+        // From the side of a cell on, or half the distance to the nearest pixel that already is as the click demands.
         let longest = width.max(height) as f32;
         let first = (model().cell * longest).min(0.5 * reach);
         let radii = std::iter::successors(Some(first), |radius| Some(std::f32::consts::SQRT_2 * radius));
-        // A third of the longer side.
+        // Up to a third of the longer side.
         let discs = radii.take_while(|radius| 3.0 * *radius < longest && *radius <= reach).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         discs.chain(regions).map(|from| self.part(click, inside, from)).collect()
     }
 
-    /// The connected pixels around a click that are in parts with enough of the votes.
+    /// The connected pixels around a click that have enough of the votes.
     fn elected(&self, parts: &[Vec<u8>], weights: &[f32], click: usize) -> Vec<u8> {
         let mut votes = vec![0.0f32; self.features.pixels()];
         for (part, weight) in parts.iter().zip(weights) {
@@ -191,17 +195,17 @@ impl View<'_> {
         self.connected(click, &|p| votes[p] > enough)
     }
 
-    /// The connected part of the mask around a click, if it has no click of the object and is not the largest.
+    /// The connected component of the mask at a click, if it has no click inside the object and is not the largest.
     fn piece(&self, click: usize) -> Option<Vec<u8>> {
         let parts = components(&self.mask, self.features.size[0], Connectivity::Four);
         let largest = parts.list.iter().filter(|part| part.label > 0).map(|part| part.size).max()?;
         let own = parts.of[click];
-        let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == 0);
+        let is_sure = parts.of.iter().zip(&self.sure).any(|(&part, &sure)| part == own && sure == Some(Side::Object));
         let is_separate = !is_sure && parts.list[own as usize].size < largest;
         is_separate.then(|| parts.of.iter().map(|&part| u8::from(part == own)).collect())
     }
 
-    /// The connected part around a click by which the mask changes as the click says, in a fit that begins with `from` being that part.
+    /// The connected part around a click that a fit changes as the click demands. The fit begins with `from` being that part.
     fn part(&self, click: usize, inside: bool, from: Beginning) -> Vec<u8> {
         let (features, mask, width) = (self.features, &self.mask, self.features.size[0]);
         let own: Vec<usize> = (0..mask.len()).filter(|&p| mask[p] > 0).collect();
@@ -210,17 +214,17 @@ impl View<'_> {
             let seen = self.around(&area, &features.area());
             self.fitted(Beginning { area, ..from }, &seen)
         } else {
-            // Looks near the part tell where it ends: those of the whole object have seen its like elsewhere.
+            // The appearance is learned near the part, because the rest of the object may have the same colours as its surroundings.
             let seen = from.area.grown(from.area.width().max(from.area.height()) / 2, width, features.size[1]);
             let area = self.around(&from.area.with(&Area::of(&own, width)), &self.limit);
             let soft = gaussian(&features.plane(&|p| mask[p] > 0), model().border);
             let prior = soft.values().iter().map(|share| model().beginning * (2.0 * share - 1.0));
             let sign = if inside { 1.0 } else { -1.0 };
             let log_odds = prior.zip(&from.log_odds).map(|(prior, part)| sign * (sign * prior).max(*part)).collect();
-            let side = |(&mask, &part): (&u8, &u8)| match part {
-                0 => u8::from(!inside),
-                2 if (mask > 0) != inside => 2,
-                _ => 1 - mask,
+            let side = |(&mask, &part): (&u8, &Option<Side>)| match part {
+                Some(Side::Object) => Some(Side::object_if(inside)),
+                None if (mask > 0) != inside => None,
+                _ => Some(Side::object_if(mask > 0)),
             };
             let sides = mask.iter().zip(&from.sides).map(side).collect();
             self.fitted(Beginning { area, log_odds, sides }, &seen)
@@ -228,32 +232,33 @@ impl View<'_> {
         self.change(&fit, click, inside)
     }
 
-    /// The connected part around a click by which the mask becomes another one as the click says, and no click says otherwise.
+    /// The connected part around a click where another mask is as the click demands, this mask is not, and no other click demands
+    /// otherwise.
     fn change(&self, other: &[u8], click: usize, inside: bool) -> Vec<u8> {
-        let own = u8::from(inside);
-        self.connected(click, &|p| other[p] == own && self.mask[p] != own && self.sure[p] != own)
+        let (own, otherwise) = (u8::from(inside), Some(Side::object_if(!inside)));
+        self.connected(click, &|p| other[p] == own && self.mask[p] != own && self.sure[p] != otherwise)
     }
 
-    /// The connected pixels of some kind around a click.
+    /// The connected component at a click of the pixels for which `is_in` holds.
     fn connected(&self, click: usize, is_in: &dyn Fn(usize) -> bool) -> Vec<u8> {
         let all: Vec<u8> = (0..self.features.pixels()).map(|p| u8::from(is_in(p))).collect();
         let parts = components(&all, self.features.size[0], Connectivity::Four);
         all.iter().zip(&parts.of).map(|(is_in, part)| is_in & u8::from(*part == parts.of[click])).collect()
     }
 
-    /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The log-odds fall from its
-    /// middle with the squared distance, to none at `even`.
+    /// An ellipse within an area: object up to a share of its radii, ground from the share `ground` on. The prior log-odds fall with the
+    /// squared distance from its centre, in units of the radii, and are zero where that is `even`.
     fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
         let object = 1.0 - model().rim;
         let squares: Vec<f32> = (0..self.features.pixels()).map(|p| self.square(p, centre, radii)).collect();
-        let mut sides = vec![1; squares.len()];
+        let mut sides = vec![Some(Side::Ground); squares.len()];
         for p in area.pixels(self.features.size[0]).filter(|&p| squares[p] < ground * ground) {
-            sides[p] = if squares[p] < object * object { 0 } else { 2 };
+            sides[p] = (squares[p] < object * object).then_some(Side::Object);
         }
         Beginning { area, sides, log_odds: squares.iter().map(|square| model().beginning * (even - square)).collect() }
     }
 
-    /// The connected pixels that have the click's label, unless most of the frame has it.
+    /// The connected region of the click's label; `None` if it is small, or most of the frame has the label.
     fn region(&self, labels: &[u8], click: usize) -> Option<Beginning> {
         let width = self.features.size[0];
         let parts = components(labels, width, Connectivity::Eight);
@@ -266,7 +271,7 @@ impl View<'_> {
         let [left, top, right, bottom] = part.bounds;
         Some(Beginning {
             area: Area { columns: left..right + 1, rows: top..bottom + 1 },
-            sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
+            sides: (0..labels.len()).map(|p| Some(Side::object_if(inside(p)))).collect(),
             log_odds: gaussian(&self.features.plane(&inside), model().border)
                 .values()
                 .iter()
@@ -275,29 +280,33 @@ impl View<'_> {
         })
     }
 
-    /// Learns from a mask what the object looks like in an area, cuts the next mask, and so on.
+    /// Alternates between learning the appearance from a mask, in the area `seen`, and cutting the next mask.
     fn fitted(&self, from: Beginning, seen: &Area) -> Vec<u8> {
         let (features, width) = (self.features, self.features.size[0]);
         let Beginning { area, log_odds: prior, mut sides } = from;
-        sides.iter_mut().zip(&self.sure).filter(|(_, sure)| **sure == 1).for_each(|(side, _)| *side = 1);
+        sides
+            .iter_mut()
+            .zip(&self.sure)
+            .filter(|(_, sure)| **sure == Some(Side::Ground))
+            .for_each(|(side, sure)| *side = *sure);
         for _ in 0..model().prompt_rounds {
-            let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
-            // Ground counts less where there is more of it.
-            let weight = (count(0) / count(1).max(1.0)).sqrt();
+            let count = |side: Side| seen.pixels(width).filter(|&p| sides[p] == Some(side)).count() as f32;
+            // Ground pixels weigh less the more of them there are.
+            let weight = (count(Side::Object) / count(Side::Ground).max(1.0)).sqrt();
             let mut appearance = AppearanceModel::new(&Area::whole(0, 0), f32::INFINITY);
-            for (side, weight) in [(0, 1.0), (1, weight)] {
-                let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
+            for (side, weight) in [(Side::Object, 1.0), (Side::Ground, weight)] {
+                let of = |p: usize| sides[p].filter(|own| *own == side);
                 appearance.learn_within(features, seen, [0.0; 2], Source::Recent, weight, &of);
             }
             let remembered = appearance.read(features, &area, [0.0; 2]);
-            let evidence: Vec<LabelEvidence> =
-                self.found.iter().map(|found| LabelEvidence::of(found, &sides, seen, width)).collect();
+            let ratios: Vec<LabelRatios> =
+                self.found.iter().map(|found| LabelRatios::of(found, &sides, seen, width)).collect();
             let log_odds = |(p, remembered): (usize, f32)| {
-                let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
+                let found: f32 = self.found.iter().zip(&ratios).map(|(found, of)| of.ratio(found[p])).sum();
                 match self.sure[p] {
-                    0 => CERTAIN,
-                    1 => -CERTAIN,
-                    _ => prior[p] + logit(remembered) + found,
+                    Some(Side::Object) => CERTAIN,
+                    Some(Side::Ground) => -CERTAIN,
+                    None => prior[p] + logit(remembered) + found,
                 }
             };
             let log_odds: Vec<f32> = area.pixels(width).zip(remembered).map(log_odds).collect();
@@ -305,13 +314,13 @@ impl View<'_> {
             if !mask.contains(&1) {
                 break;
             }
-            sides.fill(1);
-            area.pixels(width).zip(mask).for_each(|(p, inside)| sides[p] = 1 - inside);
+            sides.fill(Some(Side::Ground));
+            area.pixels(width).zip(mask).for_each(|(p, inside)| sides[p] = Some(Side::object_if(inside > 0)));
         }
-        sides.iter().map(|&side| u8::from(side == 0)).collect()
+        sides.iter().map(|&side| u8::from(side == Some(Side::Object))).collect()
     }
 
-    /// An area and what is around it, within a limit.
+    /// An area grown by a margin, within a limit.
     fn around(&self, area: &Area, limit: &Area) -> Area {
         area.grown(model().margin, self.features.size[0], self.features.size[1]).within(limit)
     }
@@ -327,7 +336,7 @@ impl View<'_> {
     }
 }
 
-/// Intersection over union.
+/// Intersection over union of two masks, 0…1.
 pub(super) fn overlap(one: &[u8], other: &[u8]) -> f32 {
     let (mut both, mut either) = (0usize, 0usize);
     for (one, other) in one.iter().zip(other) {
@@ -337,22 +346,22 @@ pub(super) fn overlap(one: &[u8], other: &[u8]) -> f32 {
     both as f32 / either.max(1) as f32
 }
 
-/// How well each part agrees with the others: the square of its summed overlaps with them. One alone has some weight, too.
+/// Weight of each part: the square of its summed overlaps with the others, at least a small positive number.
 fn agreements(parts: &[Vec<u8>]) -> Vec<f32> {
     let of = |part: &Vec<u8>| parts.iter().map(|other| overlap(part, other)).sum::<f32>() - 1.0;
     parts.iter().map(|part| of(part).powi(2).max(f32::EPSILON)).collect()
 }
 
-/// How near a pixel is to the deepest one of a part: the fourth power of its share of that depth.
+/// Weight of a part: the fourth power of the depth of a pixel in it relative to its deepest pixel, 0…1.
 fn centrality(part: &[u8], pixel: usize, width: usize) -> f32 {
     let squares = squared_depths(part, width);
     let deepest = squares.iter().copied().max().unwrap_or(0).max(1);
     (squares[pixel] as f32 / deepest as f32).powi(2)
 }
 
-/// Squared distance of each pixel of a part from what is not in it, or beyond the frame.
+/// Squared distance of each pixel of a part from the nearest pixel that is outside it or beyond the frame; 0 outside the part.
 fn squared_depths(part: &[u8], width: usize) -> Vec<usize> {
-    // Along columns, then the nearest of each row.
+    // First along columns, then the nearest along each row.
     let mut along = vec![0usize; part.len()];
     for p in (0..part.len()).filter(|&p| part[p] > 0) {
         along[p] = 1 + p.checked_sub(width).map_or(0, |above| along[above]);

@@ -1,84 +1,85 @@
 //! Propagation of one object from frame to frame in one direction: predict, cut, update.
 //!
 //! ```text
-//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + evidence      log-odds of the object against everything else, nats
+//! z(p) = bias + w_T logit p_T + w_M logit p_M + w_A logit p_A + r      log-odds of the object against everything else, nats
 //! ```
-//! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
-//! probability of the pixel's colour at its place by the appearance model; `p_A` are the labels of the annotated frame where the pixel was
-//! there; the evidence is that of the labels found automatically. One cut gives the mask.
+//! `p_T` is the mask of the previous frame, moved along the motions of the pixels and by one shift of the whole object; `p_M` is the
+//! probability of the pixel's colour at its position by the appearance model; `p_A` is the mask of the annotated frame where the pixel was
+//! there; `r` is the log-likelihood ratio of the label found automatically. One cut gives the mask.
 
 use super::appearance::{AppearanceModel, Source};
 use super::features::FrameFeatures;
-use super::label_evidence::LabelEvidence;
-use super::placement::{Placement, Whole};
+use super::label_ratios::LabelRatios;
+use super::placement::{OcclusionState, Placement};
 use super::prompt::overlap;
 use super::proposal::{Proposal, Signs, centre_of, logit};
 use super::strokes;
 use super::trace::Trace;
 use crate::clip::annotation::Seed;
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::Footprint;
+use crate::side::Side;
 
-/// A frame, and all that is known there about an object.
+/// A frame, with all that is known about one object in it.
 #[derive(Clone, Copy)]
 pub(super) struct Observation<'a> {
     pub(super) features: &'a FrameFeatures,
     /// Labels found automatically.
     pub(super) found: &'a [u8],
-    /// From this frame to the one before in the direction of the propagation, and from that one to this.
+    /// Motion to the previous frame in the direction of propagation, and from that frame to this one.
     pub(super) flows: Option<[&'a LayeredMotion; 2]>,
     pub(super) seeds: Option<&'a [Seed]>,
-    /// 1 where a person has seen the object when strokes were drawn.
+    /// The mask that the frame showed right after strokes were drawn: 1 inside.
     pub(super) seen: Option<&'a [u8]>,
-    /// Whether the seeds are of an anchor of the object. Else they count only where they contradict its propagation.
+    /// Whether the frame is an anchor of the object. If not, its seeds count only where they contradict the propagated mask.
     pub(super) is_anchor: bool,
-    /// Whether the annotation spreads in this direction.
+    /// Whether the annotation spreads in the direction of propagation.
     pub(super) spreads: bool,
-    /// Whether the object's mask is a person's as a whole.
+    /// Whether a person has given the object's whole mask.
     pub(super) is_whole: bool,
-    /// Whether it spreads to all frames.
+    /// Whether the annotation spreads to all frames.
     pub(super) spreads_to_all: bool,
 }
 
-/// The expectation of an object in the next frame.
+/// The expected object in the next frame.
 pub(super) struct Prediction {
     pub(super) area: Area,
     pub(super) log_odds: Vec<f32>,
     signs: Signs,
     centre: [f32; 2],
     placement: Option<Placement>,
-    /// How much each pixel is awaited to be that of a hidden object.
+    /// Where a hidden object is expected to reappear: 0 or more, the higher the likelier.
     pub(super) awaited: Option<Plane>,
 }
 
-/// The object in the frame reached last.
+/// The object in the last frame reached.
 #[derive(Clone, Debug)]
 struct Reached {
-    /// 1 at the object's pixels.
+    /// 1 inside the object.
     mask: Plane,
     centre: [f32; 2],
-    whole: Whole,
+    occlusion: OcclusionState,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Propagator {
     reached: Option<Reached>,
     appearance: Option<AppearanceModel>,
-    label_evidence: LabelEvidence,
-    /// From the frame passed last in which the whole mask is a person's.
+    label_ratios: LabelRatios,
+    /// Leads back to the last frame passed whose whole mask a person has given.
     trace: Option<Trace>,
-    /// 1 where annotations have changed the object in the frame reached last; none if they are about all of it.
+    /// 1 where annotations have changed the object in the last frame reached; `None` if they are about all of it.
     change: Option<Plane>,
-    /// Whether it has learnt the annotations that spread to all frames.
-    knows_annotations: bool,
+    /// Whether it has learned the annotations that spread to all frames.
+    learned_annotations: bool,
 }
 
 impl Observation<'_> {
-    /// Log-odds of the object because a person has seen where it is, nats.
+    /// Log-odds of the object from the mask that a person saw after drawing strokes, nats.
     fn log_odds_seen(&self, p: usize) -> f32 {
         match self.seen {
             Some(seen) if seen[p] > 0 => model().seen,
@@ -93,9 +94,9 @@ impl Propagator {
         self.reached.is_some()
     }
 
-    /// The same in the other direction: annotations stay learnt, frames that were passed are forgotten.
+    /// The propagator for the opposite direction: it keeps what it learned from annotations, and forgets the frames passed.
     pub(super) fn turned(&self, features: &FrameFeatures, found: &[u8]) -> Propagator {
-        let (mut appearance, mut label_evidence) = (self.appearance.clone(), LabelEvidence::default());
+        let (mut appearance, mut label_ratios) = (self.appearance.clone(), LabelRatios::default());
         if let (Some(appearance), Some(reached)) = (&mut appearance, &self.reached) {
             appearance.forget_recent();
             appearance.learn(
@@ -105,16 +106,17 @@ impl Propagator {
                 1.0 - model().memory_decay,
                 &side(&reached.mask),
             );
-            label_evidence.learn(found, &reached.mask, true);
+            label_ratios.learn(found, &reached.mask, true);
         }
-        let reached = self.reached.as_ref().map(|reached| Reached { whole: reached.whole.turned(), ..reached.clone() });
+        let reached =
+            self.reached.as_ref().map(|reached| Reached { occlusion: reached.occlusion.turned(), ..reached.clone() });
         Propagator {
             reached,
             appearance,
-            label_evidence,
+            label_ratios,
             trace: self.trace.clone(),
             change: self.change.clone(),
-            knows_annotations: self.knows_annotations,
+            learned_annotations: self.learned_annotations,
         }
     }
 
@@ -138,15 +140,15 @@ impl Propagator {
         let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
         let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
         appearance.learn_seeds(features, centre, Some(seeds));
-        self.knows_annotations = true;
+        self.learned_annotations = true;
     }
 
-    /// Whether it has learnt the annotation of a frame already.
-    fn knows(&self, of: &Observation<'_>) -> bool {
-        self.knows_annotations && of.spreads_to_all
+    /// Whether it has learned the annotation of a frame already.
+    fn has_learned(&self, of: &Observation<'_>) -> bool {
+        self.learned_annotations && of.spreads_to_all
     }
 
-    /// Begins in an anchor of an object.
+    /// Begins at an anchor of an object.
     pub(super) fn begin(&mut self, of: &Observation<'_>, object: u8) -> Proposal {
         let features = of.features;
         let is_found = of.found.contains(&object);
@@ -159,9 +161,9 @@ impl Propagator {
         let shown = shown(features, of.seeds, of.found, object);
         let partly = of.seeds.is_none_or(|seeds| seeds.contains(&Seed::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| features.middle());
-        let knows = self.knows(of);
+        let has_learned = self.has_learned(of);
         let appearance = self.appearance.get_or_insert_with(|| AppearanceModel::of(&shown));
-        if !knows {
+        if !has_learned {
             appearance.learn_seeds(features, centre, of.seeds);
         }
         let area = features.area();
@@ -169,44 +171,44 @@ impl Propagator {
             if !is_found {
                 // Most pixels without a seed are ground.
                 let has_seed = |p: usize| of.seeds.is_some_and(|seeds| seeds[p] != Seed::Nothing);
-                let ground = |p: usize| if has_seed(p) { 2 } else { 1 };
+                let ground = |p: usize| (!has_seed(p)).then_some(Side::Ground);
                 appearance.learn(features, centre, Source::Recent, model().unannotated, &ground);
             }
             let remembered = appearance.read(features, &area, centre);
             for ((log_odds, remembered), trust) in log_odds.iter_mut().zip(remembered).zip(appearance.trusts(features))
             {
                 *log_odds =
-                    trust[usize::from(*log_odds < 0.0)] * *log_odds + model().bias + model().memory * logit(remembered);
+                    trust[Side::favoured_by(*log_odds)] * *log_odds + model().bias + model().memory * logit(remembered);
             }
         }
         log_odds.iter_mut().enumerate().for_each(|(p, log_odds)| *log_odds += of.log_odds_seen(p));
         let proposal = Proposal::solved(features, area, log_odds, of.seeds);
         let mask = proposal.plane(features);
         let centre = centre_of(&mask).unwrap_or(centre);
-        let whole = Whole::new(&mask, features, centre, !partly);
+        let occlusion = OcclusionState::new(&mask, features, centre, !partly);
         self.trace = of.is_whole.then(|| Trace::new(&mask, features));
         self.change = Self::changed(of, object, &proposal.inside(features), &Signs::default());
-        self.reach(of, Reached { mask, centre, whole }, [partly, true]);
+        self.reach(of, Reached { mask, centre, occlusion }, [partly, true]);
         proposal
     }
 
-    /// The share of the object that was seen last.
+    /// The visible share of the object in the last frame reached, 0…1.
     pub(super) fn share(&self) -> f32 {
-        self.reached.as_ref().map_or(0.0, |reached| reached.whole.share)
+        self.reached.as_ref().map_or(0.0, |reached| reached.occlusion.visible_share)
     }
 
-    /// Where the object is in the next frame, behind others that have the pixels `covered`.
+    /// Where the object is in the next frame; `covered` marks the pixels of objects in front.
     pub(super) fn place(&self, of: &Observation<'_>, covered: &[bool]) -> Option<Placement> {
         let reached = self.reached.as_ref()?;
         let still = LayeredMotion::still(of.features.size);
         let [_, from] = of.flows.unwrap_or([&still, &still]);
-        reached.whole.place(of.features, from, covered)
+        reached.occlusion.place(of.features, from, covered)
     }
 
-    /// Marks where the object is expected.
+    /// Marks the pixels where the object is expected.
     pub(super) fn cover(&self, placement: &Placement, covered: &mut [bool]) {
         if let Some(reached) = &self.reached {
-            reached.whole.template.cover(placement.shift, covered);
+            reached.occlusion.template.cover(placement.shift, covered);
         }
     }
 
@@ -217,7 +219,7 @@ impl Propagator {
         let still = LayeredMotion::still(features.size);
         let flows @ [to, _] = of.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&reached.mask, model().blur);
-        let all = gaussian(&reached.whole.template.mask, model().blur);
+        let all = gaussian(&reached.occlusion.template.mask, model().blur);
         let along = |of: &Plane, p: usize| {
             let [u, v] = to.at(p % width, p / width);
             let [x, y] = [(p % width) as f32 + u as f32, (p / width) as f32 + v as f32];
@@ -249,9 +251,12 @@ impl Propagator {
         let carried = features.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
         let central =
             features.plane_of(&|p| if carried.values()[p] > model().central { carried.values()[p] } else { 0.0 });
-        let centre =
-            reached.whole.expected_centre(placement.as_ref()).or_else(|| centre_of(&central)).unwrap_or(reached.centre);
-        let learns = of.is_anchor && of.spreads && !self.knows(of);
+        let centre = reached
+            .occlusion
+            .expected_centre(placement.as_ref())
+            .or_else(|| centre_of(&central))
+            .unwrap_or(reached.centre);
+        let learns = of.is_anchor && of.spreads && !self.has_learned(of);
         if let Some(appearance) = self.appearance.as_mut().filter(|_| learns) {
             appearance.learn_seeds(features, centre, of.seeds);
         }
@@ -260,14 +265,15 @@ impl Propagator {
         let log_odds = area.pixels(width).enumerate().map(|(k, p)| {
             let traced = traced.as_ref().map_or(0.0, |of| of[k]);
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
-            let evidence = self.label_evidence.ratio(of.found[p]);
+            let ratio = self.label_ratios.ratio(of.found[p]);
             let z = of.log_odds_seen(p)
                 + model().bias
                 + weight * logit(carried.values()[p])
                 + model().memory * memory
                 + model().trace * traced
-                + evidence;
-            // A pixel that neither was a hidden object's nor looks as it did is not its own, whatever its colours.
+                + ratio;
+            // A pixel that did not belong to the hidden object and does not look like it at that position is not its own, whatever its
+            // colour.
             let most = if hidden.is_some() && carried.values()[p] < model().expected {
                 -model().undecided
             } else {
@@ -287,7 +293,7 @@ impl Propagator {
         Some(Prediction { area, log_odds, signs, centre, placement, awaited })
     }
 
-    /// Cuts the next frame by its prediction and its seeds, and goes on from there.
+    /// Cuts the mask of the next frame from its prediction and its seeds, and continues from there.
     pub(super) fn update(&mut self, of: &Observation<'_>, prediction: Prediction, object: u8) -> Proposal {
         let features = of.features;
         let Prediction { area, log_odds, signs, centre, placement, .. } = prediction;
@@ -296,7 +302,7 @@ impl Propagator {
             let mut pixels = proposal.area.pixels(features.size[0]).zip(&proposal.mask);
             pixels.any(|(p, &inside)| inside > 0 && seeds[p] == Seed::Other)
         };
-        // The proposal of this frame, and the one to go on from if that is another.
+        // The proposal of this frame, and the one to continue from if that is another.
         let (mut proposal, goes_on) = match of.seeds {
             None => (solve(None), None),
             Some(seeds) if of.is_anchor && of.spreads => (solve(Some(seeds)), None),
@@ -324,16 +330,17 @@ impl Propagator {
         self.change = Self::changed(of, object, &now, &signs);
         if let Some(reached) = self.reached.take() {
             let seen = centre_of(&mask).unwrap_or(centre);
-            let whole = reached.whole.gone_on(&mask, features, seen, placement.as_ref());
-            let centre = if whole.now { seen } else { centre };
-            self.reach(of, Reached { mask, centre, whole }, [true, false]);
+            let occlusion = reached.occlusion.advanced(&mask, features, seen, placement.as_ref());
+            let centre = if occlusion.fully_visible { seen } else { centre };
+            self.reach(of, Reached { mask, centre, occlusion }, [true, false]);
         }
         proposal.signs = signs;
         proposal
     }
 
-    /// What annotations have changed of the object, after a frame with the mask `now`. Only what hangs together with its seeds, or with
-    /// what the change has become since an anchor, is part of it.
+    /// Where annotations have changed the object, after a frame with the mask `now`: 0…1. A connected change counts only if it contains
+    /// seeds, or pixels of the change that is propagated from an anchor. `None` without annotations, or if they are about all of the
+    /// object.
     fn changed(of: &Observation<'_>, object: u8, now: &[u8], signs: &Signs) -> Option<Plane> {
         let (features, width) = (of.features, of.features.size[0]);
         let seeds = of.seeds.filter(|_| of.is_anchor && of.spreads);
@@ -368,22 +375,22 @@ impl Propagator {
         Some(features.plane(&|p| is_changed[p]))
     }
 
-    /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
+    /// Continues from a frame. The appearance is learned from its mask if it `knows_little` of it.
     fn reach(&mut self, of: &Observation<'_>, reached: Reached, [knows_little, begins]: [bool; 2]) {
-        // Of an object that is partly hidden it would learn the one in front.
-        if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.whole.now) {
+        // From a partly hidden object it would learn the object in front.
+        if let Some(appearance) = self.appearance.as_mut().filter(|_| reached.occlusion.fully_visible) {
             appearance.fade(model().memory_decay);
             if knows_little {
                 let weight = 1.0 - model().memory_decay;
                 appearance.learn(of.features, reached.centre, Source::Recent, weight, &side(&reached.mask));
             }
         }
-        self.label_evidence.learn(of.found, &reached.mask, begins);
+        self.label_ratios.learn(of.found, &reached.mask, begins);
         self.reached = Some(reached);
     }
 }
 
-/// The object in an anchor: where it was annotated, and elsewhere where it was found.
+/// The object in an anchor: its annotated pixels and, where there is no annotation, those found automatically.
 fn shown(features: &FrameFeatures, seeds: Option<&[Seed]>, found: &[u8], object: u8) -> Plane {
     features.plane(&|p| match seeds.map_or(Seed::Nothing, |seeds| seeds[p]) {
         Seed::Nothing => found[p] == object,
@@ -391,7 +398,7 @@ fn shown(features: &FrameFeatures, seeds: Option<&[Seed]>, found: &[u8], object:
     })
 }
 
-/// 0 for the pixels of a mask, 1 for the others.
-fn side(mask: &Plane) -> impl Fn(usize) -> usize {
-    |p| usize::from(mask.values()[p] < 0.5)
+/// The side of each pixel by a mask.
+fn side(mask: &Plane) -> impl Fn(usize) -> Option<Side> {
+    |p| Some(Side::object_if(mask.values()[p] >= 0.5))
 }

@@ -7,32 +7,33 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::labelling::solver::Solver;
 
-/// Log-odds of a seed, nats: more than all borders of a pixel cost.
+/// Log-odds of a seed, nats: more than all edges of a pixel can outweigh.
 pub(super) const CERTAIN: f32 = 99.0;
 
-/// Where an object may be in a frame, and how likely.
+/// Where an object may be in a frame, with its log-odds and mask.
 #[derive(Clone, Debug)]
 pub(super) struct Proposal {
     pub(super) area: Area,
     /// Log-odds of the object against everything else at the pixels of the area, nats.
     pub(super) log_odds: Vec<f32>,
-    /// 1 for the object.
+    /// For each pixel of the area, 1 inside the object, 0 outside.
     pub(super) mask: Vec<u8>,
-    /// What the pixels of the frame tell of changes of the object.
+    /// Where the mask may be expected to change.
     pub(super) signs: Signs,
 }
 
-/// What the pixels of a frame tell of changes of an object: a value for each of the frame's features, none if nothing is known.
+/// For each pixel of the frame's features, what supports a change of the object's mask; empty if nothing is known.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Signs {
-    /// Log-log-odds of the object by its appearance, and by where the pixels were in a frame whose mask is a person's, nats.
+    /// Log-odds of the object by its appearance, and by the traced mask that a person has given, nats.
     pub(super) looks: Vec<f32>,
-    /// How much of each pixel annotations have changed, as it comes from the frame before, 0…1; none if they are about all of the object.
+    /// Share of each pixel that annotations have changed, propagated from the previous frame, 0…1; `None` if they are about all of the
+    /// object.
     pub(super) change: Option<Vec<f32>>,
 }
 
 impl Proposal {
-    /// The mask of least energy, with the seeds of the frame if it has any.
+    /// The mask of least energy. Seeds are hard constraints.
     pub(super) fn solved(features: &FrameFeatures, area: Area, log_odds: Vec<f32>, seeds: Option<&[Seed]>) -> Proposal {
         let Some(seeds) = seeds else {
             let mask = cut(features, &area, &log_odds);
@@ -54,7 +55,7 @@ impl Proposal {
         Proposal { area, log_odds, mask, signs: Signs::default() }
     }
 
-    /// The log-odds of two proposals, by the weights of each.
+    /// The weighted mean of the log-odds of two proposals, and its mask.
     pub(super) fn joined(features: &FrameFeatures, proposals: [&Proposal; 2], weights: [f32; 2]) -> Proposal {
         let (area, width) = (proposals[0].area.with(&proposals[1].area), features.size[0]);
         let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
@@ -71,14 +72,14 @@ impl Proposal {
         Proposal { area, log_odds, mask, signs }
     }
 
-    /// The mask of the whole frame.
+    /// The mask in the whole frame.
     pub(super) fn inside(&self, features: &FrameFeatures) -> Vec<u8> {
         let mut mask = vec![0; features.pixels()];
         self.area.pixels(features.size[0]).zip(&self.mask).for_each(|(p, &inside)| mask[p] = inside);
         mask
     }
 
-    /// The mask of the whole frame as a plane.
+    /// The mask in the whole frame as a plane.
     pub(super) fn plane(&self, features: &FrameFeatures) -> Plane {
         let mask = self.inside(features);
         features.plane(&|p| mask[p] > 0)
@@ -96,21 +97,21 @@ impl Signs {
     }
 }
 
-/// Log-odds at a pixel that need not be in the area of which they are known.
+/// Log-odds at any pixel, nats; a negative constant outside the area.
 pub(super) fn log_odds_at(area: &Area, log_odds: &[f32], p: usize, width: usize) -> f32 {
     let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
     if inside { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
-/// The mask of least energy.
+/// The mask of least energy: 1 inside.
 pub(super) fn cut(features: &FrameFeatures, area: &Area, log_odds: &[f32]) -> Vec<u8> {
     let (width, height) = (area.width(), area.height());
-    let borders = features.borders.cropped(area, model().smoothness);
+    let edge_weights = features.edge_weights.cropped(area, model().smoothness);
     let object = Plane::from_vec(width, height, log_odds.iter().map(|&z| -z).collect());
-    borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
+    edge_weights.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
 }
 
-/// Centre of the object's pixels, if there are any.
+/// Centre of a mask, weighted by its values: column and row; `None` if it is empty.
 pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     let mut moments = [0.0f64; 3];
     for y in 0..mask.height() {

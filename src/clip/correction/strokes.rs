@@ -1,13 +1,15 @@
-//! Strokes change their frame where they are: one that adds to an object takes nothing away, one that takes away adds nothing, and what
-//! nothing connects with a stroke stays. In other frames, what was found holds unless the pixels tell otherwise. And where an object takes
-//! another's place, nothing is left of that around it.
+//! How strokes change masks.
+//!
+//! In its own frame, a stroke that adds to an object removes nothing, one that removes adds nothing, and changes that are not connected
+//! with a stroke are undone. In other frames, the mask that was found stays unless the pixels support the change. Where an object takes the
+//! place of another, no rim of the other is left.
 
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::Seed;
 use crate::clip::options::model;
 use crate::components::{Connectivity, components};
 
-/// Takes back what no stroke has changed of an object's mask since it was `before`.
+/// Undoes the changes of an object's mask since `before` that are not connected with a stroke.
 #[inline(never)]
 pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize) {
     // 1 is added, 2 is taken away.
@@ -29,8 +31,8 @@ pub(super) fn keep(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize)
     smooth(mask, before, seeds, width);
 }
 
-/// Whether annotations paint over an object as a whole: they leave less than a fifth of it open as it was `found`, and at least a fifth of
-/// what they paint was found. Then what is painted is its mask.
+/// Whether annotations paint over a whole object: they leave less than a fifth of it, as it was `found`, open, and at least a fifth of what
+/// they paint lies on it. The painted pixels are then its mask.
 pub(super) fn paints_over(found: &[u8], object: u8, seeds: &[Seed]) -> bool {
     let (mut painted, mut erased, mut open, mut beside) = (0usize, 0usize, 0usize, 0usize);
     for (found, seed) in found.iter().zip(seeds) {
@@ -45,16 +47,16 @@ pub(super) fn paints_over(found: &[u8], object: u8, seeds: &[Seed]) -> bool {
     painted > 4 * open && 4 * (painted + erased) > beside
 }
 
-/// Says of the pixels of which nothing is said what was found.
+/// Gives pixels without annotation a seed by what was found there.
 pub(super) fn fill(seeds: &mut [Seed], found: &[u8], object: u8) {
     for (seed, found) in seeds.iter_mut().zip(found).filter(|(seed, _)| **seed == Seed::Nothing) {
         *seed = if *found == object { Seed::Object } else { Seed::Other };
     }
 }
 
-/// In a frame of which nothing is said, takes back connected changes of the `known` mask that its pixels do not support: the sum of their
-/// `looks`, log-odds of the object, must be on the side of the change. Where annotations have changed only part of the object, a change
-/// must also hold pixels that they have changed: `change` is the share of these.
+/// In a frame without annotations, undoes connected changes of the `known` mask that its pixels do not support: the sum of their `looks`,
+/// log-odds of the object, must favour the change. Where annotations have changed only part of the object, a change must also contain
+/// pixels that they have changed: `change` is the changed share of a pixel.
 #[inline(never)]
 pub(super) fn settle(
     mask: &mut [u8],
@@ -81,11 +83,11 @@ pub(super) fn settle(
     }
 }
 
-/// Whether an object is one that another one takes from.
+/// Whether the second object may take pixels from the first.
 type Takes<'a> = &'a dyn Fn(u8, u8) -> bool;
 
-/// Of an object that was found and of which another one has most, a rim that is left around that becomes the other's: `layer` are the labels
-/// over those that were found; pixels that are not `open` stay, and `takes` tells from which one of them which other one takes.
+/// Gives the rim that is left of a found object to the object that has most of it. `layer` are the labels over those found; only `open`
+/// pixels change; `takes` decides which object takes from which.
 #[inline(never)]
 pub(super) fn absorb_rims(
     layer: &mut [u8],
@@ -105,7 +107,7 @@ pub(super) fn absorb_rims(
     if left.iter().all(|label| *label == 0) {
         return;
     }
-    // The nearest of the others within reach.
+    // The nearest object within reach that takes from it.
     let mut nearest = layer.to_vec();
     let mut rest: Vec<usize> = (0..layer.len()).filter(|&p| left[p] > 0).collect();
     for _ in 0..reach {
@@ -132,20 +134,20 @@ pub(super) fn absorb_rims(
     }
 }
 
-/// Removes specks and pinholes that the change has left behind.
+/// Removes specks and pinholes that a change has left.
 fn smooth(mask: &mut [u8], before: &[u8], seeds: &[Seed], width: usize) {
     let parts = components(mask, width, Connectivity::Four);
     let mut is_new = vec![false; parts.list.len()];
-    let mut is_said = vec![false; parts.list.len()];
+    let mut is_annotated = vec![false; parts.list.len()];
     for p in 0..mask.len() {
         let part = parts.of[p] as usize;
         let around = [p, p.wrapping_sub(1), p + 1, p.wrapping_sub(width), p + width];
         is_new[part] |= around.into_iter().any(|q| q < mask.len() && mask[q] != before[q]);
-        is_said[part] |= seeds[p] != Seed::Nothing && (seeds[p] == Seed::Object) == (mask[p] > 0);
+        is_annotated[part] |= seeds[p] != Seed::Nothing && (seeds[p] == Seed::Object) == (mask[p] > 0);
     }
     for (p, inside) in mask.iter_mut().enumerate() {
         let part = parts.of[p] as usize;
-        if parts.list[part].size < model().speck && is_new[part] && !is_said[part] {
+        if parts.list[part].size < model().speck && is_new[part] && !is_annotated[part] {
             *inside = 1 - *inside;
         }
     }

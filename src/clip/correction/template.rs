@@ -1,4 +1,4 @@
-//! A template of an object, as it was once seen, and where it is seen again.
+//! A template of an object: its pixels in one frame, and the search for them in other frames.
 
 use super::features::FrameFeatures;
 use crate::clip::options::model;
@@ -15,13 +15,13 @@ pub(super) type Shift = [f32; 2];
 pub(super) struct Template {
     /// 1 at the object's pixels.
     pub(super) mask: Plane,
-    /// Where these are, and all colours there.
+    /// The area of these pixels, and all colours in it.
     area: Area,
     colours: Vec<[f32; 3]>,
     samples: Vec<Sample>,
 }
 
-/// A pixel of the object, its colours, and those at a quarter of the size.
+/// A pixel of the object with its colours at full size and at a quarter of it.
 #[derive(Clone, Debug)]
 struct Sample {
     at: [usize; 2],
@@ -34,13 +34,13 @@ pub(super) fn at(planes: &[Plane; 3], p: usize) -> [f32; 3] {
     planes.each_ref().map(|plane| plane.values()[p])
 }
 
-/// Squared difference of colours, as a share of the truncation.
+/// Squared difference of colours relative to the truncation, at most 1.
 pub(super) fn difference(one: [f32; 3], other: [f32; 3]) -> f32 {
     let steps: [f32; 3] = std::array::from_fn(|k| one[k] - other[k]);
     (steps.map(|step| step * step).iter().sum::<f32>() / model().truncation).min(1.0)
 }
 
-/// The pixel that (x, y) is shifted to, if it is inside.
+/// Index of the pixel to which (x, y) is shifted, if it is inside.
 fn shifted([x, y]: [usize; 2], [dx, dy]: Shift, [width, height]: [usize; 2]) -> Option<usize> {
     let (x, y) = (libm::roundf(x as f32 + dx), libm::roundf(y as f32 + dy));
     let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
@@ -66,7 +66,7 @@ impl Template {
         Template { mask: mask.clone(), area, colours, samples }
     }
 
-    /// The best shift near the one expected.
+    /// The shift of least cost in a wide search around the expected one.
     pub(super) fn nearest(&self, features: &FrameFeatures, expected: Shift) -> Shift {
         let middle = expected.map(|shift| libm::roundf(shift / model().coarse as f32) * model().coarse as f32);
         let size = [features.coarse[0].width(), features.coarse[0].height()];
@@ -86,13 +86,13 @@ impl Template {
         best_of(model().fine as isize, 1.0, coarse, expected, &mut |shift| self.cost(features, shift, &[])).0
     }
 
-    /// The best shift close to the one expected, and what it costs.
+    /// The shift of least cost close to the expected one, and its cost.
     pub(super) fn close(&self, features: &FrameFeatures, expected: Shift) -> (Shift, f32) {
         best_of(model().fine as isize, 1.0, expected, expected, &mut |shift| self.cost(features, shift, &[]))
     }
 
-    /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
-    /// are `covered`.
+    /// The shift at which part of the object is seen again near the expected one, `frames` after it was fully visible; `None` if no shift
+    /// stands out. `covered` marks the pixels of objects in front.
     pub(super) fn seen_again(
         &self,
         features: &FrameFeatures,
@@ -122,14 +122,14 @@ impl Template {
         self.samples.iter().map(of_sample).sum::<f32>() / self.samples.len().max(1) as f32
     }
 
-    /// Pixels of a frame that look as the object does there, 0…1, unless they are covered.
+    /// How much each pixel of a frame looks like the object at this shift, 0…1; 0 where it is covered.
     pub(super) fn alike(&self, features: &FrameFeatures, shift: Shift, covered: &[bool]) -> Plane {
         let mut alike = Plane::filled(features.size[0], features.size[1], 0.0);
         for (at_pixel, q) in self.pixels(shift) {
             if covered.get(q) == Some(&true) {
                 continue;
             }
-            // Its place is known to a pixel.
+            // The position is known to within a pixel.
             let near = |at: usize, range: &std::ops::Range<usize>| at.max(range.start + 1) - 1..(at + 2).min(range.end);
             let mut least = 1.0f32;
             for y in near(at_pixel[1], &self.area.rows) {
@@ -143,7 +143,7 @@ impl Template {
         alike
     }
 
-    /// Where the object may be so many frames after it was seen whole, 0…1, unless that is covered.
+    /// Where the object may be `frames` after it was fully visible, 0…1; 0 where it is covered.
     pub(super) fn around(&self, features: &FrameFeatures, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
         let mut there = vec![false; features.pixels()];
         self.cover(shift, &mut there);
@@ -151,12 +151,12 @@ impl Template {
         features.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
     }
 
-    /// Marks the pixels that the object is at.
+    /// Marks the pixels of the object at this shift.
     pub(super) fn cover(&self, shift: Shift, covered: &mut [bool]) {
         self.pixels(shift).for_each(|(_, q)| covered[q] = true);
     }
 
-    /// The object's pixels, and which ones of a frame they are.
+    /// Positions of the object's pixels, each with the index of the pixel to which it is shifted.
     fn pixels(&self, shift: Shift) -> impl Iterator<Item = ([usize; 2], usize)> {
         let size @ [width, _] = [self.mask.width(), self.mask.height()];
         let inside = self.area.pixels(width).filter(|&p| self.mask.values()[p] > 0.5);
@@ -167,7 +167,7 @@ impl Template {
     }
 }
 
-/// The shift of least cost in steps around a middle, and its cost; to be away from the one expected has a penalty.
+/// The shift of least cost on a grid around `middle`, and its cost. Distance from the expected shift is penalised.
 fn best_of(
     reach: isize,
     step: f32,
@@ -197,7 +197,7 @@ mod tests {
 
     const SIZE: [usize; 2] = [128, 96];
 
-    /// Patches of one coarse texture at places, the last ones in front, over grey ground.
+    /// Patches of one coarse texture at the given corners, later ones in front, over grey ground.
     fn features(corners: &[[usize; 2]]) -> FrameFeatures {
         let mut random = Random::from_seed(5);
         let texture: Vec<[u8; 3]> =
@@ -221,8 +221,8 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_out_behind_its_like_is_found() {
-        // The one in front is 10 columns to the left: so many are seen.
+    fn a_patch_that_reappears_from_behind_a_like_one_is_found() {
+        // The patch in front is 10 columns to the left, so 10 columns of the other are visible.
         let here = features(&[[60, 40], [50, 40]]);
         let mut covered = vec![false; here.pixels()];
         template().cover([34.0, 20.0], &mut covered);
@@ -238,7 +238,7 @@ mod tests {
             *(if is_out { &mut out } else { &mut elsewhere }) += 1;
         }
         assert!(out > 200 && elsewhere == 0, "{out} of 240, {elsewhere}");
-        // Nothing of it is seen.
+        // Nothing of it is visible.
         assert_eq!(template().seen_again(&features(&[]), expected, 8, &covered), None);
     }
 

@@ -1,14 +1,14 @@
-//! Where each pixel was in the frame in which a person annotated an object, and what the object's mask says there.
+//! Traces each pixel back to the frame in which a person annotated an object, and reads the object's mask there.
 //!
-//! Flows from frame to frame add up to a place in the annotated frame. At each step it is moved to where the colours around agree best, so
-//! that errors do not add up as well. The better they agree, the more it counts. Masks of the frames between have no part in it: mistakes
-//! there are not carried on.
+//! The motions from frame to frame add up to a position in the annotated frame. Each step moves it to where the surrounding colours agree
+//! best, so that errors do not add up. The better they agree, the more the mask counts. Masks of the frames in between are not used, so
+//! their mistakes are not carried on.
 
 use super::features::FrameFeatures;
 use super::proposal::logit;
 use super::template::{at, difference};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
@@ -16,12 +16,12 @@ use crate::frame::warp::Footprint;
 
 #[derive(Clone, Debug)]
 pub(super) struct Trace {
-    /// The object's share of the pixels of the annotated frame, and the colours there.
+    /// Share of the object at each pixel of the annotated frame, 0…1, and the colours there.
     mask: Plane,
     colours: [Plane; 3],
-    /// Column and row in the annotated frame of each pixel of the frame reached.
+    /// Column and row in the annotated frame for each pixel of the current frame.
     places: [Plane; 2],
-    /// Whether each pixel was in sight ever since.
+    /// Whether each pixel has been visible ever since.
     was_seen: Vec<bool>,
 }
 
@@ -34,7 +34,8 @@ impl Trace {
         Trace { mask: gaussian(mask, model().blur), colours: features.fine.clone(), places, was_seen }
     }
 
-    /// Goes on to a frame by the flows to the one before and from there. Returns the log-odds of the object at the pixels of an area, nats.
+    /// Advances to the next frame, given its motion to the previous frame and the motion from there. Returns the log-odds of the object at
+    /// the pixels of an area, nats.
     pub(super) fn follow(
         &mut self,
         features: &FrameFeatures,
@@ -65,7 +66,7 @@ impl Trace {
         area.pixels(width).zip(disagreement.values()).map(|(p, &d)| self.log_odds(p, d, size)).collect()
     }
 
-    /// Where a pixel of the next frame was. Beyond the border it goes on as there.
+    /// The position of a pixel of the next frame in the annotated frame, extrapolated beyond the border.
     fn place_before(&self, to: &LayeredMotion, [x, y]: [usize; 2], size: [usize; 2]) -> [f32; 2] {
         let [u, v] = to.at(x, y);
         let before = [x as f32 + u as f32, y as f32 + v as f32];
@@ -76,7 +77,7 @@ impl Trace {
         })
     }
 
-    /// How much the colours of the pixels of an area differ from those a step from their places, 0…1.
+    /// Mean colour difference around each pixel of an area at its position plus a step, 0…1.
     fn disagreement(&self, features: &FrameFeatures, area: &Area, step: [isize; 2]) -> Plane {
         let [width, height] = features.size.map(|side| side as isize);
         let of = |p: usize| {
@@ -92,12 +93,12 @@ impl Trace {
         let place = self.places.each_ref().map(|places| places.values()[p]);
         let log_odds = logit(Footprint::new(place[0], place[1], width, height).sample(self.mask.values()));
         let weight = (1.0 - 2.0 * disagreement).max(0.0);
-        // What came into sight was behind the object, if it seems to have been there.
+        // A pixel that came into sight was behind the object if its position is inside the mask.
         weight * if self.was_seen[p] { log_odds } else { log_odds.min(0.0) }
     }
 }
 
-/// The pixel of the frame before that a pixel was, if that one comes here.
+/// Index of the pixel of the previous frame from which a pixel came, if the motion from there leads back.
 fn source(to: &LayeredMotion, from: &LayeredMotion, [x, y]: [usize; 2]) -> Option<usize> {
     let (step, [px, py]) = (to.at(x, y), to.destination(x, y)?);
     let back = from.at(px, py);
@@ -117,7 +118,7 @@ mod tests {
     use crate::motion::AffineMotion;
 
     const SIZE: [usize; 2] = [128, 72];
-    /// Columns and rows of a car and of its shadow, of one colour, at first; they go right by two pixels a frame.
+    /// Columns and rows of a car and of its shadow in the first frame. Both have one colour and move right by two pixels per frame.
     const CAR: [std::ops::Range<usize>; 2] = [20..44, 20..36];
     const SHADOW: [std::ops::Range<usize>; 2] = [20..44, 36..48];
 
@@ -125,7 +126,7 @@ mod tests {
         x.checked_sub(2 * t).is_some_and(|x| columns.contains(&x)) && rows.contains(&y)
     }
 
-    /// Spots that go with the pixels, dark ones on both and bright ones on the ground.
+    /// Spots move with the pixels, dark ones on the car and the shadow, bright ones on the ground.
     fn features(t: usize) -> FrameFeatures {
         let mut random = Random::from_seed(3);
         let spots: Vec<u8> = (0..SIZE[0] * SIZE[1]).map(|_| random.uniform(0.0, 60.0) as u8).collect();
@@ -135,7 +136,7 @@ mod tests {
         })
     }
 
-    /// As a pair of frames measures it.
+    /// The motion as a pair of frames measures it.
     fn flow(t: usize, step: f64) -> LayeredMotion {
         let is_moving = |p: usize| [&CAR, &SHADOW].iter().any(|of| is_at(of, t, p % SIZE[0], p / SIZE[0]));
         LayeredMotion {
@@ -159,7 +160,7 @@ mod tests {
         assert!(at(40 + 32, 28) > 3.0, "the car, {}", at(72, 28));
         assert!(at(40 + 32, 43) < -3.0, "its shadow, {}", at(72, 43));
         assert!(at(110, 28) < -3.0, "ground, {}", at(110, 28));
-        // It was hidden by the car at first.
+        // The car hid it at first.
         assert!(at(30, 28) <= 0.0, "what came into sight, {}", at(30, 28));
     }
 
@@ -171,10 +172,10 @@ mod tests {
             let mut in_shadow = 0;
             for t in 0..=20 {
                 let (here, to, from) = (features(t), flow(t, -2.0), flow(t.saturating_sub(1), 2.0));
-                let said = |p: usize| if is_at(&CAR, 0, p % SIZE[0], p / SIZE[0]) { Seed::Object } else { Seed::Other };
-                let seeds = |_: u8| (t == 0).then(|| ((0..here.pixels()).map(said).collect(), Spread::Both));
+                let seed = |p: usize| if is_at(&CAR, 0, p % SIZE[0], p / SIZE[0]) { Seed::Object } else { Seed::Other };
+                let seeds = |_: u8| (t == 0).then(|| ((0..here.pixels()).map(seed).collect(), Spread::Both));
                 let flows = (t > 0).then_some([&to, &from]);
-                // Found as one with its shadow.
+                // The car and its shadow were found as one object.
                 let scene = Scene { features: &here, seeds: &seeds, seen: &|_| None, found: &to.labels, flows };
                 let proposals = group.visit(t, Direction::Forward, false, &scene);
                 let proposal = proposals[0].1.as_ref().unwrap();

@@ -1,4 +1,4 @@
-//! An object in both directions: forward from its first anchor, backward from its last, and between them both, by nearness.
+//! An object in both directions: forward from its first anchor and backward from its last; between them, the mean weighted by distance.
 
 use super::appearance::Source;
 use super::features::FrameFeatures;
@@ -11,16 +11,16 @@ use crate::clip::options::model;
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     pub(super) object: u8,
-    /// In ascending order.
+    /// In ascending order of frames.
     anchors: Vec<Anchor>,
     forward: Propagator,
     backward: Propagator,
-    /// Proposals forward that the way back joins, by frame.
+    /// By frame: forward proposals that are kept for the backward pass.
     kept: Vec<Option<Proposal>>,
 }
 
 impl Track {
-    /// Of an object whose anchors are among so many frames.
+    /// A track of an object in a clip of so many frames.
     pub(super) fn new(object: u8, anchors: Vec<Anchor>, frames: usize) -> Track {
         let [forward, backward] = [(); 2].map(|()| Propagator::default());
         Track { object, anchors, forward, backward, kept: vec![None; frames] }
@@ -49,7 +49,8 @@ impl Track {
         }
     }
 
-    /// The propagator that comes to a frame. Backward there is none before the object's last anchor, though others may have later ones.
+    /// The propagator that reaches a frame. Backward there is none from the object's last anchor on, even if other objects have later
+    /// anchors.
     pub(super) fn coming(&mut self, frame: usize, direction: Direction) -> Option<&mut Propagator> {
         match direction {
             Direction::Forward => Some(&mut self.forward),
@@ -85,19 +86,19 @@ impl Track {
         let forward = if direction == Direction::Backward { self.kept[frame].take() } else { None };
         match (forward, own) {
             (Some(forward), Some(backward)) => Some(self.joined(frame, of.features, &forward, &backward)),
-            // An annotation that does not spread holds in its frame.
+            // An annotation that does not spread holds in its own frame.
             (forward, own) => own
                 .or(forward)
                 .or_else(|| self.anchor(frame).is_some().then(|| Propagator::default().begin(of, self.object))),
         }
     }
 
-    /// Keeps a proposal until the way back.
+    /// Keeps a proposal for the backward pass.
     pub(super) fn keep(&mut self, frame: usize, proposal: Option<Proposal>) {
         self.kept[frame] = proposal;
     }
 
-    /// Both directions, by nearness of their anchors.
+    /// Both directions, weighted by the nearness of their anchors.
     fn joined(&self, frame: usize, features: &FrameFeatures, forward: &Proposal, backward: &Proposal) -> Proposal {
         let distance = |anchor: Option<&Anchor>| anchor.map_or(0.0, |anchor| anchor.frame.abs_diff(frame) as f32);
         let spreads = |anchor: &Anchor, direction| anchor.spread.goes(direction);

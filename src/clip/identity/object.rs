@@ -1,8 +1,8 @@
-//! An object as last seen, and where it is expected.
+//! An object as it was last seen, and where it is expected.
 
 use super::sight::{Sight, mean_motion, moves};
-use crate::clip::evidence::LayeredMotion;
 use crate::clip::options::model;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::record::Record;
 use crate::labelling::BACKGROUND;
 
@@ -13,11 +13,11 @@ const REMEMBERED: usize = 16;
 #[derive(Clone, Debug)]
 pub(crate) struct Object {
     pub(crate) number: u8,
-    /// Where it was last seen whole, moved on with it since.
+    /// As it was last completely visible, moved on since then.
     pub(crate) whole: Sight,
-    /// Pixels in sight in the last frame.
+    /// Number of visible pixels in the last frame.
     in_sight: f64,
-    /// Frames since it was seen.
+    /// Number of frames since it was last seen.
     pub(crate) hidden: usize,
     /// How its two largest pieces have moved since they came apart.
     pub(crate) apart: Apart,
@@ -33,12 +33,12 @@ pub(crate) struct Apart {
 }
 
 impl Apart {
-    /// One frame more.
+    /// Adds a frame.
     pub(crate) fn add(&mut self, along: &LayeredMotion, one: &[usize], other: &[usize]) {
         let [u, v] = mean_motion(along, one);
         let [r, s] = mean_motion(along, other);
         self.moved = [self.moved[0] + r - u, self.moved[1] + s - v];
-        // Pieces of a body that turns have different displacements, but one motion.
+        // Pieces of a rotating body have different displacements, but one motion.
         let differs = |(one, other): (&[usize], &[usize])| {
             let motion = along.motions[along.most_frequent(one.iter().copied()).unwrap_or(BACKGROUND)];
             let n = other.len() as f64;
@@ -63,13 +63,13 @@ impl Object {
         Object { number, in_sight: whole.size, whole, hidden: 0, apart: Apart::default() }
     }
 
-    /// One frame further.
+    /// Moves the expected position on by one frame.
     pub(crate) fn move_on(&mut self) {
         let Sight { centre, velocity, .. } = &mut self.whole;
         *centre = [centre[0] + velocity[0], centre[1] + velocity[1]];
     }
 
-    /// Takes its pixels in the next frame.
+    /// Updates the object by its pixels in the next frame.
     pub(crate) fn see(&mut self, record: &Record, pixels: &[usize]) {
         self.in_sight = pixels.len() as f64;
         self.hidden = if pixels.is_empty() { self.hidden + 1 } else { 0 };
@@ -78,7 +78,7 @@ impl Object {
         }
         let sight = Sight::of(record, pixels);
         let whole = !self.is_covered();
-        // The less is in sight, the more of it passes for background, or for what covers it, in its pairs.
+        // The smaller the visible part, the more of it passes for background, or for the object in front.
         let shown = whole || (2.0 * self.in_sight > self.whole.size && moves(record, pixels));
         let velocity = steady(record, pixels).filter(|_| shown).unwrap_or(self.whole.velocity);
         if whole {
@@ -89,12 +89,12 @@ impl Object {
         }
     }
 
-    /// Whether less of it was in sight than there is.
+    /// Whether clearly less of it is visible than it has.
     pub(crate) fn is_covered(&self) -> bool {
         self.in_sight < (1.0 - f64::from(model().hidden)) * self.whole.size
     }
 
-    /// Whether it may come back.
+    /// Whether it was seen recently enough to come back.
     pub(crate) fn is_remembered(&self) -> bool {
         self.hidden <= REMEMBERED
     }
@@ -103,7 +103,7 @@ impl Object {
         same(sight.velocity, self.whole.velocity)
     }
 
-    /// Whether a place is near where it is expected.
+    /// Whether a position is near the expected one.
     pub(crate) fn is_near(&self, [x, y]: [f64; 2]) -> bool {
         let [a, b] = self.whole.centre;
         let reach =
@@ -112,15 +112,16 @@ impl Object {
     }
 }
 
-/// The velocity of some pixels if both pairs of the frame agree on it. What is being covered has no counterpart in the next frame, what
-/// comes out has none in the frame before, and a repeated frame shows no motion.
+/// The velocity of some pixels if both pairs of the frame agree on it. They do not where pixels are being covered, and so have no
+/// counterpart in the next frame, where pixels come out, and so have none in the previous one, and in repeated frames, which show no
+/// motion.
 fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
     let (onward, back) = (record.onward.as_ref()?, record.back.as_ref()?);
     let (to, from) = (mean_motion(onward, pixels), mean_motion(back, pixels).map(|v| -v));
     (!onward.is_still() && !back.is_still() && same(to, from)).then_some(from)
 }
 
-/// Whether one displacement is like another.
+/// Whether the first displacement is like the second.
 fn same([u, v]: [f64; 2], [r, s]: [f64; 2]) -> bool {
     ((u - r) * (u - r) + (v - s) * (v - s)).sqrt()
         < f64::from(model().same_motion) + f64::from(model().same_relative_motion) * (r * r + s * s).sqrt()

@@ -1,16 +1,17 @@
-//! A region of the foreground shared among the objects that lead to it.
+//! A region of the foreground, shared among several objects.
 
-use super::sight::telling;
+use super::sight::shown_motion;
 use crate::clip::options::model;
 use crate::clip::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
 
-/// Shares a region among `numbers`: each pixel stays with its own, and pixels of one motion stay together. What comes into sight from
-/// behind an object is often carried from that object; a pixel that moves as most of another one does is not held to its own.
+/// Shares a region among `numbers`. Pixels stay with the object from which they are carried, and pixels of one motion stay together. Pixels
+/// that come into sight from behind an object are often carried from that object; those with the main motion of another object are
+/// therefore free to change.
 pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: &[u8], labels: &mut [u8]) {
     let [width, height] = record.size();
-    let motions = telling(record).map(|flow| &flow.labels);
+    let motions = shown_motion(record).map(|flow| &flow.labels);
     let motion = |p: usize| motions.map_or(0, |labels| usize::from(labels[p]));
     let own = |p: usize| numbers.iter().position(|&number| number == carried[p]);
     let mut votes = vec![vec![0usize; numbers.len()]; 256];
@@ -31,6 +32,6 @@ pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: 
             cost.values_mut()[p] = other + model().leaves_motion * (1.0 - votes[k] as f32 / all);
         }
     }
-    let solved = record.borders(model().smoothness).solve(&costs, Solver::FAST);
+    let solved = record.edge_weights(model().smoothness).solve(&costs, Solver::FAST);
     pixels.iter().for_each(|&p| labels[p] = numbers[usize::from(solved[p])]);
 }

@@ -1,20 +1,20 @@
-//! A set of pixels of one frame, in figures.
+//! Size, position, motion and colours of a set of pixels.
 
-use crate::clip::evidence::LayeredMotion;
+use crate::clip::pairs::LayeredMotion;
 use crate::clip::record::Record;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
 
-/// Some pixels of a frame in figures.
+/// A set of pixels of one frame, summarised.
 #[derive(Clone, Debug)]
 pub(crate) struct Sight {
     /// Number of working pixels.
     pub(crate) size: f64,
-    /// Their centre.
+    /// Their centre, working pixels.
     pub(crate) centre: [f64; 2],
-    /// Their mean displacement in a frame, working pixels.
+    /// Their mean displacement to the next frame, working pixels.
     pub(crate) velocity: [f64; 2],
-    /// Share of each colour.
+    /// Share of each colour among them; the sum is 1.
     pub(crate) colours: Vec<f32>,
 }
 
@@ -30,15 +30,15 @@ impl Sight {
         Sight { size, centre, velocity: velocity(record, pixels), colours }
     }
 
-    /// Overlap of the colours of both, 0…1.
+    /// Overlap of the two colour histograms, 0…1.
     pub(crate) fn alike(&self, other: &Sight) -> f64 {
         self.colours.iter().zip(&other.colours).map(|(a, b)| f64::from(a.min(*b))).sum()
     }
 }
 
-/// The pair that tells how the pixels of a frame move: that with the next frame or, at the end of a scene or where the next frame repeats
-/// this one, that with the frame before.
-pub(crate) fn telling(record: &Record) -> Option<&LayeredMotion> {
+/// The motion that shows how the pixels of a frame move: that to the next frame or, at the end of a scene or if the next frame repeats this
+/// one, that to the previous frame.
+pub(crate) fn shown_motion(record: &Record) -> Option<&LayeredMotion> {
     record.onward.as_ref().filter(|onward| !onward.is_still()).or(record.back.as_ref()).or(record.onward.as_ref())
 }
 
@@ -54,15 +54,15 @@ pub(crate) fn mean_motion(along: &LayeredMotion, pixels: &[usize]) -> [f64; 2] {
 
 /// Mean displacement of some pixels from this frame to the next one, as far as it is known.
 fn velocity(record: &Record, pixels: &[usize]) -> [f64; 2] {
-    match (telling(record), &record.onward) {
+    match (shown_motion(record), &record.onward) {
         (Some(along), Some(onward)) if std::ptr::eq(along, onward) => mean_motion(along, pixels),
         (Some(back), _) => mean_motion(back, pixels).map(|v| -v),
         (None, _) => [0.0; 2],
     }
 }
 
-/// Whether most of some pixels have another motion than the background.
+/// Whether most of some pixels move differently from the background.
 pub(crate) fn moves(record: &Record, pixels: &[usize]) -> bool {
-    telling(record)
+    shown_motion(record)
         .is_some_and(|flow| 2 * pixels.iter().filter(|&&p| !is_background(flow.labels[p])).count() > pixels.len())
 }

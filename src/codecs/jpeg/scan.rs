@@ -1,10 +1,10 @@
-//! Whether the scans of a JPEG file have all blocks of the image: their codes are read and thrown away (ITU-T T.81, F.2.2 and G.2). Decoders
-//! say nothing of a scan that breaks off.
+//! Whether the scans of a JPEG file contain all blocks of the image: their codes are read and discarded (ITU-T T.81, F.2.2 and G.2).
+//! Decoders do not report a scan that is truncated.
 
 /// Bytes that may lie between the last code of a scan and the next marker.
 const SPARE: usize = 8;
 
-/// Whether all scans are whole. True of what is not coded by Huffman's method, which the decoder refuses.
+/// Whether all scans are complete. True for files that are not Huffman-coded, which the decoder rejects.
 pub(super) fn are_whole(file: &[u8]) -> bool {
     let mut image = Image::default();
     let mut at = 2;
@@ -32,7 +32,7 @@ pub(super) fn are_whole(file: &[u8]) -> bool {
                 let mut bits = Bits { bytes: file, at, held: 0, count: 0 };
                 let whole = image.scan(segment, &mut bits);
                 at = bits.marker();
-                // Two scans of which one has lost its end and the other its beginning may pass for one. Others have nothing to spare.
+                // Two scans, one without its end and the other without its beginning, may look like one. Other files have nothing to spare.
                 whole.filter(|()| !image.progressive || at - bits.at <= SPARE)
             }
             _ => Some(()),
@@ -40,7 +40,7 @@ pub(super) fn are_whole(file: &[u8]) -> bool {
         if known.is_none() {
             return false;
         }
-        // A few bytes between segments are passed over, as decoders do.
+        // A few bytes between segments are skipped, as by decoders.
         while file.get(at).is_some_and(|&byte| byte != 0xff) {
             at += 1;
         }
@@ -48,7 +48,7 @@ pub(super) fn are_whole(file: &[u8]) -> bool {
     false
 }
 
-/// The bits of a scan. There are none behind its next marker.
+/// The bits of a scan, up to its next marker.
 struct Bits<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -74,7 +74,7 @@ impl Bits<'_> {
         (0..count).try_fold(0, |value, _| Some(value << 1 | self.bit()?))
     }
 
-    /// Passes over the marker of a restart, which must be of this number.
+    /// Skips the marker of a restart, which must have this number.
     fn restart(&mut self, number: usize) -> Option<()> {
         self.count = 0;
         self.at = self.marker();
@@ -89,7 +89,7 @@ impl Bits<'_> {
     }
 }
 
-/// A code by the length of its words: the first word, how many there are, and where their values begin.
+/// A code, by the length of its words: the first word, the number of words, and the index of their first value.
 #[derive(Clone, Default)]
 struct Table {
     lengths: [(u32, u32, usize); 16],
@@ -114,10 +114,10 @@ struct Component {
     id: u8,
     /// Blocks of a unit of a scan of all components, across and down.
     unit: (usize, usize),
-    /// Blocks of the component alone, and of all its units.
+    /// Number of blocks of the component alone, and of all its units.
     blocks: (usize, usize),
     stride: usize,
-    /// By block, a bit for each coefficient that is not 0: where a scan refines it, it has a bit of its own.
+    /// For each block, one bit per coefficient that is not 0; a scan that refines it has one bit for each of these.
     filled: Vec<u64>,
 }
 
@@ -225,12 +225,12 @@ struct Coder {
     progressive: bool,
     first: u32,
     last: u32,
-    /// Whether it has one more bit of coefficients that are known already.
+    /// Whether it refines known coefficients by one bit.
     refines: bool,
 }
 
 impl Coder {
-    /// `run`: blocks to come that have nothing more.
+    /// `run` is the number of following blocks without further coefficients.
     fn block(
         &self,
         bits: &mut Bits<'_>,

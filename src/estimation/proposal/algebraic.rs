@@ -77,8 +77,8 @@ pub(crate) fn unexplained(
                 }
                 let r = seen - level.first.at(x, y);
                 let e = r * r / (level.noise * level.noise + position_variance * level.energy.at(x, y));
-                if e > model.robustness {
-                    let weight = e / (e + model.robustness);
+                if e > model.truncation {
+                    let weight = e / (e + model.truncation);
                     places.push(y * width + x);
                     weights.push(weight);
                 }
@@ -136,10 +136,10 @@ fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64
     group(&readings, data.measurements.positions(), close, 2 * degree + 1, model)
 }
 
-/// LayeredMotion of a measurement, read off the polynomial by differentiation.
+/// The flow at a measurement, read off the polynomial by differentiation.
 #[derive(Clone, Copy, Default)]
 struct Reading {
-    /// LayeredMotion of the factor that vanishes there, in units of `algebra_unit` pixels.
+    /// The flow of the factor that vanishes there, in units of `algebra_unit` pixels.
     flow: [f64; 2],
     /// |∂p/∂y|.
     slope: f64,

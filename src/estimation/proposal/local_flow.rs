@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
-/// LayeredMotion relative to the dominant motion, pixels of the base level, with its certainty.
+/// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
     pub(crate) u: Plane,
     pub(crate) v: Plane,
@@ -77,10 +77,10 @@ struct Windows {
 
 fn windows(level: &PairLevel, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
-    let (robustness, position) = (1.0 / level.model.robustness_loose, level.model.position_variance());
+    let (per_truncation, position) = (1.0 / level.model.truncation_loose, level.model.position_variance());
     let mut weight = s.residual.clone();
     each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
-        1.0 / (noise + r * r * robustness + position * energy)
+        1.0 / (noise + r * r * per_truncation + position * energy)
     });
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();

@@ -1,5 +1,5 @@
-//! Candidate motions. Pixels that the dominant motion cannot explain yield them by the multibody affine constraint, single windows
-//! by their local flow.
+//! Candidate motions: from the multibody affine constraint on pixels that the dominant motion does not explain, and from the local flow of
+//! single windows.
 
 pub(crate) mod algebraic;
 mod clustering;
@@ -24,7 +24,7 @@ pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion 
     AffineMotion::new(a)
 }
 
-/// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its place; keeps at most `most`.
+/// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its position; keeps at most `most`.
 pub(crate) fn distinct(
     proposals: impl Iterator<Item = Proposal>,
     tolerance: f64,

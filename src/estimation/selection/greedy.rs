@@ -1,5 +1,5 @@
-//! Greedy deflation: the motion that explains most of what is still unexplained is refined on its own region and added, until no
-//! further motion would pay for itself.
+//! Greedy selection: the motion that explains most of what is still unexplained is refined on its own region and added, until no further
+//! motion gains more than its penalty.
 
 use super::{ScoredMotion, smallest_cost};
 use crate::components::{Connectivity, components};
@@ -13,18 +13,18 @@ use crate::order::descending;
 use crate::view::brightness::GainBias;
 use crate::view::level::PairLevel;
 
-/// When to add a motion, and how many proposals to try.
+/// When a motion is added, and how many proposals are tried.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GreedySelection {
-    /// Gain (cost summed over pixels) that pays for a motion.
-    pub(crate) price: f64,
+    /// Gain that a motion must exceed, cost summed over pixels.
+    pub(crate) penalty: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
     /// Proposals refined per round.
     pub(crate) tries: usize,
     /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
-    /// The entries that have to converge when a proposal is refined.
+    /// The entries that must converge when a proposal is refined.
     pub(crate) convergence: Convergence,
 }
 
@@ -93,8 +93,8 @@ impl RoughCosts {
     }
 }
 
-/// Adds proposed motions to `selected` as long as each gains more than its penalty. Returns the best motion that was rejected; there is
-/// none if nothing was proposed.
+/// Adds proposed motions to `selected` as long as each gains more than its penalty. Returns the best motion that was rejected;
+/// `None` if nothing was proposed.
 ///
 /// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
 /// all pixels.
@@ -108,7 +108,7 @@ pub(crate) fn add_motions(
     let thinning = level.thinning();
     let thinned = level.thinned();
     let rough = RoughCosts::new(&thinned, thinning, proposals);
-    // Of those tried before: beside more motions, a proposal gains no more.
+    // The gains of proposals tried before: in addition to more motions, a proposal gains no more.
     let mut most = vec![f64::INFINITY; proposals.len()];
     loop {
         let current = smallest_cost(selected);
@@ -121,7 +121,7 @@ pub(crate) fn add_motions(
             return next;
         }
         for &k in order.iter().take(how.tries) {
-            if gains[k] < model.smallest_tried_gain * how.price {
+            if gains[k] < model.smallest_tried_gain * how.penalty {
                 break;
             }
             if best.as_ref().is_some_and(|(gain, _)| most[k] <= *gain) {
@@ -139,7 +139,7 @@ pub(crate) fn add_motions(
             }
         }
         match best.map(|(_, scored)| refined(level, &current, scored.motion, how)) {
-            Some((gain, scored)) if gain >= how.price => selected.push(scored),
+            Some((gain, scored)) if gain >= how.penalty => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
     }
@@ -193,7 +193,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32)
 }
 
 /// Removes motions whose absence costs less than their penalty, the cheapest first. The first motion always stays.
-pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
+pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, penalty: f64) {
     while selected.len() > 1 {
         let with_all = smallest_cost(selected).total();
         let mut cheapest = (f64::INFINITY, 0);
@@ -205,7 +205,7 @@ pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
                 cheapest = (absence, k);
             }
         }
-        if cheapest.0 >= price {
+        if cheapest.0 >= penalty {
             break;
         }
         selected.remove(cheapest.1);

@@ -1,5 +1,4 @@
-//! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
-//! levels.
+//! Selection of motions from the proposals: greedily, with refinement of each motion on its own pixels and new proposals at finer levels.
 
 mod fine;
 pub(crate) mod greedy;

@@ -47,7 +47,7 @@ fn region_of(selected: &[ScoredMotion], k: usize, model: &Model) -> Option<Plane
     if pixels_of(&region) < model.fewest {
         return None;
     }
-    // Pixels at the border may belong to another motion, where the region can spare them.
+    // Pixels at the border may belong to another motion; they are left out if enough others remain.
     let inner = eroded(&region);
     let enough = pixels_of(&inner) >= model.fewest;
     Some(softened(if enough { &inner } else { &region }))

@@ -1,12 +1,13 @@
-//! The description length of both frames, in nats. Motions are added, dropped, merged and split, and the background is at rest, where that
-//! makes it shorter.
+//! The description length of both frames, in nats. Motions are added, removed, merged and split, and the background is taken to be at rest,
+//! where that makes it shorter.
 //!
 //! ```text
 //! L = ½ Σ_p w ρ(p, l_p)  +  Σ_k 3 ln n_k  +  ½ b
 //! ```
-//! ρ is the estimation cost of the pixel's motion and w the weight of a pixel of this level; n_k are the pixels of the motions that are not at
-//! rest, b the pairs of neighbours with different labels. An object is dropped unless it pays for its whole border: what its pixels get
-//! instead may have borders, too, but which is not known before. Before there are labels, a motion has to pay for the pixels of the frame.
+//! ρ is the estimation cost of the pixel's motion and w the weight of a pixel of this level; n_k is the number of pixels of each motion
+//! that is not at rest, b the number of pairs of neighbours with different labels. An object is removed unless it saves more than its whole
+//! border costs: the labels that replace it may have borders, too, but these are not known in advance. Before there are labels, the penalty
+//! of a motion is that of all pixels of the frame.
 
 use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, across_borders};
@@ -14,7 +15,7 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
-/// Entries of a motion; no motion is described with fewer pixels.
+/// Number of entries of a motion; no motion is described with fewer pixels.
 const ENTRIES: usize = 6;
 /// Worth of a region that is too small to be an object, nats: less than that of any other.
 const TOO_SMALL: f64 = -1e9;
@@ -24,7 +25,7 @@ pub(crate) fn motion_penalty(pixels: usize) -> f64 {
     0.5 * ENTRIES as f64 * libm::log(pixels.max(ENTRIES) as f64)
 }
 
-/// Nats by which two motions with so many pixels each need more parameters than one with all of them.
+/// Nats by which the parameters of two motions with so many pixels each cost more than those of one motion with all of them.
 pub(super) fn second_motion_penalty(pixels: [usize; 2]) -> f64 {
     pixels.iter().map(|&n| motion_penalty(n)).sum::<f64>() - motion_penalty(pixels.iter().sum())
 }
@@ -58,7 +59,7 @@ pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], wid
     0.5 * left_over + parameters + border_penalty(borders, model)
 }
 
-/// Nats that each object saves beyond its penalty, its parameters and its border; infinite for the dominant motion, element 0.
+/// Nats that each object saves, minus those of its parameters and its border; infinite for the dominant motion, element 0.
 ///
 /// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
 pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize, model: &Model) -> Vec<f64> {

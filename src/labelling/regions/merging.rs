@@ -21,7 +21,7 @@ pub(crate) struct Merger {
     pub(crate) motion: AffineMotion,
 }
 
-/// The two touching regions whose description a common motion shortens most; none if two motions are always better. `raw` as in
+/// The two touching regions whose description a common motion shortens most; `None` if two motions are always better. `raw` as in
 /// [`worth`](super::description::worth).
 pub(crate) fn best_merger(level: &PairLevel, motions: &[AffineMotion], raw: &[Plane], labels: &[u8]) -> Option<Merger> {
     let width = level.width();

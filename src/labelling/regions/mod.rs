@@ -1,4 +1,4 @@
-//! Regions of one label: what they cost to describe, and where splitting or joining them pays.
+//! Regions of one label: their description length, and where splitting or merging shortens it.
 
 pub(crate) mod description;
 pub(crate) mod merging;

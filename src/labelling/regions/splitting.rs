@@ -1,4 +1,5 @@
-//! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in two parts.
+//! Splitting of regions to which a single affine motion was fitted although they contain several bodies: every region is tried in two
+//! parts.
 
 use super::description::{border_penalty, second_motion_penalty, weight_of_pixel};
 use crate::components::{Connectivity, components};
@@ -29,8 +30,8 @@ pub(super) fn aligned_on(
     align(level, motion, &Support::weighted(mask, level.model), &mut GainBias::default(), how)
 }
 
-/// Splits objects into two bodies where that shortens the description. Whether the largest of the parts that are not connected is one is
-/// tried first. Then motions are fitted to the halves along the long axis, and pixels reassigned to the better one.
+/// Splits objects into two bodies where that shortens the description. The largest part that is not connected with the rest is tried first.
+/// Then motions are fitted to the halves along the long axis, and pixels are reassigned to the better one.
 pub(crate) fn split_bodies(level: &PairLevel, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
     for label in objects(motions.len()) {
@@ -105,12 +106,12 @@ fn two_bodies(
     }
     gain *= f64::from(weight_of_pixel(level));
     let of_second = second.iter().filter(|s| **s).count();
-    let price = second_motion_penalty([region.len() - of_second, of_second])
+    let penalty = second_motion_penalty([region.len() - of_second, of_second])
         + border_penalty(inner_border(region, &second, width, height), model);
-    (gain > price).then_some((pair, second))
+    (gain > penalty).then_some((pair, second))
 }
 
-/// Which pixels of a region are not connected with most of it; none if all of them are.
+/// Which pixels of a region are not connected with most of it; `None` if all of them are.
 fn apart(region: &[usize], width: usize) -> Option<Vec<bool>> {
     let mut mask = vec![0u8; (region.last()? / width + 1) * width];
     region.iter().for_each(|&p| mask[p] = 1);

@@ -7,13 +7,13 @@
 //! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
 //!
-//! Costs and messages are 16-bit whole numbers, in units of which the heaviest border has [`HEAVIEST`]: half the memory of floats, which is
-//! what a pass waits for, twice as many at a time, and the same everywhere. A label that costs more than its pixel's four borders above the
-//! cheapest one is never taken, so that larger differences are cut, and no sum leaves the range. On each coarser level the unit is twice as
-//! large, so that a message handed down at half its size keeps its number.
+//! Costs and messages are 16-bit integers, in units in which the heaviest weight is [`HEAVIEST`]. They need half the memory of floats,
+//! which limits the speed of a pass, are processed twice as many at a time, and are the same on every platform. A label that costs more
+//! than the cheapest label of its pixel and the four edges together is never taken. Larger differences are therefore cut, and no sum leaves
+//! the range. On each coarser level the unit is twice as large, so that a message handed down at half its size keeps its number.
 //!
-//! A message depends on the one before it in its row, and on the one above it. Eight rows, a band, are therefore processed at once, each a
-//! pixel behind the row above, so that all arithmetic is on eight pixels at a time, and gives the same bits as pixel by pixel:
+//! A message depends on the previous one in its row and on the one above it. Eight rows, a band, are therefore processed at once, each one
+//! pixel behind the row above. All arithmetic is on eight pixels at a time, and gives the same bits as pixel by pixel:
 //!
 //! ```text
 //! step     0  1  2  3  4  …        the columns of eight rows of three pixels; the rest is padding, without costs and weights
@@ -29,9 +29,9 @@ use super::potts::Potts;
 
 /// Labels are padded to 2, 3, 4, 5, 6, 8, 10, 12 or 16.
 pub(super) const MAX_LABELS: usize = 16;
-/// The heaviest weight of a problem.
+/// The heaviest weight of a problem, in units of costs and messages.
 const HEAVIEST: i16 = 4095;
-/// Largest cost of a label above that of its pixel's cheapest one, the weight of four borders: the sum with four messages is in range.
+/// Largest cost of a label above that of its pixel's cheapest one: the weight of four edges. The sum with four messages is in range.
 const DEAREST: i16 = 4 * HEAVIEST;
 /// Smallest side of a level of the pyramid.
 const SMALLEST: usize = 8;
@@ -232,7 +232,7 @@ impl Grid {
         self.clear_edges();
     }
 
-    /// Takes the messages away that leave the grid, and those of the padding.
+    /// Removes the messages that leave the grid, and those of the padding.
     fn clear_edges(&mut self) {
         let (labels, steps) = (self.labels, self.steps());
         for y in 0..self.height.next_multiple_of(ROWS) {
@@ -388,7 +388,7 @@ fn rounded(value: f32, most: i16) -> i16 {
     (value + NO_FRACTION).to_bits() as u16 as i16
 }
 
-/// Rows of a band on their way to its steps, between as much padding as they are behind each other.
+/// Rows of a band before they are written to its steps, with padding on both sides for their offsets.
 struct Band {
     width: usize,
     rows: [Vec<i16>; ROWS],

@@ -1,8 +1,9 @@
 //! Minimisation of the labelling energy of [`Potts`] by tree-reweighted message passing.
 //!
-//! Finding the minimum is NP-hard from three labels on. Message passing comes close, and a lower bound of the energy is known. On generated
-//! scenes, 320×240 pixels, four labels: [`Solver::FAST`] is 0.1 % above the bound, [`Solver::BEST`] 0.02 %. α-expansion by minimum cuts, which
-//! is exact for two labels, came within 0.01 % and mislabelled the same number of pixels, because of the costs.
+//! Finding the minimum is NP-hard from three labels on. Message passing comes close to it, and gives a lower bound of the energy. On
+//! generated scenes of 320×240 pixels with four labels, [`Solver::FAST`] is 0.1 % above the bound, [`Solver::BEST`] 0.02 %. α-expansion by
+//! minimum cuts, which is exact for two labels, came within 0.01 %, and mislabelled as many pixels: the costs, not the solver, limit the
+//! result.
 
 mod messages;
 pub(crate) mod potts;
@@ -12,8 +13,8 @@ use potts::Potts;
 /// Most labels of a problem.
 pub(crate) const MAX_LABELS: usize = messages::MAX_LABELS;
 
-/// How much to spend on a minimisation: at most `iterations` of sequential tree-reweighted message passing on each of `levels` levels of
-/// a pyramid (1: the grid alone). A few iterations on several levels are cheap, many iterations come close to the optimum.
+/// Effort of a minimisation: at most `iterations` of sequential tree-reweighted message passing on each of `levels` levels of a pyramid (1:
+/// the grid alone). A few iterations on several levels are fast, many iterations come close to the optimum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Solver {
     pub(crate) levels: usize,

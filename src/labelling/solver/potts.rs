@@ -92,15 +92,15 @@ impl Potts<'_> {
                         if y > 0 { (labels[p - width], vertical[p - width]) } else { (own, 0.0) },
                         if y + 1 < height { (labels[p + width], vertical[p]) } else { (own, 0.0) },
                     ];
-                    let price = |label: u8| {
+                    let energy = |label: u8| {
                         let borders = beside.iter().map(|&(other, weight)| if other == label { 0.0 } else { weight });
                         borders.fold(self.cost(usize::from(label), p), |sum, weight| sum + weight)
                     };
-                    let mut best = (own, price(own));
+                    let mut best = (own, energy(own));
                     for label in 0..self.costs.len() as u8 {
-                        let price = price(label);
-                        if price < best.1 {
-                            best = (label, price);
+                        let energy = energy(label);
+                        if energy < best.1 {
+                            best = (label, energy);
                         }
                     }
                     changed |= best.0 != own;

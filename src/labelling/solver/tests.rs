@@ -219,8 +219,8 @@ fn no_solver_is_worse_than_descent_and_the_bound_holds() {
     for (seed, labels) in [(1, 2), (2, 4), (3, 7), (4, 11)] {
         let grid = scene_like(seed, 70, 51, labels);
         let problem = grid.problem();
-        let price = |p: usize| move |l: &u8| problem.cost(usize::from(*l), p);
-        let cheapest = |p| (0..labels as u8).min_by(|a, b| price(p)(a).total_cmp(&price(p)(b))).unwrap();
+        let cost = |p: usize| move |l: &u8| problem.cost(usize::from(*l), p);
+        let cheapest = |p| (0..labels as u8).min_by(|a, b| cost(p)(a).total_cmp(&cost(p)(b))).unwrap();
         let mut descended: Vec<u8> = (0..70 * 51).map(cheapest).collect();
         problem.descend(&mut descended, 50);
         let reference = problem.energy(&descended);

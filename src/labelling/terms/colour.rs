@@ -14,11 +14,11 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8],
     let n = costs.len();
     let weights = margins(costs, labels);
     let trust = trust(palette, labels, &weights, n, model);
-    let mut prices = posterior(palette, labels, &weights, n, model);
+    let mut penalties = posterior(palette, labels, &weights, n, model);
     let largest = model.largest_cost();
-    prices.iter_mut().for_each(|p| *p = (-model.colour_weight * trust * trust * libm::logf(*p)).min(largest));
+    penalties.iter_mut().for_each(|p| *p = (-model.colour_weight * trust * trust * libm::logf(*p)).min(largest));
     for (label, cost) in costs.iter_mut().enumerate() {
-        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices[palette.index(p) * n + label]);
+        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += penalties[palette.index(p) * n + label]);
     }
 }
 
@@ -95,7 +95,7 @@ mod tests {
     use crate::frame::Frame;
     use crate::frame::scaling::Scaling;
 
-    /// Left and right half of the frame have a motion each; only every third column knows which.
+    /// Left and right half of the frame have a motion each; only every third column determines which.
     fn costs(width: usize, height: usize) -> ([Plane; 2], Vec<u8>) {
         let cost = |label: bool| {
             Plane::from_fn(width, height, |x, _| if x % 3 == 0 && (x < width / 2) == label { 2.0 } else { 0.0 })
@@ -105,7 +105,7 @@ mod tests {
     }
 
     /// The costs that the colours add.
-    fn said(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
+    fn added(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
         let mut with = costs.clone();
         add_colours(&mut with, palette, labels, &Model::DEFAULT);
         for (with, without) in with.iter_mut().zip(costs) {
@@ -127,12 +127,12 @@ mod tests {
     #[test]
     fn colours_that_separate_the_labels_are_used_and_others_are_not() {
         let (costs, labels) = costs(72, 48);
-        let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = said(&Palette::new(&telling, &Scaling::halved([72, 48], 0)), &costs, &labels);
-        assert!(said[1].at(10, 20) > said[0].at(10, 20) + 0.5);
-        assert!(said[0].at(60, 20) > said[1].at(60, 20) + 0.5);
+        let distinct = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
+        let added = added(&Palette::new(&distinct, &Scaling::halved([72, 48], 0)), &costs, &labels);
+        assert!(added[1].at(10, 20) > added[0].at(10, 20) + 0.5);
+        assert!(added[0].at(60, 20) > added[1].at(60, 20) + 0.5);
         let shared = frame(|x, y| if (x / 2 + y / 2) % 2 == 0 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = self::said(&Palette::new(&shared, &Scaling::halved([72, 48], 0)), &costs, &labels);
-        assert!((said[0].at(10, 20) - said[1].at(10, 20)).abs() < 0.01);
+        let added = self::added(&Palette::new(&shared, &Scaling::halved([72, 48], 0)), &costs, &labels);
+        assert!((added[0].at(10, 20) - added[1].at(10, 20)).abs() < 0.01);
     }
 }

@@ -1,4 +1,4 @@
-//! The data term: the cost of every motion at every pixel, made into the cost of its label.
+//! The data term: the cost of every motion at every pixel, and the cost of its label that follows.
 
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
@@ -11,10 +11,11 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, cheapest, cost_where_seen};
 use crate::view::level::PairLevel;
 
-/// Motions and their costs where they keep a pixel inside, infinite elsewhere: what label and estimation costs are made from.
+/// Motions and their costs at every pixel, infinite where a motion moves the pixel out of the frame. Label and estimation costs follow from
+/// them.
 pub(crate) type Compared = Vec<(AffineMotion, Plane)>;
 
-/// Compares the frames along motions, except those that are compared already.
+/// Compares the frames along motions, except those in `known`.
 pub(crate) fn compare(level: &PairLevel, motions: &[AffineMotion], mut known: Compared) -> Compared {
     let plane = |motion: &AffineMotion| match known.iter().position(|(other, _)| other == motion) {
         Some(k) => known.swap_remove(k).1,
@@ -81,14 +82,14 @@ fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], options: Labell
 
 /// Adds the penalty of an object's pixels on the frame's border, for each of the borders that they lie on.
 fn add_frame_border_penalty(cost: &mut Plane, options: LabellingOptions) {
-    let price = 0.5 * options.smoothness;
+    let penalty = 0.5 * options.smoothness;
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
-        cost.row_mut(y).iter_mut().for_each(|c| *c += price);
+        cost.row_mut(y).iter_mut().for_each(|c| *c += penalty);
     }
     for y in 0..height {
         for x in [0, width - 1] {
-            cost.row_mut(y)[x] += price;
+            cost.row_mut(y)[x] += penalty;
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
 use crate::model::Model;
 
-/// Weights of edges between neighbours.
+/// The penalties of different labels at neighbouring pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeWeights {
     horizontal: Plane,
@@ -17,16 +17,16 @@ pub(crate) struct EdgeWeights {
 }
 
 impl EdgeWeights {
-    /// The penalties with a λ along the edges of a picture with this noise, grey levels.
+    /// The penalties with a weight λ, lower along the edges of a picture with the given noise, grey levels.
     pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> EdgeWeights {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let price = Price::new(noise, smoothness, model);
+        let penalty = BorderPenalty::new(noise, smoothness, model);
         let mut borders = Self::uniform(width, height, smoothness);
         for y in 0..height {
             let (start, below) = (y * width, (y + 1).min(height - 1) * width);
             let here = picture.run(start..start + width);
-            price.write(here, picture.run(below..below + width), borders.vertical.row_mut(y));
-            price.write(here, picture.run(start + 1..start + width), borders.horizontal.row_mut(y));
+            penalty.write(here, picture.run(below..below + width), borders.vertical.row_mut(y));
+            penalty.write(here, picture.run(start + 1..start + width), borders.horizontal.row_mut(y));
         }
         borders
     }
@@ -35,7 +35,7 @@ impl EdgeWeights {
     pub(crate) fn times(&self, factor: f32) -> EdgeWeights {
         let mut borders = self.clone();
         let planes = [&mut borders.horizontal, &mut borders.vertical];
-        planes.into_iter().flat_map(|plane| plane.values_mut()).for_each(|price| *price *= factor);
+        planes.into_iter().flat_map(|plane| plane.values_mut()).for_each(|penalty| *penalty *= factor);
         borders
     }
 
@@ -48,7 +48,7 @@ impl EdgeWeights {
         EdgeWeights { horizontal, vertical }
     }
 
-    /// EdgeWeights that cost the same everywhere.
+    /// The same penalty everywhere.
     pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> EdgeWeights {
         let everywhere = Plane::filled(width, height, smoothness);
         EdgeWeights { horizontal: everywhere.clone(), vertical: everywhere }
@@ -60,8 +60,8 @@ impl EdgeWeights {
     }
 }
 
-/// The penalty of a border as a function of the step across it.
-struct Price {
+/// The penalty of a border as a function of the intensity step across it.
+struct BorderPenalty {
     smoothness: f32,
     /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
     per_step: f32,
@@ -69,17 +69,17 @@ struct Price {
     colour_share: f32,
 }
 
-impl Price {
-    fn new(noise: f32, smoothness: f32, model: &Model) -> Price {
+impl BorderPenalty {
+    fn new(noise: f32, smoothness: f32, model: &Model) -> BorderPenalty {
         let per_step = 1.0 / (model.noise_steps * noise.max(1.0));
         // A grey step is √3 times as long in RGB.
-        Price { smoothness, per_step, edge_share: model.edge_share, colour_share: 1.0 / 3.0f32.sqrt() }
+        BorderPenalty { smoothness, per_step, edge_share: model.edge_share, colour_share: 1.0 / 3.0f32.sqrt() }
     }
 
     /// Penalties between the pixels of two runs; ends with the shorter one.
-    fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
-        let Price { edge_share, colour_share, .. } = *self;
-        for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
+    fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], penalties: &mut [f32]) {
+        let BorderPenalty { edge_share, colour_share, .. } = *self;
+        for (k, penalties) in penalties.chunks_mut(CHUNK).enumerate() {
             let mut space = [[0.0; CHUNK]; 8];
             let [s0, s1, s2, s3, s4, s5, s6, s7] = &mut space;
             let part = |run: [&'a [f32]; 4], c: usize| &run[c][(k * CHUNK).min(run[c].len())..];
@@ -94,7 +94,7 @@ impl Price {
                 let step = if colour > grey { colour } else { grey };
                 chunk[k] = self.smoothness * (edge_share + (1.0 - edge_share) * fading(step * self.per_step));
             }
-            prices.copy_from_slice(&chunk[..prices.len()]);
+            penalties.copy_from_slice(&chunk[..penalties.len()]);
         }
     }
 }

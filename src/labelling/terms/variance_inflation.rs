@@ -1,9 +1,9 @@
 //! Larger variances where no motion fits well.
 //!
-//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only approximate: limbs,
-//! cloth, water, parallax, blur. Costs there saturate for correct and wrong motions alike, and their difference is mostly chance. The
-//! cost of the best motion around a pixel tells by how much the variance is too small, and costs are computed again with the
-//! inflated variance. Where the model holds, nearly everywhere in most frames, nothing changes.
+//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only approximate: limbs, cloth,
+//! water, parallax, blur. Costs there saturate for correct and wrong motions alike, and their difference is mostly chance. The cost of the
+//! best motion around a pixel shows by how much the variance is too small, and costs are computed again with the inflated variance. Where
+//! affine motions are exact, in nearly all of most frames, nothing changes.
 
 use crate::frame::Plane;
 use crate::frame::filter::RowFilter;

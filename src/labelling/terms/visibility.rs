@@ -1,4 +1,4 @@
-//! Occlusion: a pixel that lands behind another object in the second frame cannot look the same there.
+//! Occlusion: a pixel that moves behind another object cannot look the same in the second frame.
 
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
@@ -8,7 +8,7 @@ use crate::lanes::each_with;
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
-/// Costs in which a motion pays no more than `Model::hidden_cost` for pixels that it moves behind another object.
+/// Costs in which a motion costs at most `Model::hidden_cost` at pixels that it moves behind another object.
 ///
 /// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
 /// grow into the background around others.
@@ -40,12 +40,12 @@ pub(crate) fn hidden(level: &PairLevel, motions: &[AffineMotion], labels: &[u8])
     covered.values().iter().zip(labels).map(|(&covered, &label)| is_background(label) && covered > 0.5).collect()
 }
 
-/// The masks of all objects where they are in the second frame, with their labels.
+/// The masks of all objects at their positions in the second frame, with their labels.
 fn landed(level: &PairLevel, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
     objects(motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
 }
 
-/// How far the position that a motion moves each pixel to is covered by objects other than `own`, 0…1.
+/// How much the position to which a motion moves each pixel is covered by objects other than `own`, 0…1.
 fn covered(level: &PairLevel, motion: &AffineMotion, landed: &[(usize, Plane)], own: usize) -> Plane {
     let mut cover = Plane::filled(level.width(), level.height(), 0.0);
     for (_, mask) in landed.iter().filter(|(other, _)| *other != own) {
@@ -54,7 +54,7 @@ fn covered(level: &PairLevel, motion: &AffineMotion, landed: &[(usize, Plane)], 
     warp(&cover, &level.scaled(motion))
 }
 
-/// The eroded mask of an object, moved to its place in the second frame.
+/// The eroded mask of an object, moved to its position in the second frame.
 fn moved_mask(level: &PairLevel, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
     let mask = eroded(&mask_of(labels, label as u8, level.width(), level.height()));
     match level.scaled(motion).inverse() {

@@ -1,13 +1,13 @@
-//! The confidence that what moves in another way than the ground is an object.
+//! The probability that a region that moves differently from the ground is an object.
 //!
-//! That a motion is right does not make its pixels an object: in real scenes, parts of the background at another depth move otherwise too.
+//! A correct motion does not make its pixels an object: in real scenes, parts of the background at another depth move differently, too.
 //!
 //! ```text
 //! ln Q/(1−Q) = α ln P/(1−P) − β √b − γ m + δ        of an object's pixel
 //! ```
-//! P is the probability of its motion. The share of the object's outline that lies on the frame's border is b: objects lie within the frame
-//! more often than parts of the background do. The mean cost of all pixels under their own motions is m: where affine motions do not
-//! explain the frames, more regions are found that are none.
+//! Q is the probability that a pixel belongs to an object, and P that of its motion. b is the share of the object's outline that lies on
+//! the border of the frame: parts of the background reach it more often than objects do. m is the mean cost of all pixels under their own
+//! motions: where affine motions do not explain the frames, more regions are found that are no objects.
 //!
 //! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md has the
 //! measurement on others.
@@ -17,10 +17,10 @@ use crate::labelling::BACKGROUND;
 use crate::model::Model;
 use crate::pair::groups::shares_on_frame;
 
-/// Smallest and largest P that are told apart. A safeguard.
+/// Smallest and largest P that are distinguished. Guard.
 const LIMITS: [f32; 2] = [0.002, 0.998];
 
-/// Turns the probabilities of the motions of objects into those of being one.
+/// Turns the probabilities of the motions of objects into probabilities of being an object.
 pub(super) fn doubt_objects(
     probabilities: &mut [Plane],
     costs: &[Plane],
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn only_objects_are_doubted_and_by_all_evidence() {
+    fn only_objects_are_doubted_and_by_all_features() {
         let [background, object] = doubted(&square(4), &[0, 1], 0.4);
         assert_eq!(background, 0.9);
         assert!(object < doubted(&square(4), &[0, 1], 0.3)[1], "more misfit");

@@ -1,27 +1,27 @@
-//! Junctions: how likely two neighbouring regions are to be one thing.
+//! Junctions: how likely it is that two neighbouring regions belong to one thing.
 //!
-//! Things at rest in part, people and animals move in parts that affine motions cannot join. Where two frames cannot tell, a person can,
-//! so the regions worth asking about are offered.
+//! People and animals that are partly at rest move in parts that affine motions cannot join. Where two frames do not decide it, a person
+//! can, so the report offers the borders worth asking about.
 
 use serde::Serialize;
 
 use crate::pair::groups::Regions;
 
-/// The common border of two motions of a [`Segmentation`](super::Segmentation), and whether they may be one thing.
+/// The common border of two motions of a [`Segmentation`](super::Segmentation), and how likely both belong to one thing.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Junction {
     /// The labels of the two motions, the smaller first.
     pub labels: [u8; 2],
-    /// Probability, 0…1, that the two motions are of one thing: one object, or one background. The likeliest are joined first; what is then
-    /// known of them together may make others likelier, or less likely, to be of one group.
+    /// Probability, 0…1, that the two motions belong to one thing: one object, or one background. For the groups, the likeliest regions are
+    /// joined first and measured again together, which may change the probabilities of others.
     pub likelihood: f64,
     /// Length of the border, pixels of the full-size frame. It is measured at the working size.
     pub border: usize,
 }
 
-/// The junctions of the motions in `order`, whose place there is their label in the report, by labels. EdgeWeights that are too short to
-/// decide on groups are left out. Each pixel of the labels is `step` pixels of the frame wide.
+/// The junctions of the motions in `order`, by labels; the position of a motion in `order` is its label in the report. Borders that are too
+/// short to decide on are left out. Each pixel of the labels is `step` pixels of the frame wide.
 pub(super) fn junctions(mut regions: Regions<'_>, step: usize, order: &[usize]) -> Vec<Junction> {
     let mut found = Vec::new();
     for (a, &i) in order.iter().enumerate() {

@@ -61,9 +61,9 @@ struct Tally {
     pixels: usize,
     /// First column and row, and one past the last.
     corners: [usize; 4],
-    /// Sum of the squared intensity differences along the motion …
+    /// Sum of the squared intensity differences along the motion.
     squares: f64,
-    /// … and the number of pixels it is taken over: those that land inside the second frame.
+    /// Number of pixels in that sum: those that land inside the second frame.
     compared: usize,
 }
 
@@ -107,7 +107,7 @@ fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plan
     tallies
 }
 
-/// Groups numbered by decreasing number of pixels, after that of the ground.
+/// Numbers the groups by decreasing number of pixels, after the ground, which has 0.
 fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
     let mut totals: Vec<(usize, usize)> = vec![(BACKGROUND, usize::MAX)];
     for (&group, &size) in grouping.iter().zip(sizes).filter(|(group, _)| **group != BACKGROUND) {

@@ -1,4 +1,4 @@
-//! Pixels whose label the frames do not tell.
+//! Pixels whose label the two frames do not determine.
 
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;

@@ -1,5 +1,5 @@
-//! The evidence of a pair about the pixels of its first frame: the log-odds that each belongs to an object, and where each goes. And how this is
-//! kept.
+//! What a pair of frames shows about the pixels of its first frame: the log-odds that each belongs to an object, and its motion; and how
+//! these are stored.
 
 use super::runs::Runs;
 use super::saved::saved;
@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::pair::frame_motions::{FrameMotions, Prior};
 
-/// Log-odds are multiples of this many nats, so that they take little room when they are kept.
+/// Log-odds are rounded to multiples of this many nats, so that they take little room.
 const STEP: f32 = 0.25;
 
 /// The motion of every pixel of a frame to another frame. The first motion is that of the background.
@@ -23,25 +23,25 @@ pub(crate) struct LayeredMotion {
     pub(crate) labels: Vec<u8>,
     /// Motions, pixels of the working size.
     pub(crate) motions: Vec<AffineMotion>,
-    /// Whether the frames were compared; else everything is taken to keep its motion.
+    /// Whether the motion was measured between two frames; else it is an expectation.
     pub(crate) measured: bool,
 }
 
 impl LayeredMotion {
-    /// The flow of a frame where nothing moves.
+    /// The motion of a frame in which nothing moves.
     pub(crate) fn still([width, height]: [usize; 2]) -> LayeredMotion {
         let labels = vec![BACKGROUND as u8; width * height];
         LayeredMotion { width, labels, motions: vec![AffineMotion::STATIC], measured: false }
     }
 
-    /// The motion that most of some pixels have, if there are any.
+    /// Index of the most frequent motion of some pixels, if there are any.
     pub(crate) fn most_frequent(&self, pixels: impl Iterator<Item = usize>) -> Option<usize> {
         let mut counts = vec![0usize; self.motions.len()];
         pixels.for_each(|p| counts[usize::from(self.labels[p])] += 1);
         (0..counts.len()).rev().max_by_key(|&k| counts[k]).filter(|&k| counts[k] > 0)
     }
 
-    /// Displacement of the pixel (x, y).
+    /// Displacement of the pixel (x, y), pixels.
     #[inline(always)]
     pub(crate) fn at(&self, x: usize, y: usize) -> [f64; 2] {
         self.motions[usize::from(self.labels[y * self.width + x])].flow(x as f64, y as f64)
@@ -55,7 +55,7 @@ impl LayeredMotion {
         inside.then_some([px as usize, py as usize])
     }
 
-    /// Whether nothing moves in a pair, neither the camera nor an object: recordings repeat frames.
+    /// Whether nothing moves, neither the camera nor an object, as where a recording repeats a frame.
     pub(crate) fn is_still(&self) -> bool {
         let [right, bottom] = [self.width - 1, self.height() - 1];
         let still = |(x, y): (usize, usize)| {
@@ -71,21 +71,21 @@ impl LayeredMotion {
         self.labels.len() / self.width
     }
 
-    /// The flow at a size from which its own is halved.
+    /// The motion at the size from which its own was halved.
     pub(crate) fn enlarged(&self, size: [usize; 2]) -> LayeredMotion {
         let scaling = Scaling::between(size, [self.width, self.height()]);
         let motions = self.motions.iter().map(|motion| motion.scaled(scaling.step as f64)).collect();
         LayeredMotion { width: size[0], labels: scaling.enlarged(&self.labels), motions, measured: self.measured }
     }
 
-    /// Where the pixels go if they keep the motions with which they came.
+    /// The motion to the next frame if every pixel keeps the motion with which it came from the previous one.
     pub(crate) fn continued(&self) -> LayeredMotion {
         let motions = self.motions.iter().map(|motion| motion.inverse().unwrap_or(AffineMotion::STATIC)).collect();
         LayeredMotion { motions, measured: false, ..self.clone() }
     }
 }
 
-/// A [`LayeredMotion`] as it is kept.
+/// A [`LayeredMotion`] as it is stored.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptLayeredMotion {
     labels: Runs,
@@ -100,7 +100,7 @@ impl KeptLayeredMotion {
         KeptLayeredMotion { labels: Runs::of(&flow.labels), motions: flow.motions.clone(), measured: flow.measured }
     }
 
-    pub(crate) fn flow(&self, width: usize) -> LayeredMotion {
+    pub(crate) fn layered_motion(&self, width: usize) -> LayeredMotion {
         LayeredMotion { width, labels: self.labels.values(), motions: self.motions.clone(), measured: self.measured }
     }
 
@@ -112,7 +112,7 @@ impl KeptLayeredMotion {
     }
 }
 
-/// Log-odds as they are kept: multiples of a step.
+/// Log-odds as they are stored: multiples of a step.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptLogOdds(Runs);
 
@@ -120,7 +120,7 @@ saved!(KeptLogOdds { 0 });
 
 impl KeptLogOdds {
     pub(crate) fn of(log_odds: &Plane) -> KeptLogOdds {
-        // One byte; 128 stands for even log-odds.
+        // One byte; 128 stands for log-odds of zero.
         let code = |log_odds: &f32| (libm::roundf(log_odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
         KeptLogOdds(Runs::of(&log_odds.values().iter().map(code).collect::<Vec<u8>>()))
     }
@@ -136,20 +136,20 @@ impl KeptLogOdds {
     }
 }
 
-/// The solved pairs of one more frame.
+/// The solved pairs of a frame with the previous one, as they are stored.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptPairs {
-    /// From the frame before to this one.
+    /// From the previous frame to this one.
     onward: Option<(KeptLogOdds, KeptLayeredMotion)>,
-    /// From this frame to the one before.
+    /// From this frame to the previous one.
     back: Option<(KeptLogOdds, KeptLayeredMotion)>,
-    /// The expectation for the next pair.
+    /// What a fast stream expects of the next pair.
     prior: Option<Prior>,
 }
 
 saved!(KeptPairs { onward, back, prior });
 
-/// [`KeptPairs`] in use.
+/// [`KeptPairs`] decoded.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs {
     pub(crate) onward: Option<(Plane, LayeredMotion)>,
@@ -169,7 +169,7 @@ impl Pairs {
 impl KeptPairs {
     pub(crate) fn pairs(&self, [width, height]: [usize; 2]) -> Pairs {
         let view = |kept: &Option<(KeptLogOdds, KeptLayeredMotion)>| {
-            kept.as_ref().map(|(log_odds, flow)| (log_odds.log_odds(width, height), flow.flow(width)))
+            kept.as_ref().map(|(log_odds, flow)| (log_odds.log_odds(width, height), flow.layered_motion(width)))
         };
         Pairs { onward: view(&self.onward), back: view(&self.back), prior: self.prior.clone() }
     }
@@ -181,7 +181,7 @@ impl KeptPairs {
     }
 }
 
-/// Log-log-odds of object against background at every working pixel, nats.
+/// Log-odds of object against background at every working pixel, nats.
 pub(crate) fn log_odds(found: &FrameMotions) -> Plane {
     let FrameMotions { probabilities, groups, .. } = found;
     let (width, height) = (probabilities[0].width(), probabilities[0].height());
@@ -196,8 +196,8 @@ pub(crate) fn log_odds(found: &FrameMotions) -> Plane {
     log_odds
 }
 
-/// The flow of motions that were found.
-pub(crate) fn flow(found: FrameMotions) -> LayeredMotion {
+/// The motion of every pixel.
+pub(crate) fn layered_motion(found: FrameMotions) -> LayeredMotion {
     let FrameMotions { labels, motions, probabilities, .. } = found;
     LayeredMotion { width: probabilities[0].width(), labels, motions, measured: true }
 }

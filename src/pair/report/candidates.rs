@@ -1,4 +1,4 @@
-//! Evidence for the number of motions: description lengths with fewer and with more motions than were found.
+//! Scores of different numbers of motions: description lengths with fewer and with more motions than were found.
 
 use crate::answer::Candidate;
 use crate::frame::Plane;
@@ -10,9 +10,9 @@ use crate::options::MAX_MOTIONS;
 use crate::pair::labels::{LabelledPair, borders};
 use crate::pair::settings::Settings;
 
-/// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
-/// solved for each number at the base level, without costs of occlusion and colour.
-pub(super) fn evidence(labelled: &LabelledPair, settings: &Settings) -> Vec<Candidate> {
+/// Description lengths, nats, with the motions found, with fewer (the least useful ones are removed one by one) and with one more. Labels
+/// are solved for each number at the base level, without costs of occlusion and colour.
+pub(super) fn scored_candidates(labelled: &LabelledPair, settings: &Settings) -> Vec<Candidate> {
     let pair = &labelled.pair;
     let level = &pair.levels[pair.base];
     let width = level.width();
