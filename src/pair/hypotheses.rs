@@ -12,11 +12,8 @@ use super::motions::{add_detail, follow, motions_of, refine, select};
 use super::observer::Observer;
 use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
-use crate::frame::Plane;
 use crate::frame::scaling::Scaling;
-use crate::labelling::regions::description::{counts, motion_penalty};
-use crate::labelling::terms::data::{compare, estimation_costs};
-use crate::labelling::{BACKGROUND, is_background};
+use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
@@ -30,14 +27,7 @@ pub(super) fn solve(
     let mut at_rest = pair.clone();
     observer.stage_begins("dominant");
     let dominant = pair.settle_dominant(Dominant::Sought(None), settings);
-    let mut moving = under(pair, dominant, likely, settings, observer);
-    if moving.motions[BACKGROUND] != AffineMotion::STATIC && rest_is_shorter(&moving) {
-        let LabelledPair { pair, mut motions, labels, rejected } = moving;
-        motions[BACKGROUND] = AffineMotion::STATIC;
-        let start = Start::Expected { labels, regroups: true };
-        moving = label(pair, motions, rejected, start, settings, observer);
-        observer.labelled(&moving.pair, &moving.motions, &moving.labels);
-    }
+    let moving = under(pair, dominant, likely, settings, observer);
     let mut known = moving.motions.clone();
     if known[BACKGROUND] == AffineMotion::STATIC || settings.model.solves_at_rest == 0 {
         return moving;
@@ -97,19 +87,6 @@ pub(super) fn carry_on(
     let labelled = label(pair, motions, rejected, start, settings, &mut ());
     observer.carried_on(&labelled.pair, &labelled.motions, &labelled.labels);
     labelled
-}
-
-/// Whether the pixels of the background are described in fewer nats at rest, which needs no parameters. This detects a dominant motion that
-/// was fitted across objects on ground without texture, once the objects have motions of their own.
-fn rest_is_shorter(LabelledPair { pair, motions, labels, .. }: &LabelledPair) -> bool {
-    let (level, labels) = (&pair.levels[pair.draft], pair.draft_scaling().thinned(labels));
-    let of_background = |plane: &Plane| -> f64 {
-        let pixels = plane.values().iter().zip(&labels).filter(|(_, label)| is_background(**label));
-        pixels.map(|(cost, _)| f64::from(*cost)).sum()
-    };
-    let costs = estimation_costs(level, &compare(level, &[AffineMotion::STATIC, motions[BACKGROUND]], Vec::new()));
-    let [at_rest, moving] = [&costs[0], &costs[1]].map(of_background);
-    0.5 * (at_rest - moving) < motion_penalty(counts(&labels, 1)[BACKGROUND])
 }
 
 /// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, and costs are not summed, because an

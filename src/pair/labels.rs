@@ -9,7 +9,7 @@ use super::observer::Observer;
 use super::settings::Settings;
 use crate::components::absorb_small;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{counts, length, worth};
+use crate::labelling::regions::description::{counts, length, motion_penalty, worth};
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::split_bodies;
 use crate::labelling::shadows;
@@ -18,7 +18,7 @@ use crate::labelling::terms::colour::add_colours;
 use crate::labelling::terms::data::{Compared, compare, estimation_costs, label_costs};
 use crate::labelling::terms::smoothness::EdgeWeights;
 use crate::labelling::terms::visibility::with_visibility;
-use crate::labelling::{BACKGROUND, objects};
+use crate::labelling::{BACKGROUND, is_background, objects};
 use crate::motion::AffineMotion;
 use crate::view::level::PairLevel;
 
@@ -90,6 +90,7 @@ pub(super) fn label(
         }
     };
     energy.prune();
+    energy.rest_background();
     energy.correct_occlusion(rounds);
     if regroups {
         energy.regroup();
@@ -202,6 +203,26 @@ impl<'a> LabelEnergy<'a> {
         self.costs.remove(k);
         self.uncorrected.remove(k);
         self.raw.remove(k);
+    }
+
+    /// Puts the background at rest if that describes its pixels in fewer nats: rest needs no parameters. A dominant motion that was fitted
+    /// across objects on plain ground is recognised here, once the objects have motions of their own.
+    fn rest_background(&mut self) {
+        if self.motions[BACKGROUND] == AffineMotion::STATIC {
+            return;
+        }
+        let of_background = |plane: &Plane| -> f64 {
+            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| is_background(**label));
+            pixels.map(|(cost, _)| f64::from(*cost)).sum()
+        };
+        let at_rest = estimation_costs(self.level, &compare(self.level, &[AffineMotion::STATIC], Vec::new()));
+        let lost = 0.5 * (of_background(&at_rest[0]) - of_background(&self.raw[BACKGROUND]));
+        if lost < motion_penalty(counts(&self.labels, 1)[BACKGROUND]) {
+            self.motions[BACKGROUND] = AffineMotion::STATIC;
+            self.recompute_costs();
+            self.solve();
+            self.prune();
+        }
     }
 
     /// Corrects for occlusion in several rounds, since what is occluded depends on the labels.
