@@ -72,7 +72,8 @@ model! {
 
     /// Largest longer side of the working size with quality `best`, pixels. Generated.
     work_side: usize = 480;
-    /// The same with quality `fast`, and of the level on which motions are selected in frames that are not halved. Speed.
+    /// The same with quality `fast`, and of the level on which motions are selected and labels are drafted in frames that are not halved.
+    /// Speed.
     work_side_fast: usize = 320;
     /// Smallest shorter side of the coarsest level, pixels. Generated.
     smallest_side: usize = 24;
@@ -274,6 +275,10 @@ model! {
     /// Whether a background that may be at rest is also solved at rest. This and the following switches are 1; an ablation sets one to 0 to
     /// leave out a part that no other constant disables.
     solves_at_rest: usize = 1;
+    /// Whether the background is put at rest where that shortens the description.
+    tries_static: usize = 1;
+    /// Whether labels are drafted on a coarser level.
+    drafts: usize = 1;
     /// Whether the search in large frames is continued at a finer size.
     adds_detail: usize = 1;
     /// Whether regions are merged.

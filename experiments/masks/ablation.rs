@@ -7,7 +7,7 @@ use experiments::parallel::in_parallel;
 use veronese::Model;
 
 /// The rows of the table, in its order.
-const LEFT_OUT: [Row; 18] = [
+const LEFT_OUT: [Row; 20] = [
     ("nothing", &[]),
     ("gain and bias", &[("largest_gain", 1.0)]),
     ("algebraic candidates", &[("degrees", 0.0)]),
@@ -15,6 +15,8 @@ const LEFT_OUT: [Row; 18] = [
     ("algebraic candidates and all windows but 6", &[("degrees", 0.0), ("tiles", 6.0), ("tiles_fast", 3.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
     ("second solution at rest", &[("solves_at_rest", 0.0)]),
+    ("trial of a static background", &[("tries_static", 0.0)]),
+    ("drafts", &[("drafts", 0.0)]),
     ("detail pass", &[("adds_detail", 0.0)]),
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
     ("smoothness lower at edges", &[("noise_steps", 1e9)]),

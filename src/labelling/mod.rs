@@ -60,12 +60,6 @@ pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Vec<usize>
     (0..labels.len()).filter(|&p| which(usize::from(labels[p]))).collect()
 }
 
-/// Labels of every `step`-th pixel of every `step`-th row.
-pub(crate) fn thinned(labels: &[u8], width: usize, step: usize) -> Vec<u8> {
-    let rows = labels.chunks_exact(width).step_by(step);
-    rows.flat_map(|row| row.iter().step_by(step).copied()).collect()
-}
-
 /// Indicator of a label: 1 on its pixels, 0 elsewhere.
 pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
     Plane::from_vec(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())

@@ -26,8 +26,9 @@
 
 use super::groups::Regions;
 use super::planar_flow::distances_to_plane;
+use crate::frame::scaling::Scaling;
 use crate::labelling::regions::description::counts;
-use crate::labelling::{BACKGROUND, across_borders, thinned};
+use crate::labelling::{BACKGROUND, across_borders};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{RobustKernel, costs};
@@ -265,7 +266,8 @@ fn gains(motions: &[AffineMotion], labels: &[u8], level: &PairLevel) -> Vec<f64>
     let sample = level.thinned();
     let costs = costs(&sample, motions, RobustKernel::labels(level.model));
     let mut gains = vec![0.0; motions.len()];
-    for (p, &label) in thinned(labels, level.width(), sample.stride).iter().enumerate() {
+    let scaling = Scaling::between([level.width(), level.height()], [sample.width(), sample.height()]);
+    for (p, label) in scaling.thinned(labels).into_iter().enumerate() {
         let [ground, own] = [BACKGROUND, usize::from(label)].map(|k| costs[k].values()[p]);
         gains[usize::from(label)] += f64::from(ground - own);
     }

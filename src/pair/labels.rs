@@ -208,7 +208,7 @@ impl<'a> LabelEnergy<'a> {
     /// Puts the background at rest if that describes its pixels in fewer nats: rest needs no parameters. A dominant motion that was fitted
     /// across objects on plain ground is recognised here, once the objects have motions of their own.
     fn rest_background(&mut self) {
-        if self.motions[BACKGROUND] == AffineMotion::STATIC {
+        if self.motions[BACKGROUND] == AffineMotion::STATIC || self.settings.model.tries_static == 0 {
             return;
         }
         let of_background = |plane: &Plane| -> f64 {

@@ -11,8 +11,9 @@ use crate::estimation::selection::{
     GreedySelection, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost,
 };
 use crate::frame::filter::eroded;
+use crate::frame::scaling::Scaling;
 use crate::labelling::regions::description::motion_penalty_on;
-use crate::labelling::{BACKGROUND, mask_of, thinned};
+use crate::labelling::{BACKGROUND, mask_of};
 use crate::motion::AffineMotion;
 use crate::view::brightness::GainBias;
 use crate::view::level::PairLevel;
@@ -145,7 +146,7 @@ pub(super) fn follow(
 ) -> (Vec<AffineMotion>, f64) {
     let level = &pair.finest().thinned();
     let (width, height, model) = (level.width(), level.height(), level.model);
-    let expected = thinned(labels, pair.finest().width(), level.stride);
+    let expected = Scaling::between(pair.scaling.small, [width, height]).thinned(labels);
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
         let region = softened(&eroded(&mask_of(&expected, label as u8, width, height)));

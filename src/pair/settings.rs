@@ -119,6 +119,9 @@ impl Settings {
                 ..best
             },
         };
+        if model.drafts == 0 {
+            settings.draft_side = usize::MAX;
+        }
         if let MotionCount::Given(n) = options.motions {
             // The number is given: every motion that helps is added, and none is removed below it.
             settings.most = n;
