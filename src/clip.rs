@@ -15,6 +15,7 @@
 mod annotation;
 mod carry;
 mod changes;
+mod command;
 mod colours;
 mod correction;
 mod description;
@@ -28,6 +29,7 @@ mod held;
 mod identity;
 mod job;
 mod layer;
+mod objects;
 mod options;
 mod overlay;
 mod pairing;
@@ -38,17 +40,23 @@ mod runs;
 mod saved;
 mod segmented_clip;
 mod segmenter;
+mod session;
 mod stream;
 mod tracker;
+mod tracks;
 
 pub use annotation::{Accepted, Annotations, Click, Painted, Prompt, Spread};
 pub use changes::Changed;
+pub use command::{Annotation, Command, Content, Declaration};
 pub use description::{ClipFrame, ClipObject};
 pub use job::ClipJob;
+pub use objects::Description;
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use options::vary;
 pub use options::{ClipOptions, MAX_LOOK_AHEAD};
 pub use segmented_clip::SegmentedClip;
-pub use segmenter::{ClipSegmenter, FramePairs};
+pub use segmenter::{ClipSegmenter, FramePairs, solve_pair};
+pub use session::{Clip, Events, FrameStatus, Object, OpenOptions, Recovered, Settled, Stage, StepId, Wanted};
 pub use stream::StreamSegmenter;
+pub use tracks::{ClipTrack, ClipTracks};

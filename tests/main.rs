@@ -16,4 +16,5 @@ mod paper;
 mod pipeline;
 mod promises;
 mod properties;
+mod session;
 mod support;

@@ -22,6 +22,9 @@ pub enum Spread {
     Backward,
     /// No other frame.
     None,
+    /// No other frame, and the annotation changes no other pixel of its own frame: labels are drawn exactly, over all others. Only a
+    /// [`Clip`](super::Clip) draws so.
+    Exact,
 }
 
 /// A direction through the frames of a clip.
@@ -47,7 +50,7 @@ impl Saved for Spread {
     }
 
     fn read(bytes: &mut &[u8]) -> Option<Spread> {
-        let all = [Spread::Both, Spread::Forward, Spread::Backward, Spread::None];
+        let all = [Spread::Both, Spread::Forward, Spread::Backward, Spread::None, Spread::Exact];
         all.get(usize::from(u8::read(bytes)?)).copied()
     }
 }
@@ -110,6 +113,8 @@ pub struct Annotations {
     /// Label maps that are applied first, for instance from another program. They keep their numbers: an object found automatically under
     /// one of these numbers gets another one.
     pub masks: Vec<Painted>,
+    /// Frames and objects whose annotations there are taken back; all annotations of a frame without an object.
+    pub cleared: Vec<(usize, Option<u8>)>,
     /// Label maps and strokes. Where they are not 255, they replace the labels of the mask of their frame. Strokes replace the earlier
     /// strokes of their object in their frame, and a label map the earlier label map. A label map of 255 alone removes all annotations of
     /// its frame, prompts too.
@@ -215,11 +220,12 @@ impl Annotations {
     pub(super) fn frames(&self) -> impl Iterator<Item = usize> {
         let painted = self.masks.iter().chain(&self.corrections).map(|painted| painted.frame);
         let accepted = self.accepted.iter().flatten().map(|accepted| accepted.frame);
-        painted.chain(self.prompts.iter().map(|prompt| prompt.frame)).chain(accepted)
+        let cleared = self.cleared.iter().map(|(frame, _)| *frame);
+        painted.chain(self.prompts.iter().map(|prompt| prompt.frame)).chain(accepted).chain(cleared)
     }
 }
 
-fn is_object(number: u8) -> bool {
+pub(super) fn is_object(number: u8) -> bool {
     number != 0 && number != UNLABELLED
 }
 

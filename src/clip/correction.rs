@@ -28,6 +28,7 @@ mod trace;
 mod track;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::annotation::{Direction, ObjectSet, Spread};
 use super::changes::Changes;
@@ -133,17 +134,18 @@ impl SceneCorrection {
     #[inline(never)]
     fn begin(&mut self, clip: &mut SegmentedClip, arrived: &Arrived<'_>, change: Change, changes: &mut Changes) {
         let (index, users) = (arrived.index, arrived.index - self.scene[0]);
-        let before = clip.frames[index].annotation.clone().unwrap_or_default();
+        let before = clip.frames[index].annotation.as_deref().cloned().unwrap_or_default();
         let shown = clip.overlaid(index, &clip.found_full(index, arrived.frame.luminance()), &self.users[users]);
         let mut now = before.clone();
         match change {
             Change::Painted(painted) => painted.iter().for_each(|painted| now.paint(painted)),
+            Change::Clear(object) => now.clear(object),
             Change::Prompt(prompt) => {
                 let labels = outline(clip, index, arrived.frame, arrived.features, &shown, &prompt);
                 now.point(prompt, &labels);
             }
         }
-        now.forget(&clip.numbers);
+        now.forget(&clip.objects.numbers);
         now.drop_pieces(&before, &shown, clip.size()[0]);
         now.keep_bases(&shown);
         let mut changing: ObjectSet = std::array::from_fn(|k| k > 0 && !now.agrees(&before, k as u8));
@@ -154,18 +156,18 @@ impl SceneCorrection {
         }
         self.extended.iter_mut().enumerate().skip(1).for_each(|(k, of)| *of &= now.extends(&before, k as u8));
         let is_new = !now.is_same(&before);
-        clip.frames[index].annotation = (!now.is_empty()).then_some(now);
+        clip.frames[index].annotation = (!now.is_empty()).then(|| Arc::new(now));
         clip.update_anchors(self.scene);
         let anchors_before = std::mem::replace(&mut self.anchors, clip.anchors(self.scene));
         for (object, changes) in changing.iter_mut().enumerate().take(anchors_before.len()) {
             *changes |= self.anchors[object] != anchors_before[object];
-            *changes &= !clip.locked[object] && clip.numbers[object] > 0;
+            *changes &= !clip.objects.locked[object] && clip.objects.numbers[object] > 0;
         }
         if is_new {
             self.at_once(clip, arrived, &shown, &changing, changes);
             let labels = clip.frames[index].layer.as_ref().map(|layer| layer.labels.values()).unwrap_or_default();
             if let Some(annotation) = &mut clip.frames[index].annotation {
-                annotation.keep_seen(&labels, &changing);
+                Arc::make_mut(annotation).keep_seen(&labels, &changing);
             }
         }
         self.users[users] = clip.user_objects_in(index);
@@ -194,7 +196,7 @@ impl SceneCorrection {
     ) {
         let Arrived { index, features, .. } = *arrived;
         let seeds = |object: u8| clip.seeds_at(index, object, features);
-        let annotation = clip.frames[index].annotation.clone().unwrap_or_default();
+        let annotation = clip.frames[index].annotation.as_deref().cloned().unwrap_or_default();
         let mut proposals = Vec::new();
         for object in (1..UNLABELLED).filter(|&object| changing[usize::from(object)]) {
             let is_shown = || shown.iter().map(|&label| u8::from(label == object)).collect();
@@ -273,7 +275,7 @@ impl SceneCorrection {
         let composition =
             Composition { clip, index, frame, features, proposals, extended: &self.extended, found, before };
         let layer = composition.layer();
-        let labels = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
+        let labels = |layer: &Option<Arc<Layer>>| layer.as_ref().map(|layer| layer.labels.clone());
         let is_same = labels(&clip.frames[index].layer) == labels(&layer);
         clip.frames[index].layer = layer;
         let now = clip.overlaid(index, found, &clip.user_objects_in(index));
@@ -293,9 +295,9 @@ impl SceneCorrection {
             let Some(layer) = state.layer.as_ref().filter(|_| is_open) else { continue };
             if layer.labels.each().any(|(label, _)| is_gone(label)) {
                 let labels = layer.labels.map(|label| if is_gone(label) { UNLABELLED } else { label });
-                let log_odds = clip.log_odds_of(layer);
+                let log_odds = clip.log_odds_of(t, layer);
                 changes.add(t);
-                clip.frames[t].layer = clip.layer_of(&labels.values(), &|_, at| log_odds.values()[at]);
+                clip.frames[t].layer = clip.layer_of(t, &labels.values(), &|_, at| log_odds.values()[at]);
             }
         }
     }
@@ -309,7 +311,7 @@ fn taken_from(clip: &SegmentedClip, annotation: &FrameAnnotation, shown: &[u8], 
     let mut loses = [false; 256];
     let painted = annotation.painted_labels().unwrap_or_default();
     painted.iter().zip(shown).for_each(|(&painted, &shown)| loses[usize::from(shown)] |= painted == 0);
-    let is_taken = |k: usize| users[k] && loses[k] && !clip.locked[k];
+    let is_taken = |k: usize| users[k] && loses[k] && !clip.objects.locked[k];
     (1..UNLABELLED).filter(|&object| is_taken(usize::from(object))).collect()
 }
 

@@ -5,7 +5,7 @@
 //! along which slow objects are carried as well.
 
 use std::collections::VecDeque;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::options::model;
 use super::pairs::{log_odds, shows_object};
@@ -25,7 +25,7 @@ pub(super) const FARTHEST: usize = 8;
 #[derive(Debug)]
 pub(super) struct Farther {
     /// The frames since neighbours last showed an object, the newest last.
-    earlier: VecDeque<Rc<FramePyramid>>,
+    earlier: VecDeque<Arc<FramePyramid>>,
     /// Distance of the frame with which the next one is compared, frames.
     reach: usize,
 }

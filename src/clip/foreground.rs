@@ -11,7 +11,7 @@
 
 use crate::clip::options::model;
 use std::collections::VecDeque;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::carry::carried;
 use super::colours::ColourCounts;
@@ -37,14 +37,14 @@ pub(crate) struct Round {
 
 #[derive(Debug)]
 struct Waiting {
-    record: Rc<Record>,
+    record: Arc<Record>,
     log_odds: Plane,
     past: Plane,
 }
 
 /// A frame that leaves a round.
 pub(crate) struct Foreground {
-    pub(crate) record: Rc<Record>,
+    pub(crate) record: Arc<Record>,
     /// The log-odds with which it came.
     own: Plane,
     /// Log-odds of object against background, joined with those of other frames, nats.
@@ -55,7 +55,7 @@ pub(crate) struct Foreground {
 
 impl Foreground {
     /// The frame's record and its log-odds for the second round, which contain the cut of the first.
-    pub(crate) fn for_second_round(self) -> (Rc<Record>, Plane) {
+    pub(crate) fn for_second_round(self) -> (Arc<Record>, Plane) {
         let Foreground { record, own: mut log_odds, mask, .. } = self;
         for (log_odds, &object) in log_odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { model().first_cut } else { -model().first_cut };
@@ -71,7 +71,7 @@ impl Round {
     }
 
     /// Takes the next frame with its own log-odds; returns one that has waited long enough.
-    pub(crate) fn push(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<Foreground> {
+    pub(crate) fn push(&mut self, record: Arc<Record>, log_odds: Plane) -> Option<Foreground> {
         let past = match (&self.past, &record.back) {
             (Some(past), Some(back)) => self.joined(&log_odds, &carried(past, back)),
             _ => log_odds.clone(),

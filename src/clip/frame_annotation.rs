@@ -54,6 +54,8 @@ pub(super) enum Change {
     /// Label maps and strokes; empty ones remove earlier ones.
     Painted(Vec<Painted>),
     Prompt(Prompt),
+    /// Takes back what was annotated of an object; without an object, everything.
+    Clear(Option<u8>),
 }
 
 impl FrameAnnotation {
@@ -95,6 +97,42 @@ impl FrameAnnotation {
             let at = self.prompts.partition_point(|of| of.prompt.object < prompt.object);
             self.prompts.insert(at, Outlined { prompt, labels: Runs::of(labels) });
         }
+    }
+
+    /// Removes all annotations of an object: its strokes, its prompt, and its labels in a label map, which goes if no other object is in it.
+    pub(super) fn clear(&mut self, object: Option<u8>) {
+        let Some(object) = object else {
+            *self = FrameAnnotation::default();
+            return;
+        };
+        self.take_back_painted(object);
+        self.take_back_prompt(object);
+        if self.names_in_map(object) {
+            let without = |label: u8| if label == object { UNLABELLED } else { label };
+            self.painted.iter_mut().filter(|of| of.object == 0).for_each(|map| map.labels = map.labels.map(without));
+            if self.names_no_object() {
+                self.take_back_painted(0);
+            }
+        }
+    }
+
+    /// The label maps and strokes, and the prompts, as they were given.
+    pub(super) fn given(&self, frame: usize) -> (Vec<Painted>, Vec<Prompt>) {
+        let painted = |Strokes { object, labels, spread }: &Strokes| Painted {
+            frame,
+            object: Some(*object).filter(|&object| object > 0),
+            labels: labels.values(),
+            spread: *spread,
+        };
+        let prompts = self.prompts.iter().map(|of| of.prompt.clone()).collect();
+        (self.painted.iter().map(painted).collect(), prompts)
+    }
+
+    /// The labels of the label map, and the objects of strokes and prompts.
+    pub(super) fn objects(&self) -> impl Iterator<Item = u8> + '_ {
+        let maps = self.painted.iter().filter(|of| of.object == 0).flat_map(|of| of.labels.each());
+        let strokes = self.painted.iter().map(|of| of.object);
+        maps.map(|(label, _)| label).chain(strokes).chain(self.prompts.iter().map(|of| of.prompt.object))
     }
 
     /// Removes the strokes and prompts of deleted objects, whose `numbers` are 0. Label maps stay, because they also exclude other objects.

@@ -1,7 +1,7 @@
 //! Frames wait here until it is known whether anything moves soon after them.
 
 use std::collections::VecDeque;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::pairs::shows_object;
 use super::record::Record;
@@ -16,7 +16,7 @@ const REACH: usize = 2;
 pub(super) struct HeldFrames {
     /// Number of frames that are held back.
     delay: usize,
-    frames: VecDeque<(Rc<Record>, Plane)>,
+    frames: VecDeque<(Arc<Record>, Plane)>,
     /// Number of frames since anything moved.
     frames_at_rest: usize,
 }
@@ -27,13 +27,13 @@ impl HeldFrames {
     }
 
     /// Takes the next frame. Returns one that has been held long enough.
-    pub(super) fn push(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<(Rc<Record>, Plane)> {
+    pub(super) fn push(&mut self, record: Arc<Record>, log_odds: Plane) -> Option<(Arc<Record>, Plane)> {
         self.frames.push_back((record, log_odds));
         if self.frames.len() > self.delay { self.next() } else { None }
     }
 
     /// Releases the frame that has been held longest. Its log-odds are set to zero if it is a pause.
-    pub(super) fn next(&mut self) -> Option<(Rc<Record>, Plane)> {
+    pub(super) fn next(&mut self) -> Option<(Arc<Record>, Plane)> {
         let (record, mut log_odds) = self.frames.pop_front()?;
         // A scene begins as if nothing had moved for long.
         let before = if record.back.is_none() { REACH } else { self.frames_at_rest };

@@ -11,7 +11,7 @@ mod sight;
 
 use crate::answer::UNLABELLED;
 use crate::clip::options::model;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::carry::carried_labels;
 use super::record::Record;
@@ -43,7 +43,7 @@ pub(crate) struct Identities {
     /// In order of frames.
     pub(crate) parted: Vec<Parting>,
     /// The last frame and its labels.
-    last: Option<(Rc<Record>, Vec<u8>)>,
+    last: Option<(Arc<Record>, Vec<u8>)>,
     /// Number of the next new object.
     next: usize,
     /// Number of objects for which no number was left.
@@ -56,7 +56,7 @@ impl Identities {
     }
 
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
-    pub(crate) fn assign(&mut self, record: &Rc<Record>, mask: &[u8]) -> Vec<u8> {
+    pub(crate) fn assign(&mut self, record: &Arc<Record>, mask: &[u8]) -> Vec<u8> {
         let smallest = (Model::DEFAULT.smallest_share * mask.len() as f64) as usize / 2;
         if self.subject || model().identities == 0 {
             let mut labels = vec![0u8; mask.len()];
@@ -230,7 +230,7 @@ impl Identities {
     }
 
     /// Keeps what the next frame needs.
-    fn remember(&mut self, record: &Rc<Record>, labels: &[u8]) {
+    fn remember(&mut self, record: &Arc<Record>, labels: &[u8]) {
         let mut pixels: Vec<Vec<usize>> = vec![Vec::new(); MAX_OBJECTS + 1];
         labels.iter().enumerate().filter(|(_, l)| **l > 0).for_each(|(p, &l)| pixels[usize::from(l)].push(p));
         for object in &mut self.objects {

@@ -3,10 +3,11 @@
 
 use std::collections::VecDeque;
 
-use super::annotation::{Accepted, Annotations, Painted, Prompt};
+use super::annotation::{Accepted, Annotations, ObjectSet, Painted, Prompt};
 use super::changes::{Changed, Changes};
 use super::correction::SceneCorrection;
 use super::frame_annotation::{Change, FrameAnnotation};
+use super::objects::Objects;
 use super::segmented_clip::SegmentedClip;
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -79,25 +80,28 @@ impl ClipJob {
             return Err(Error::ObjectLocked { object });
         }
         let locks = locked_last(clip, &annotations);
-        let Annotations { mut masks, corrections, prompts, locked, named, accepted, numbers } = annotations;
+        let Annotations { mut masks, cleared, corrections, prompts, locked, named, accepted, numbers } = annotations;
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, locks, numbers, changes: Changes::default() };
         let mut is_given = [false; 256];
         masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
         let given: Vec<u8> = (1..UNLABELLED).filter(|&label| is_given[usize::from(label)]).collect();
-        given.iter().for_each(|&label| clip.given[usize::from(label)] = true);
+        given.iter().for_each(|&label| clip.objects_mut().given[usize::from(label)] = true);
         if !given.is_empty() {
             clip.reserve(&given).into_iter().for_each(|frame| job.changes.add(frame));
         }
         // Deleted objects claim no pixel from the first step on.
         job.renumber(clip, true);
-        for (set, now) in [(&mut clip.locked, locked), (&mut clip.named, named)] {
-            if let Some(objects) = now {
-                // An object is locked or named with those that were merged into it.
-                let is_of = |k: usize| objects.contains(&(k as u8)) || objects.contains(&clip.numbers[k]);
-                (0..set.len()).for_each(|k| set[k] = is_of(k));
+        if locked.is_some() || named.is_some() {
+            let Objects { numbers, locked: locks, named: names, .. } = clip.objects_mut();
+            for (set, now) in [(locks, locked), (names, named)] {
+                if let Some(objects) = now {
+                    // An object is locked or named with those that were merged into it.
+                    let is_of = |k: usize| objects.contains(&(k as u8)) || objects.contains(&numbers[k]);
+                    (0..set.len()).for_each(|k| set[k] = is_of(k));
+                }
             }
+            job.locks.iter().for_each(|&object| locks_of(clip)[usize::from(object)] = false);
         }
-        job.locks.iter().for_each(|&object| clip.locked[usize::from(object)] = false);
         if let Some(accepted) = accepted {
             for (index, frame) in clip.frames.iter_mut().enumerate() {
                 frame.accepted &= accepted.iter().any(|of| of.frame == index);
@@ -112,7 +116,8 @@ impl ClipJob {
             }
         }
         let prompts = prompts.into_iter().map(|prompt| (prompt.frame, Change::Prompt(prompt)));
-        job.steps.extend(by_scene(clip, painted(&masks, &corrections).chain(prompts)));
+        let cleared = cleared.into_iter().map(|(frame, object)| (frame, Change::Clear(object)));
+        job.steps.extend(by_scene(clip, cleared.chain(painted(&masks, &corrections)).chain(prompts)));
         job.conclude(clip);
         Ok(job)
     }
@@ -164,7 +169,7 @@ impl ClipJob {
     /// After the last step, locks objects and gives them their new numbers.
     fn conclude(&mut self, clip: &mut SegmentedClip) {
         if self.wanted().is_none() {
-            std::mem::take(&mut self.locks).into_iter().for_each(|object| clip.locked[usize::from(object)] = true);
+            std::mem::take(&mut self.locks).into_iter().for_each(|object| locks_of(clip)[usize::from(object)] = true);
             self.renumber(clip, false);
         }
     }
@@ -176,6 +181,11 @@ impl ClipJob {
             clip.renumber(numbers).into_iter().for_each(|frame| self.changes.add(frame));
         }
     }
+}
+
+/// For each object, whether it is locked.
+fn locks_of(clip: &mut SegmentedClip) -> &mut ObjectSet {
+    &mut clip.objects_mut().locked
 }
 
 /// One step per scene: annotations of its frames spread together.
@@ -220,23 +230,29 @@ fn locked_last(clip: &SegmentedClip, annotations: &Annotations) -> Vec<u8> {
             |painted: &Painted| painted.object.map_or_else(|| painted.labels.contains(&object), |of| of == object);
         masks.iter().chain(corrections).any(names) || prompts.iter().any(|prompt| prompt.object == object)
     };
-    let is_new = |object: &u8| !clip.locked[usize::from(*object)] && is_about(*object);
+    let is_new = |object: &u8| !clip.objects.locked[usize::from(*object)] && is_about(*object);
     locked.iter().flatten().copied().filter(is_new).collect()
 }
 
 /// An object that was locked before and stays locked, and that the annotations would change.
 fn annotated_locked_object(clip: &SegmentedClip, annotations: &Annotations) -> Option<u8> {
-    let Annotations { corrections, prompts, locked, numbers, .. } = annotations;
+    let Annotations { cleared, corrections, prompts, locked, numbers, .. } = annotations;
     let stays_locked = |object: &u8| match locked {
         Some(locked) => locked.contains(object),
-        None => clip.locked[usize::from(*object)],
+        None => clip.objects.locked[usize::from(*object)],
     };
-    let is_locked = |object: &u8| clip.locked[usize::from(*object)] && stays_locked(object);
-    let before = |frame: usize| clip.frames[frame].annotation.clone().unwrap_or_default();
+    let is_locked = |object: &u8| clip.objects.locked[usize::from(*object)] && stays_locked(object);
+    let before = |frame: usize| clip.frames[frame].annotation.as_deref().cloned().unwrap_or_default();
     let painted = |painted: &Painted| {
         let before = before(painted.frame);
         let mut now: FrameAnnotation = before.clone();
         now.paint(painted);
+        (1..UNLABELLED).find(|object| is_locked(object) && !now.agrees(&before, *object))
+    };
+    let taken_back = |(frame, object): &(usize, Option<u8>)| {
+        let before = before(*frame);
+        let mut now = before.clone();
+        now.clear(*object);
         (1..UNLABELLED).find(|object| is_locked(object) && !now.agrees(&before, *object))
     };
     let prompted =
@@ -253,6 +269,7 @@ fn annotated_locked_object(clip: &SegmentedClip, annotations: &Annotations) -> O
     corrections
         .iter()
         .find_map(painted)
+        .or_else(|| cleared.iter().find_map(taken_back))
         .or_else(|| prompts.iter().find(prompted).map(|prompt| prompt.object))
         .or_else(|| numbers.iter().find_map(edited))
 }

@@ -1,7 +1,8 @@
 //! Options of clips, and the constants that they use.
 
+use crate::frame::scaling::Scaling;
 use crate::model::ClipModel;
-use crate::options::SegmentOptions;
+use crate::options::{Quality, SegmentOptions};
 use crate::pair::settings::Settings;
 
 /// Largest look-ahead of a stream, frames.
@@ -26,6 +27,13 @@ pub(crate) fn model() -> ClipModel {
 #[doc(hidden)]
 pub fn vary(model: ClipModel) {
     VARIED.set(model);
+}
+
+/// The scalings to the working size with each quality, of a whole clip and of a stream.
+pub(super) fn working_sizes(size: [usize; 2]) -> [Scaling; 4] {
+    let options = |quality, look_ahead| ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead };
+    let all = [(Quality::Best, None), (Quality::Best, Some(0)), (Quality::Fast, None), (Quality::Fast, Some(0))];
+    all.map(|(quality, look_ahead)| options(quality, look_ahead).settings(size).scaling(size))
 }
 
 /// Options of a [`ClipSegmenter`](super::ClipSegmenter) or a [`StreamSegmenter`](super::StreamSegmenter).

@@ -1,5 +1,7 @@
 //! The labels of a frame: those found automatically, under the layer of annotations.
 
+use std::sync::Arc;
+
 use super::annotation::ObjectSet;
 use super::description::{ClipFrame, WorkingFrame};
 use super::layer::Layer;
@@ -16,12 +18,17 @@ impl SegmentedClip {
     /// [`Error::InvalidOption`](crate::Error::InvalidOption) for an index that is not below [`len`](Self::len),
     /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch), [`Error::OtherFrame`](crate::Error::OtherFrame).
     pub fn frame(&self, index: usize, frame: &Frame) -> Result<ClipFrame> {
+        self.described(index, frame, self.mark_unknown)
+    }
+
+    /// [`frame`](Self::frame), with or without marks of unknown pixels.
+    pub(super) fn described(&self, index: usize, frame: &Frame, mark_unknown: bool) -> Result<ClipFrame> {
         self.check(index, frame)?;
         let state = &self.frames[index];
         let user_objects = self.user_objects_in(index);
         let is_users = |label: u8| user_objects[usize::from(label)];
         // Labels that the layer distinguishes keep their numbers until the layer is applied.
-        let given = |label: u8| match self.numbers[usize::from(label)] {
+        let given = |label: u8| match self.objects.numbers[usize::from(label)] {
             number if is_users(label) || is_users(number) => label,
             number => number,
         };
@@ -31,26 +38,33 @@ impl SegmentedClip {
         let working = |labels: &[u8], log_odds: &Plane, mark_unknown| {
             WorkingFrame { index, labels, log_odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
         };
-        let is_final = |label: &u8| self.numbers[usize::from(*label)] == *label && !is_users(*label);
-        if state.layer.is_none() && labels.iter().all(is_final) {
-            return Ok(working(&labels, &log_odds, self.mark_unknown));
+        let is_final = |label: &u8| self.objects.numbers[usize::from(*label)] == *label && !is_users(*label);
+        if state.layer.is_none() && state.exact.is_none() && labels.iter().all(is_final) {
+            return Ok(working(&labels, &log_odds, mark_unknown));
         }
         let found = working(&labels, &log_odds, false).labels;
         let mut full = self.overlaid(index, &found, &user_objects);
-        full.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
-        let layer = state.layer.as_ref().map(|layer| self.log_odds_of(layer)).zip(self.layer_labels(index));
-        let scaling = self.scaling();
+        full.iter_mut().for_each(|label| *label = self.objects.numbers[usize::from(*label)]);
+        let layer = state.layer.as_ref().map(|layer| self.log_odds_of(index, layer)).zip(self.layer_labels(index));
+        let exact = self.exact_labels(index);
+        for (label, exact) in full.iter_mut().zip(exact.iter().flatten()).filter(|(_, exact)| **exact != UNLABELLED) {
+            *label = *exact;
+        }
+        let scaling = self.scaling(index);
         for at in 0..labels.len() {
             let p = scaling.corner(at);
             let log_odds = &mut log_odds.values_mut()[at];
             match &layer {
+                _ if exact.as_ref().is_some_and(|exact| exact[p] != UNLABELLED) => {
+                    *log_odds = if full[p] > 0 { 2.0 * model().certain } else { -2.0 * model().certain };
+                }
                 Some((of_layer, above)) if above[p] != UNLABELLED => *log_odds = of_layer.values()[at],
                 _ if full[p] == 0 && found[p] > 0 => *log_odds = -model().certain,
                 _ => {}
             }
             labels[at] = full[p];
         }
-        let (onward, mark_unknown) = (onward.as_ref(), self.mark_unknown);
+        let onward = onward.as_ref();
         Ok(WorkingFrame { index, labels: &labels, log_odds: &log_odds, onward, mark_unknown }
             .marked(full, frame.width()))
     }
@@ -74,12 +88,12 @@ impl SegmentedClip {
         let mut sizes = [[0usize; 2]; 256];
         for (&found, &label) in found.iter().zip(&layer) {
             sizes[usize::from(found)][0] += 1;
-            sizes[usize::from(found)][1] += usize::from(self.given[usize::from(label)]);
+            sizes[usize::from(found)][1] += usize::from(self.objects.given[usize::from(label)]);
         }
         let protected = self.protected();
         let is_hidden = |label: u8| {
             let k = usize::from(label);
-            user_objects[k] || self.numbers[k] == 0 || !protected[k] && 2 * sizes[k][1] > sizes[k][0]
+            user_objects[k] || self.objects.numbers[k] == 0 || !protected[k] && 2 * sizes[k][1] > sizes[k][0]
         };
         let hidden: Vec<bool> = (0..=u8::MAX).map(is_hidden).collect();
         let label = |(&layer, &found): (&u8, &u8)| match layer {
@@ -92,19 +106,33 @@ impl SegmentedClip {
 
     /// The labels of the layer of a frame, if it has one. At the pixels of deleted objects, the labels below show.
     pub(super) fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
-        let is_deleted = |label: u8| label > 0 && label != UNLABELLED && self.numbers[usize::from(label)] == 0;
+        let is_deleted = |label: u8| label > 0 && label != UNLABELLED && self.objects.numbers[usize::from(label)] == 0;
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
         labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNLABELLED);
         Some(labels)
     }
 
-    /// The layer of full-size labels; `None` if all are 255. `log_odds` gives the log-odds of a full-size pixel and of the working pixel
+    /// The labels drawn exactly in a frame, if there are any, with the current numbers of their objects; open where an object was deleted.
+    fn exact_labels(&self, index: usize) -> Option<Vec<u8>> {
+        let number = |label: u8| match self.objects.number(label) {
+            0 if label > 0 => UNLABELLED,
+            number => number,
+        };
+        Some(self.frames[index].exact.as_ref()?.map(number).values())
+    }
+
+    /// A layer of full-size labels for a frame; `None` if all are 255. `log_odds` gives the log-odds of a full-size pixel and of the working pixel
     /// whose corner it is.
-    pub(super) fn layer_of(&self, labels: &[u8], log_odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
+    pub(super) fn layer_of(
+        &self,
+        index: usize,
+        labels: &[u8],
+        log_odds: &dyn Fn(usize, usize) -> f32,
+    ) -> Option<Arc<Layer>> {
         if labels.iter().all(|&label| label == UNLABELLED) {
             return None;
         }
-        let scaling = self.scaling();
+        let scaling = self.scaling(index);
         let [width, height] = scaling.small;
         let log_odds = Plane::from_fn(width, height, |x, y| {
             let at = y * width + x;
@@ -115,6 +143,6 @@ impl SegmentedClip {
                 _ => log_odds(p, at),
             }
         });
-        Some(Layer::of(labels, &log_odds))
+        Some(Arc::new(Layer::of(labels, &log_odds)))
     }
 }

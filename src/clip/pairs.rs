@@ -86,7 +86,7 @@ impl LayeredMotion {
 }
 
 /// A [`LayeredMotion`] as it is stored.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KeptLayeredMotion {
     labels: Runs,
     motions: Vec<AffineMotion>,
@@ -113,7 +113,7 @@ impl KeptLayeredMotion {
 }
 
 /// Log-odds as they are stored: multiples of a step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct KeptLogOdds(Runs);
 
 saved!(KeptLogOdds { 0 });

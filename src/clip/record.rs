@@ -1,6 +1,6 @@
 //! A frame of a clip, with its motions to the neighbouring frames.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::options::model;
 use super::pairs::{LayeredMotion, shows_object};
@@ -18,8 +18,8 @@ use crate::view::cost::SMALLEST_NOISE;
 pub(crate) struct PendingFrame {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
-    pub(crate) frame: Rc<Frame>,
-    pub(crate) pyramid: Rc<FramePyramid>,
+    pub(crate) frame: Arc<Frame>,
+    pub(crate) pyramid: Arc<FramePyramid>,
     /// Whether it repeats the previous frame.
     pub(crate) repeats: bool,
     /// Log-odds and motion of the pair with the previous frame.
@@ -33,9 +33,9 @@ impl PendingFrame {
     pub(crate) fn new(frame: Frame, last: Option<&PendingFrame>, settings: &Settings) -> PendingFrame {
         PendingFrame {
             index: last.map_or(0, |last| last.index + 1),
-            pyramid: Rc::new(settings.pyramid(&frame)),
+            pyramid: Arc::new(settings.pyramid(&frame)),
             repeats: last.is_some_and(|last| last.frame.colours() == frame.colours()),
-            frame: Rc::new(frame),
+            frame: Arc::new(frame),
             back: None,
             looked_farther: false,
         }
@@ -95,7 +95,7 @@ pub(crate) struct Record {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
     /// Only in a stream, which describes a frame when it leaves.
-    pub(crate) frame: Option<Rc<Frame>>,
+    pub(crate) frame: Option<Arc<Frame>>,
     /// Whether it repeats the previous frame.
     pub(crate) repeats: bool,
     /// Quantised colour of every working pixel.

@@ -1,6 +1,7 @@
 //! Run-length code of small numbers: it stores the labels or the coarse log-odds of a frame in a few kilobytes.
 
 use super::saved::saved;
+use crate::frame::MAX_SIDE;
 
 /// Values of the pixels of a frame as runs: a value, then its number of repetitions less one in base 128, low digits first, the highest
 /// bit set on all but the last.
@@ -10,6 +11,9 @@ pub(crate) struct Runs(Vec<u8>);
 saved!(Runs { 0 });
 
 impl Runs {
+    /// Of no pixel.
+    pub(crate) const EMPTY: Runs = Runs(Vec::new());
+
     #[inline(never)]
     pub(crate) fn of(values: &[u8]) -> Runs {
         let mut code = Vec::new();
@@ -34,6 +38,12 @@ impl Runs {
             values.extend((0..length).map(|_| value));
         }
         values
+    }
+
+    /// The values of runs from outside the program; `None` if they are not valid or have more values than the largest frame has pixels.
+    pub(crate) fn bounded_values(&self) -> Option<Vec<u8>> {
+        let pixels = self.each().try_fold(0usize, |sum, (_, length)| sum.checked_add(length))?;
+        (pixels <= MAX_SIDE * MAX_SIDE).then(|| self.values())
     }
 
     /// The runs with other values.

@@ -1,6 +1,9 @@
 //! Values of a clip as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
 //! then a hash of all that. Numbers are little-endian.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use crate::error::{Error, Result};
 use crate::hash::hash;
 use crate::motion::AffineMotion;
@@ -171,6 +174,44 @@ impl<T: Saved> Saved for Option<T> {
 
     fn read(bytes: &mut &[u8]) -> Option<Option<T>> {
         if bool::read(bytes)? { T::read(bytes).map(Some) } else { Some(None) }
+    }
+}
+
+impl<T: Saved> Saved for Arc<T> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        T::write(self, bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Arc<T>> {
+        T::read(bytes).map(Arc::new)
+    }
+}
+
+/// The bytes of a text in UTF-8, after their number.
+impl Saved for String {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.len().write(bytes);
+        bytes.extend_from_slice(self.as_bytes());
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<String> {
+        let length = usize::read(bytes)?;
+        String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()
+    }
+}
+
+/// The number of entries, then the entries.
+impl<K: Saved + Ord, V: Saved> Saved for BTreeMap<K, V> {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.len().write(bytes);
+        self.iter().for_each(|(key, value)| {
+            key.write(bytes);
+            value.write(bytes);
+        });
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<BTreeMap<K, V>> {
+        Some(Vec::<(K, V)>::read(bytes)?.into_iter().collect())
     }
 }
 

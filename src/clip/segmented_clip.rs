@@ -1,21 +1,21 @@
 //! Clips whose frames can be read again: they are segmented once, and then give any frame, are corrected and saved.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 use super::annotation::{Direction, ObjectSet};
-use super::frame_state::FrameState;
+use super::frame_state::{Found, FrameState};
 use super::layer::Layer;
-use super::options::ClipOptions;
+use super::objects::Objects;
+use super::options::working_sizes;
 use super::pairs::LayeredMotion;
 use super::saved::{Format, saved};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 use crate::frame::scaling::Scaling;
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
-use crate::options::{Quality, SegmentOptions};
-use crate::pair::settings::Settings;
 
-const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP6 ", env!("CARGO_PKG_VERSION"), "\n") };
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP7 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 /// A clip whose objects are known in every frame. It stores some kilobytes per frame, and not the frames themselves.
 #[derive(Clone, Debug)]
@@ -23,30 +23,21 @@ pub struct SegmentedClip {
     /// Width and height of the frames.
     pub(super) size: [usize; 2],
     pub(super) mark_unknown: bool,
-    /// Whether the quality is the best.
-    pub(super) best: bool,
-    /// Whether the clip was segmented as a stream is, with a look-ahead.
-    pub(super) stream: bool,
-    pub(super) dropped: usize,
-    /// For each object, its number in the results: its own unless the object was merged or deleted.
-    pub(super) numbers: Vec<u8>,
-    /// For each object, whether it is locked.
-    pub(super) locked: Vec<bool>,
-    /// For each object, whether a person has named it, so that only annotations of itself change it.
-    pub(super) named: Vec<bool>,
-    /// For each object, whether masks of it were given, which replace the object found there.
-    pub(super) given: Vec<bool>,
-    /// The hash of every segmented frame.
-    pub(super) hashes: Vec<u64>,
+    pub(super) objects: Arc<Objects>,
     pub(super) frames: Vec<FrameState>,
 }
 
-saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames });
+saved!(SegmentedClip { size, mark_unknown, objects, frames });
 
 impl SegmentedClip {
     /// Number of frames.
     pub fn len(&self) -> usize {
         self.frames.len()
+    }
+
+    /// The objects, to be changed.
+    pub(super) fn objects_mut(&mut self) -> &mut Objects {
+        Arc::make_mut(&mut self.objects)
     }
 
     /// Whether there is no frame.
@@ -61,7 +52,7 @@ impl SegmentedClip {
 
     /// Number of objects for which no number was left; they count as background.
     pub fn dropped(&self) -> usize {
-        self.dropped
+        self.objects.dropped
     }
 
     /// Sets whether pixels whose log-odds do not decide get the label 255.
@@ -71,29 +62,54 @@ impl SegmentedClip {
 
     /// Indices of the frames that contain an object, by its current number.
     pub fn frames_with(&self, object: u8) -> Vec<usize> {
-        let is_it = |(label, _): (u8, usize)| self.numbers[usize::from(label)] == object;
-        let is_there = |frame: &FrameState| {
-            let layers = [Some(&frame.found), frame.layer.as_ref()];
-            layers.into_iter().flatten().any(|layer| layer.labels.each().any(is_it))
-        };
-        (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
+        let is_it = |(label, _): (u8, usize)| self.objects.number(label) == object;
+        (0..self.len()).filter(|&index| self.frames[index].labels().any(is_it)).collect()
     }
 
     /// The objects in any frame, by their numbers before merges and deletions.
     pub fn objects(&self) -> Vec<u8> {
         let mut is_there: ObjectSet = [false; 256];
-        let layers = self.frames.iter().flat_map(|frame| [Some(&frame.found), frame.layer.as_ref()]).flatten();
-        layers.flat_map(|layer| layer.labels.each()).for_each(|(label, _)| is_there[usize::from(label)] = true);
+        let labels = self.frames.iter().flat_map(FrameState::labels);
+        labels.for_each(|(label, _)| is_there[usize::from(label)] = true);
         (1..UNLABELLED).filter(|&object| is_there[usize::from(object)]).collect()
+    }
+
+    /// For each object, whether a person has annotated it in any frame.
+    pub(super) fn annotated(&self) -> ObjectSet {
+        let mut annotated = [false; 256];
+        for frame in &self.frames {
+            let exact = frame.exact.iter().flat_map(|exact| exact.each()).map(|(label, _)| label);
+            let objects = frame.annotation.iter().flat_map(|annotation| annotation.objects()).chain(exact);
+            objects.for_each(|object| annotated[usize::from(object)] = true);
+        }
+        annotated
+    }
+
+    /// Notes the numbers of all objects, which are not given again.
+    pub(super) fn mark_used(&mut self) {
+        let mut used = self.annotated();
+        let labels = self.frames.iter().flat_map(FrameState::labels);
+        labels.for_each(|(label, _)| used[usize::from(label)] = true);
+        let is_new = |k: usize| used[k] && !self.objects.used[k];
+        let new: Vec<usize> = (1..usize::from(UNLABELLED)).filter(|&k| is_new(k)).collect();
+        if !new.is_empty() {
+            let objects = self.objects_mut();
+            new.into_iter().for_each(|k| objects.used[k] = true);
+        }
+    }
+
+    /// The lowest number that no object has had; `None` if none is left.
+    pub(super) fn next_object(&self) -> Option<u8> {
+        (1..UNLABELLED).find(|&k| !self.objects.used[usize::from(k)])
     }
 
     /// First and last frame of the scene that contains a frame.
     pub(super) fn scene(&self, index: usize) -> [usize; 2] {
         let (mut first, mut last) = (index, index);
-        while self.frames[first].back.is_some() && first > 0 {
+        while first > 0 && self.frames[first].goes_on() {
             first -= 1;
         }
-        while last + 1 < self.len() && self.frames[last + 1].back.is_some() {
+        while last + 1 < self.len() && self.frames[last + 1].goes_on() {
             last += 1;
         }
         [first, last]
@@ -119,16 +135,17 @@ impl SegmentedClip {
 
     /// The protected objects, which change only by annotations of themselves: locked, named and merged ones, and those in accepted frames.
     pub(super) fn protected(&self) -> ObjectSet {
-        let mut protected: ObjectSet = std::array::from_fn(|k| self.locked[k] || self.named[k]);
+        let Objects { numbers, locked, named, .. } = &*self.objects;
+        let mut protected: ObjectSet = std::array::from_fn(|k| locked[k] || named[k]);
         for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
             layer.labels.each().for_each(|(label, _)| protected[usize::from(label)] = true);
         }
         let is_merged = |(k, number): &(usize, &u8)| **number != 0 && usize::from(**number) != *k;
-        for (k, &number) in self.numbers.iter().enumerate().filter(is_merged) {
+        for (k, &number) in numbers.iter().enumerate().filter(is_merged) {
             (protected[k], protected[usize::from(number)]) = (true, true);
         }
         // Neither the background nor a deleted object is protected.
-        protected.iter_mut().zip(&self.numbers).for_each(|(of, number)| *of &= *number > 0);
+        protected.iter_mut().zip(numbers).for_each(|(of, number)| *of &= *number > 0);
         protected
     }
 
@@ -143,24 +160,21 @@ impl SegmentedClip {
     /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<SegmentedClip> {
         let clip: SegmentedClip = CLIP.read(bytes)?;
-        if clip.is_valid() { Ok(clip) } else { Err(CLIP.damaged()) }
+        let is_segmented = clip.frames.iter().all(|frame| frame.found.is_some());
+        if is_segmented && clip.is_valid() { Ok(clip) } else { Err(CLIP.damaged()) }
     }
 
-    fn is_valid(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let [width, height] = self.size;
-        if [self.numbers.len(), self.locked.len(), self.named.len(), self.given.len()] != [256; 4]
-            || self.hashes.len() != self.frames.len()
-        {
-            return false;
-        }
-        if self.frames.is_empty() {
-            return self.size == [0, 0];
+        if self.frames.iter().all(|frame| frame.found.is_none()) {
+            return self.size == [0, 0] && self.frames.iter().all(|frame| frame.is_valid([0, 0]));
         }
         if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) {
             return false;
         }
-        let [w, h] = self.scaling().small;
-        self.frames.iter().all(|frame| frame.is_valid(w * h, width * height))
+        let halvings = working_sizes(self.size).map(|scaling| scaling.halvings());
+        let is_known = |frame: &FrameState| frame.found.as_ref().is_none_or(|found| halvings.contains(&found.halvings));
+        self.frames.iter().all(|frame| frame.is_valid(self.size) && is_known(frame))
     }
 
     pub(super) fn check_index(&self, index: usize) -> Result<()> {
@@ -174,50 +188,46 @@ impl SegmentedClip {
         if first != second {
             return Err(Error::FrameSizeMismatch { first, second });
         }
-        if frame.hash() == self.hashes[index] { Ok(()) } else { Err(Error::OtherFrame { index }) }
+        let is_it = |found: &Arc<Found>| found.hash == frame.hash();
+        if self.frames[index].found.as_ref().is_some_and(is_it) { Ok(()) } else { Err(Error::OtherFrame { index }) }
     }
 
-    fn settings(&self) -> Settings {
-        let quality = if self.best { Quality::Best } else { Quality::Fast };
-        let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-        ClipOptions { pair, look_ahead: self.stream.then_some(0) }.settings(self.size)
+    /// The scaling from a frame to its working size.
+    pub(super) fn scaling(&self, index: usize) -> Scaling {
+        Scaling::halved(self.size, self.frames[index].found.as_ref().map_or(0, |found| found.halvings))
     }
 
-    /// The scaling from the frames to their working size.
-    pub(super) fn scaling(&self) -> Scaling {
-        self.settings().scaling(self.size)
-    }
-
-    /// The log-odds of a layer.
-    pub(super) fn log_odds_of(&self, layer: &Layer) -> Plane {
-        let [width, height] = self.scaling().small;
+    /// The log-odds of a layer of a frame.
+    pub(super) fn log_odds_of(&self, index: usize, layer: &Layer) -> Plane {
+        let [width, height] = self.scaling(index).small;
         layer.log_odds.log_odds(width, height)
     }
 
-    /// Labels and log-odds of a frame as the clip was segmented.
+    /// Labels and log-odds found in a frame, which was segmented.
     pub(super) fn found(&self, index: usize) -> (Vec<u8>, Plane) {
-        let found = &self.frames[index].found;
-        (found.labels.values(), self.log_odds_of(found))
+        let (frame, [width, height]) = (&self.frames[index], self.scaling(index).small);
+        let log_odds = frame.found.as_ref().map(|found| self.log_odds_of(index, &found.layer));
+        (frame.found_labels().values(), log_odds.unwrap_or_else(|| Plane::filled(width, height, 0.0)))
     }
 
     /// The labels of a frame as the clip was segmented, enlarged to a size. Merged objects have one number.
     pub(super) fn found_at(&self, index: usize, size: [usize; 2]) -> Vec<u8> {
-        let (objects, labels) = (self.objects_of_found(), self.frames[index].found.labels.values());
+        let (objects, labels) = (self.objects_of_found(), self.frames[index].found_labels().values());
         let labels: Vec<u8> = labels.iter().map(|&label| objects[usize::from(label)]).collect();
-        Scaling::between(size, self.scaling().small).enlarged(&labels)
+        Scaling::between(size, self.scaling(index).small).enlarged(&labels)
     }
 
     /// Whether an object, or one that was merged into it, was found in a frame.
     pub(super) fn is_found_in(&self, index: usize, object: u8) -> bool {
         let objects = self.objects_of_found();
-        self.frames[index].found.labels.each().any(|(label, _)| objects[usize::from(label)] == object)
+        self.frames[index].found_labels().each().any(|(label, _)| objects[usize::from(label)] == object)
     }
 
     /// For each label found automatically, its object. An object that was annotated before it was merged keeps its own annotations, and a
     /// deleted one stands for what is drawn anew in its place.
     pub(super) fn objects_of_found(&self) -> [u8; 256] {
         let is_annotated = |label: u8| self.frames.iter().any(|frame| frame.anchors(label));
-        std::array::from_fn(|label| match self.numbers[label] {
+        std::array::from_fn(|label| match self.objects.numbers[label] {
             number if number > 0 && usize::from(number) != label && !is_annotated(label as u8) => number,
             _ => label as u8,
         })
@@ -225,11 +235,13 @@ impl SegmentedClip {
 
     /// Motion to the next frame of the scene; `None` after its last frame.
     pub(super) fn onward(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].onward.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
+        let found = self.frames[index].found.as_ref()?;
+        found.onward.as_ref().map(|flow| flow.layered_motion(self.scaling(index).small[0]))
     }
 
     /// Motion to the previous frame; `None` before the first frame of a scene.
     pub(super) fn back(&self, index: usize) -> Option<LayeredMotion> {
-        self.frames[index].back.as_ref().map(|flow| flow.layered_motion(self.scaling().small[0]))
+        let found = self.frames[index].found.as_ref()?;
+        found.back.as_ref().map(|flow| flow.layered_motion(self.scaling(index).small[0]))
     }
 }

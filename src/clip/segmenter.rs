@@ -1,16 +1,21 @@
 //! Segmentation of a whole clip, frame by frame.
 
+use std::sync::Arc;
+
 use super::description::{ClipFrame, WorkingFrame};
-use super::frame_state::FrameState;
+use super::frame_state::{Found, FrameState};
 use super::grouping::Census;
 use super::identity::{Identities, Parting};
 use super::options::ClipOptions;
+use super::pairing;
 use super::pairs::{KeptPairs, Pairs};
 use super::parting::divide;
+use super::record::PendingFrame;
+use super::objects::Objects;
 use super::runs::Runs;
 use super::saved::{Format, saved};
 use super::segmented_clip::SegmentedClip;
-use super::tracker::{PreviewSource, Tracker};
+use super::tracker::{PreviewSource, Tracked, Tracker};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::hash::hash;
@@ -38,7 +43,7 @@ use crate::options::{MotionCount, Quality, SegmentOptions};
 #[derive(Debug)]
 pub struct ClipSegmenter {
     tracker: Tracker,
-    frames: Vec<FrameState>,
+    found: Vec<Found>,
     /// The hash of every frame so far.
     hashes: Vec<u64>,
     /// The hash of the options.
@@ -85,13 +90,9 @@ impl ClipSegmenter {
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
         let tracker = Tracker::new(options, false)?;
-        // The options that determine how pairs are solved.
-        let ClipOptions { pair: SegmentOptions { motions, quality, subject, .. }, look_ahead } = *tracker.options();
-        let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
-        let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
-        let options = hash(0, &[motions, u8::from(quality == Quality::Best), u8::from(subject), look_ahead]);
-        let (frames, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(subject), None));
-        Ok(ClipSegmenter { tracker, frames, hashes, options, origin: options, previews })
+        let (options, subject) = (origin_of_options(tracker.options()), tracker.options().pair.subject);
+        let (found, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(subject), None));
+        Ok(ClipSegmenter { tracker, found, hashes, options, origin: options, previews })
     }
 
     /// Takes the next frame. The returned pairs need not be kept.
@@ -129,25 +130,46 @@ impl ClipSegmenter {
         Some(preview.described(frame.luminance()))
     }
 
-    fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
+    /// Whether these are the pairs of the next frame.
+    pub(super) fn knows(&self, frame: &Frame, pairs: &FramePairs) -> bool {
+        let [width, height] = self.working_size(frame);
+        pairs.origin == self.origin_of(frame) && pairs.pairs.is_valid(width * height)
+    }
+
+    fn working_size(&self, frame: &Frame) -> [usize; 2] {
         let size = [frame.width(), frame.height()];
-        let own = frame.hash();
+        self.tracker.options().settings(size).scaling(size).small
+    }
+
+    /// The hash of everything that determines the pairs of the next frame.
+    fn origin_of(&self, frame: &Frame) -> u64 {
         // In a stream, pairs depend on all earlier frames.
-        let before = match (self.tracker.options().look_ahead, self.hashes.last()) {
-            (None, Some(last)) => hash(self.options, &last.to_le_bytes()),
-            _ => self.origin,
-        };
-        let origin = hash(before, &own.to_le_bytes());
-        let working = self.tracker.options().settings(size).scaling(size).small;
-        let is_of_these = |known: &FramePairs| known.origin == origin && known.pairs.is_valid(working[0] * working[1]);
-        if !known.is_none_or(is_of_these) {
+        match (self.tracker.options().look_ahead, self.hashes.last()) {
+            (None, Some(last)) => origin(self.options, *last, frame.hash()),
+            _ => hash(self.origin, &frame.hash().to_le_bytes()),
+        }
+    }
+
+    fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
+        let (own, origin, working) = (frame.hash(), self.origin_of(&frame), self.working_size(&frame));
+        if !known.is_none_or(|known| self.knows(&frame, known)) {
             return Err(invalid("pairs", "they are of other frames or options"));
         }
+        let size = [frame.width(), frame.height()];
         let (tracked, pairs) = self.tracker.push(frame, known.map(|known| known.pairs.pairs(working)))?;
-        self.frames.extend(tracked.map(FrameState::new));
         self.hashes.push(own);
+        self.keep(tracked, size);
         self.origin = origin;
         Ok(pairs)
+    }
+
+    /// Keeps frames whose objects are known.
+    fn keep(&mut self, tracked: impl IntoIterator<Item = Tracked>, size: [usize; 2]) {
+        let halvings = self.tracker.options().settings(size).scaling(size).halvings();
+        for tracked in tracked {
+            let hash = self.hashes[tracked.record.index];
+            self.found.push(Found::new(tracked, halvings, hash));
+        }
     }
 
     /// The clip of the frames so far.
@@ -155,8 +177,9 @@ impl ClipSegmenter {
         let size = self.tracker.size().unwrap_or_default();
         let ClipOptions { pair: options, look_ahead } = *self.tracker.options();
         let dropped = self.tracker.dropped();
-        self.frames.extend(self.tracker.finish().into_iter().map(FrameState::new));
-        if let Some(last) = self.frames.last_mut() {
+        let rest = self.tracker.finish();
+        self.keep(rest, size);
+        if let Some(last) = self.found.last_mut() {
             last.onward = None;
         }
         // With a look-ahead, the numbers stay those that a stream gives.
@@ -165,25 +188,22 @@ impl ClipSegmenter {
             self.part(width);
             self.group(width);
         }
-        let numbers = (0..=u8::MAX).collect();
-        let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
-        let stream = look_ahead.is_some();
-        let ClipSegmenter { hashes, frames, .. } = self;
-        let [locked, named, given] = [(); 3].map(|()| vec![false; 256]);
-        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, named, given, hashes, frames }
+        let objects = Arc::new(Objects::new(dropped));
+        let frames = self.found.into_iter().map(FrameState::of).collect();
+        SegmentedClip { size, mark_unknown: options.mark_unknown, objects, frames }
     }
 
     /// Divides objects that have parted in the earlier frames as well.
     fn part(&mut self, width: usize) {
         for &Parting { frame, from, new } in self.tracker.parted().iter().rev() {
             for t in (0..frame).rev() {
-                let [Some(here), Some(later)] = [t, t + 1].map(|t| self.frames.get(t)) else { break };
+                let [Some(here), Some(later)] = [t, t + 1].map(|t| self.found.get(t)) else { break };
                 let Some(onward) = here.onward.as_ref().map(|flow| flow.layered_motion(width)) else { break };
-                let mut labels = here.found.labels.values();
-                if !divide(&mut labels, &later.found.labels.values(), &onward, from, new) {
+                let mut labels = here.layer.labels.values();
+                if !divide(&mut labels, &later.layer.labels.values(), &onward, from, new) {
                     break;
                 }
-                self.frames[t].found.labels = Runs::of(&labels);
+                self.found[t].layer.labels = Runs::of(&labels);
             }
         }
     }
@@ -191,15 +211,55 @@ impl ClipSegmenter {
     /// Renumbers the objects by what the whole clip shows.
     fn group(&mut self, width: usize) {
         let mut census = Census::new();
-        for frame in &self.frames {
+        for frame in &self.found {
             let onward = frame.onward.as_ref().map(|flow| flow.layered_motion(width));
-            census.add(&frame.found.labels.values(), width, onward.as_ref(), frame.back.is_none());
+            census.add(&frame.layer.labels.values(), width, onward.as_ref(), frame.back.is_none());
         }
         let numbers = census.final_numbers();
-        for frame in &mut self.frames {
-            frame.found.labels = frame.found.labels.map(|label| numbers[usize::from(label)]);
+        for frame in &mut self.found {
+            frame.layer.labels = frame.layer.labels.map(|label| numbers[usize::from(label)]);
         }
     }
+}
+
+/// Solves the pairs of a frame with the previous one, for [`ClipSegmenter::push_known`] and [`Clip::take`](super::Clip::take): any thread or
+/// machine can solve pairs of a clip.
+///
+/// # Errors
+/// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for a number of motions out of range.
+pub fn solve_pair(before: &Frame, frame: &Frame, options: &SegmentOptions) -> Result<FramePairs> {
+    options.motions.validate()?;
+    let [first, second] = [before, frame].map(|frame| (frame.width(), frame.height()));
+    if first != second {
+        return Err(Error::FrameSizeMismatch { first, second });
+    }
+    let of_options = origin_of_options(&ClipOptions::default().with_pair(*options));
+    let origin = origin(of_options, before.hash(), frame.hash());
+    Ok(FramePairs { origin, pairs: solved(before, frame, options).kept() })
+}
+
+/// The pairs of a frame of a whole clip with the previous one.
+pub(super) fn solved(before: &Frame, frame: &Frame, options: &SegmentOptions) -> Pairs {
+    let settings = ClipOptions::default().with_pair(*options).settings([frame.width(), frame.height()]);
+    let last = PendingFrame::new(before.clone(), None, &settings);
+    let newest = PendingFrame::new(frame.clone(), Some(&last), &settings);
+    match newest.repeats {
+        true => pairing::of_repeated(&newest, None, true),
+        false => pairing::of_whole_clip(&last, &newest, &settings),
+    }
+}
+
+/// A hash of the options that determine how pairs are solved.
+fn origin_of_options(options: &ClipOptions) -> u64 {
+    let ClipOptions { pair: SegmentOptions { motions, quality, subject, .. }, look_ahead } = *options;
+    let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
+    let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
+    hash(0, &[motions, u8::from(quality == Quality::Best), u8::from(subject), look_ahead])
+}
+
+/// A hash of everything that determines the pairs of two frames of a whole clip.
+fn origin(options: u64, before: u64, frame: u64) -> u64 {
+    hash(hash(options, &before.to_le_bytes()), &frame.to_le_bytes())
 }
 
 fn invalid(name: &'static str, reason: &str) -> Error {

@@ -1,6 +1,6 @@
 //! From frames to objects at the working size: each frame is paired with its neighbours, held back, cut, and divided into objects.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::farther::{FARTHEST, Farther, FartherPair};
 use super::foreground::{Foreground, Round};
@@ -43,8 +43,8 @@ pub(crate) struct Tracker {
 /// A frame with the results of its own pairs.
 #[derive(Debug)]
 pub(crate) struct PreviewSource {
-    pub(crate) record: Rc<Record>,
-    pub(crate) frame: Rc<Frame>,
+    pub(crate) record: Arc<Record>,
+    pub(crate) frame: Arc<Frame>,
     /// Log-odds of object against background, nats.
     pub(crate) log_odds: Plane,
 }
@@ -52,7 +52,7 @@ pub(crate) struct PreviewSource {
 /// A frame whose objects are known.
 #[derive(Debug)]
 pub(crate) struct Tracked {
-    pub(crate) record: Rc<Record>,
+    pub(crate) record: Arc<Record>,
     /// The object of every working pixel, 0 for the background.
     pub(crate) labels: Vec<u8>,
     /// Log-odds of object against background, joined with those of other frames, nats.
@@ -218,14 +218,14 @@ impl Tracker {
         let is_second_of_two = onward.1.is_none() && self.held.newest().is_some_and(|record| record.back.is_none());
         let frame = pending.frame.clone();
         let (record, log_odds) = pending.recorded(onward, is_second_of_two, self.keeps_frames);
-        let record = Rc::new(record);
+        let record = Arc::new(record);
         self.paired += 1;
         self.preview = Some(PreviewSource { record: record.clone(), frame, log_odds: log_odds.clone() });
         let (record, log_odds) = self.held.push(record, log_odds)?;
         self.cut(record, log_odds)
     }
 
-    fn cut(&mut self, record: Rc<Record>, log_odds: Plane) -> Option<Tracked> {
+    fn cut(&mut self, record: Arc<Record>, log_odds: Plane) -> Option<Tracked> {
         let foreground = self.rounds[0].push(record, log_odds)?;
         self.second_round(foreground)
     }

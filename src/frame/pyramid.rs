@@ -1,7 +1,7 @@
 //! The pyramid of one frame. Nothing in it depends on another frame: a frame of a clip is prepared once and shared by its pairs.
 
-use std::cell::OnceCell;
-use std::rc::Rc;
+use std::sync::OnceLock;
+use std::sync::Arc;
 
 use super::filter::{gaussian, gradients, halve};
 use super::palette::Palette;
@@ -21,26 +21,26 @@ const NARROW: usize = 4;
 /// One size of a frame. Immutable; pairs share its planes.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameLevel {
-    pub(crate) luminance: Rc<Plane>,
+    pub(crate) luminance: Arc<Plane>,
     /// Gradients, grey levels per pixel of this level.
-    pub(crate) dx: Rc<Plane>,
-    pub(crate) dy: Rc<Plane>,
-    energy: OnceCell<Rc<Plane>>,
+    pub(crate) dx: Arc<Plane>,
+    pub(crate) dy: Arc<Plane>,
+    energy: OnceLock<Arc<Plane>>,
 }
 
 impl FrameLevel {
     fn new(luminance: Plane) -> FrameLevel {
         let (dx, dy) = gradients(&luminance);
-        let [luminance, dx, dy] = [luminance, dx, dy].map(Rc::new);
-        FrameLevel { luminance, dx, dy, energy: OnceCell::new() }
+        let [luminance, dx, dy] = [luminance, dx, dy].map(Arc::new);
+        FrameLevel { luminance, dx, dy, energy: OnceLock::new() }
     }
 
     /// Squared gradient length, computed when it is first needed.
-    pub(crate) fn energy(&self) -> Rc<Plane> {
+    pub(crate) fn energy(&self) -> Arc<Plane> {
         let squares = || {
             let mut energy = (*self.dx).clone();
             each_with(energy.values_mut(), [self.dy.values()], |dx, [dy]| dx * dx + dy * dy);
-            Rc::new(energy)
+            Arc::new(energy)
         };
         self.energy.get_or_init(squares).clone()
     }
@@ -69,7 +69,7 @@ pub(crate) struct FramePyramid {
     pub(crate) scaling: Scaling,
     /// Luminance of the working size without blur.
     unblurred: Plane,
-    appearance: OnceCell<Rc<Appearance>>,
+    appearance: OnceLock<Arc<Appearance>>,
 }
 
 /// Pictures and colours of the first frame of a pair, which labels follow.
@@ -89,11 +89,11 @@ impl FramePyramid {
         (0..halvings).for_each(|_| unblurred = halve(&unblurred));
         let levels = levels_of(gaussian(&unblurred, PRE_BLUR), smallest);
         let scaling = Scaling::halved([frame.width(), frame.height()], halvings);
-        FramePyramid { levels, scaling, unblurred, appearance: OnceCell::new() }
+        FramePyramid { levels, scaling, unblurred, appearance: OnceLock::new() }
     }
 
     /// The appearance of the frame, which must be the one from which the pyramid was made. It is computed once.
-    pub(crate) fn appearance(&self, frame: &Frame) -> &Rc<Appearance> {
+    pub(crate) fn appearance(&self, frame: &Frame) -> &Arc<Appearance> {
         self.appearance.get_or_init(|| {
             let palette = Palette::new(frame, &self.scaling);
             let colours = colours(frame, self.scaling.small[0]);
@@ -102,7 +102,7 @@ impl FramePyramid {
                 let half = pictures[pictures.len() - 1].halved();
                 pictures.push(half);
             }
-            Rc::new(Appearance { pictures, palette })
+            Arc::new(Appearance { pictures, palette })
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Two frames at several sizes, on which motions and labels are compared.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::settings::Settings;
 use crate::frame::Frame;
@@ -20,7 +20,7 @@ pub(crate) struct Pair {
     /// Index of the level on which labels are drafted.
     pub(crate) draft: usize,
     /// Pictures and colours that the labels follow, at the sizes of the levels.
-    pub(super) appearance: Rc<Appearance>,
+    pub(super) appearance: Arc<Appearance>,
     /// Between the frames and the working size.
     pub(crate) scaling: Scaling,
 }
@@ -39,7 +39,7 @@ impl Pair {
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
-        let appearance = Rc::clone(pyramid.appearance(first));
+        let appearance = Arc::clone(pyramid.appearance(first));
         Pair { levels, base, selection, draft, appearance, scaling: pyramid.scaling }
     }
 

@@ -1,6 +1,6 @@
 //! Change of brightness, gain and bias, from the first frame to the second.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
@@ -96,8 +96,8 @@ impl GainBias {
     /// Removes the change from the second frame of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
     pub(crate) fn remove_from(self, level: &mut PairLevel) {
         let (scale, bias) = ((1.0 / (1.0 + self.gain / GREY)) as f32, self.bias as f32);
-        let remove = |plane: &mut Rc<Plane>, bias: f32| {
-            Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
+        let remove = |plane: &mut Arc<Plane>, bias: f32| {
+            Arc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
         };
         remove(&mut level.second, bias);
         remove(&mut level.second_dx, 0.0);

@@ -1,6 +1,6 @@
 //! Two frames at one size, with gradients, as alignment and labelling compare them.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::frame::area::Area;
 use crate::frame::pyramid::FrameLevel;
@@ -21,16 +21,16 @@ const NOISE_CORRELATION_HALVED: f32 = 28.0 / 70.0;
 pub(crate) struct PairLevel {
     /// 0 for the working size.
     pub(crate) index: u32,
-    pub(crate) first: Rc<Plane>,
-    pub(crate) second: Rc<Plane>,
+    pub(crate) first: Arc<Plane>,
+    pub(crate) second: Arc<Plane>,
     /// Gradients of the first frame, per pixel of the second.
-    pub(crate) first_dx: Rc<Plane>,
-    pub(crate) first_dy: Rc<Plane>,
+    pub(crate) first_dx: Arc<Plane>,
+    pub(crate) first_dy: Arc<Plane>,
     /// Gradients of the second frame.
-    pub(crate) second_dx: Rc<Plane>,
-    pub(crate) second_dy: Rc<Plane>,
+    pub(crate) second_dx: Arc<Plane>,
+    pub(crate) second_dy: Arc<Plane>,
     /// Squared gradient length of the first frame.
-    pub(crate) energy: Rc<Plane>,
+    pub(crate) energy: Arc<Plane>,
     /// Standard deviation of the residual of a correct motion in flat areas, grey levels (see `noise`).
     pub(crate) noise: f32,
     /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](PairLevel::thinned).
@@ -82,7 +82,7 @@ impl PairLevel {
     /// them on a small level.
     pub(crate) fn thinned(&self) -> PairLevel {
         let stride = self.thinning();
-        let sample = |plane: &Rc<Plane>| if stride == 1 { plane.clone() } else { Rc::new(plane.thinned(stride)) };
+        let sample = |plane: &Arc<Plane>| if stride == 1 { plane.clone() } else { Arc::new(plane.thinned(stride)) };
         PairLevel {
             index: self.index,
             first: sample(&self.first),

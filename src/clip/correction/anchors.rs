@@ -1,5 +1,7 @@
 //! Anchors: the annotated frames from which an object is propagated.
 
+use std::sync::Arc;
+
 use super::features::FrameFeatures;
 use super::plan::Anchor;
 use super::strokes;
@@ -59,7 +61,7 @@ impl SegmentedClip {
                 for (label, Covered { all, ground, others }) in covered.into_iter().enumerate().skip(1) {
                     is_taken[label] |= 2 * others > all;
                     // A lock that was set later takes nothing back.
-                    let is_free = !self.locked[label] || annotation.anchored.contains(&(label as u8));
+                    let is_free = !self.objects.locked[label] || annotation.anchored.contains(&(label as u8));
                     erases[label] = ground > 0 && ground + others < all && is_free;
                 }
             }
@@ -69,11 +71,13 @@ impl SegmentedClip {
         for (erases, t) in erased.iter().zip(first..=last) {
             let is_anchor = |&object: &u8| {
                 let k = usize::from(object);
-                self.numbers[k] > 0 && (names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k]))
+                self.objects.numbers[k] > 0 && (names(self, t, object) || erases[k] && (!is_taken[k] || is_named[k]))
             };
-            let anchored = (1..UNLABELLED).filter(is_anchor).collect();
-            if let Some(annotation) = &mut self.frames[t].annotation {
-                annotation.anchored = anchored;
+            let anchored: Vec<u8> = (1..UNLABELLED).filter(is_anchor).collect();
+            if let Some(annotation) = &mut self.frames[t].annotation
+                && annotation.anchored != anchored
+            {
+                Arc::make_mut(annotation).anchored = anchored;
             }
         }
     }
@@ -103,7 +107,7 @@ impl SegmentedClip {
         let Some(seeds) = self.frames[t].annotation.as_ref().and_then(|of| of.painted_seeds(object)) else {
             return false;
         };
-        let scaling = self.scaling();
+        let scaling = self.scaling(t);
         strokes::paints_over(&self.found_at(t, scaling.small), object, &scaling.gathered(&seeds, Seed::Nothing))
     }
 
@@ -118,7 +122,7 @@ impl SegmentedClip {
     #[inline(never)]
     fn covered(&self, t: usize, annotation: &FrameAnnotation) -> [Covered; 256] {
         let (found, _) = self.found(t);
-        let painted = annotation.painted_labels().map(|labels| self.scaling().gathered(&labels, UNLABELLED));
+        let painted = annotation.painted_labels().map(|labels| self.scaling(t).gathered(&labels, UNLABELLED));
         let painted = painted.unwrap_or_else(|| vec![UNLABELLED; found.len()]);
         let erases = annotation.names_no_object();
         let mut covered = [Covered::default(); 256];
@@ -130,7 +134,7 @@ impl SegmentedClip {
         }
         for (object, outline) in annotation.outlines() {
             for (p, _) in self
-                .scaling()
+                .scaling(t)
                 .gathered(&outline, UNLABELLED)
                 .into_iter()
                 .enumerate()

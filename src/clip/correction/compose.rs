@@ -3,6 +3,8 @@
 //! Precedence: locked objects, then what a person painted in this frame, then objects that do not change, then proposals, of which the one
 //! with the highest log-odds gets the pixel.
 
+use std::sync::Arc;
+
 use super::features::FrameFeatures;
 use super::proposal::Proposal;
 use super::strokes;
@@ -57,9 +59,9 @@ struct Draft {
 
 impl Composition<'_> {
     /// The layer; `None` if it has no label.
-    pub(super) fn layer(&self) -> Option<Layer> {
+    pub(super) fn layer(&self) -> Option<Arc<Layer>> {
         let (clip, state) = (self.clip, &self.clip.frames[self.index]);
-        let annotation = state.annotation.clone().unwrap_or_default();
+        let annotation = state.annotation.as_deref().cloned().unwrap_or_default();
         let layer = state.layer.as_ref();
         let rules = Rules {
             painted: annotation.painted_labels().unwrap_or_default(),
@@ -74,8 +76,8 @@ impl Composition<'_> {
         self.absorb_rims(&rules, &mut draft);
         self.paint(&rules, &mut draft);
         self.give_nothing_back(&rules, &mut draft);
-        let (old, most) = (layer.map(|layer| clip.log_odds_of(layer)), 2.0 * model().certain);
-        clip.layer_of(&draft.labels, &|p, at| match draft.is_held[p] {
+        let (old, most) = (layer.map(|layer| clip.log_odds_of(self.index, layer)), 2.0 * model().certain);
+        clip.layer_of(self.index, &draft.labels, &|p, at| match draft.is_held[p] {
             true => old.as_ref().map_or(0.0, |old| old.values()[at]),
             false => draft.log_odds[p].min(most),
         })
@@ -206,7 +208,7 @@ impl Composition<'_> {
         let erases = rules.annotation.names_no_object();
         for (p, &label) in rules.painted.iter().enumerate().filter(|(_, label)| **label != UNLABELLED) {
             let below = usize::from(if rules.layer[p] == UNLABELLED { self.found[p] } else { rules.layer[p] });
-            let is_named = self.clip.locked[below] || self.clip.named[below];
+            let is_named = self.clip.objects.locked[below] || self.clip.objects.named[below];
             let is_kept = draft.is_held[p] && (is_named || rules.protected[below] && !rules.is_accepted);
             // The ground of a label map applies only to the objects that it names.
             let is_others = match label {

@@ -1,0 +1,52 @@
+//! The objects of a clip: their numbers, locks, names and descriptions.
+
+use std::collections::BTreeMap;
+
+use super::annotation::ObjectSet;
+use super::saved::saved;
+
+/// What a person says about an object in words and colour. An empty text is none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Description {
+    /// Its name. Objects with a name change only by annotations of themselves.
+    pub name: String,
+    /// Its class.
+    pub class: String,
+    /// The colour in which it is shown: red, green and blue.
+    pub colour: Option<[u8; 3]>,
+}
+
+saved!(Description { name, class, colour });
+
+/// All objects of a clip, by number.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Objects {
+    /// For each object, its number in the results: its own unless the object was merged or deleted.
+    pub(super) numbers: [u8; 256],
+    /// For each object, whether it is locked.
+    pub(super) locked: ObjectSet,
+    /// For each object, whether a person has named it, so that only annotations of itself change it.
+    pub(super) named: ObjectSet,
+    /// For each object, whether masks of it were given, which replace the object found there.
+    pub(super) given: ObjectSet,
+    /// The numbers that objects have had: none is given again.
+    pub(super) used: ObjectSet,
+    /// Number of objects for which no number was left; they count as background.
+    pub(super) dropped: usize,
+    pub(super) descriptions: BTreeMap<u8, Description>,
+}
+
+saved!(Objects { numbers, locked, named, given, used, dropped, descriptions });
+
+impl Objects {
+    pub(super) fn new(dropped: usize) -> Objects {
+        let [locked, named, given, used] = [[false; 256]; 4];
+        let numbers = std::array::from_fn(|k| k as u8);
+        Objects { numbers, locked, named, given, used, dropped, descriptions: BTreeMap::new() }
+    }
+
+    /// The number of an object in the results; 0 if it was deleted.
+    pub(super) fn number(&self, object: u8) -> u8 {
+        self.numbers[usize::from(object)]
+    }
+}

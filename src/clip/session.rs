@@ -1,0 +1,790 @@
+//! A clip from its opening to its closing: commands in, labels out, undo, and a journal from which it can be read again.
+//!
+//! - A command takes effect on a copy of the state (`session/steps.rs`), frame by frame; the copy becomes the state as a whole or not at all.
+//! - A range of frames is segmented beside that (`session/ranges.rs`), and takes its place between two commands.
+//! - The states after each step share all parts in which they do not differ (`session/history.rs`).
+//! - The journal has every command before it takes effect, and what it has changed (`session/log.rs`).
+//! - Labels are remembered by what they follow from (`session/shown.rs`).
+
+mod history;
+mod log;
+mod ranges;
+mod shown;
+mod steps;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+
+use super::annotation::is_object;
+use super::changes::Changed;
+use super::command::Command;
+use super::description::ClipFrame;
+use super::frame_state::FrameState;
+use super::objects::{Description, Objects};
+use super::saved::Saved;
+use super::segmented_clip::SegmentedClip;
+use super::segmenter::FramePairs;
+use super::tracks::{ClipTracks, Tracks};
+use crate::answer::UNLABELLED;
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+
+use history::{Difference, History, Remembered, State};
+use log::{Kind, Log, Reader};
+use ranges::RangeJob;
+use shown::Shown;
+use steps::Running;
+
+/// Largest number of commands that wait.
+const MOST_WAITING: usize = 256;
+
+/// A log that has grown by so many bytes, and to twice its size, since it was compacted is compacted again.
+const GROWTH: usize = 1 << 20;
+
+/// Options of a [`Clip`].
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OpenOptions {
+    /// Whether pixels get the label 255 where the log-odds do not decide between object and background.
+    pub mark_unknown: bool,
+    /// Bytes that are kept for undo: the oldest steps are forgotten first. By default 32 MiB.
+    pub undo: usize,
+}
+
+impl Default for OpenOptions {
+    fn default() -> OpenOptions {
+        OpenOptions { mark_unknown: false, undo: 32 << 20 }
+    }
+}
+
+impl OpenOptions {
+    /// The same with or without marks of unknown pixels.
+    #[must_use]
+    pub const fn with_mark_unknown(self, mark_unknown: bool) -> OpenOptions {
+        OpenOptions { mark_unknown, ..self }
+    }
+
+    /// The same with so many bytes for undo.
+    #[must_use]
+    pub const fn with_undo(self, undo: usize) -> OpenOptions {
+        OpenOptions { undo, ..self }
+    }
+}
+
+/// A step: a command that was given to a [`Clip`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StepId(u32);
+
+/// What a frame is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Its pairs with the frames beside it, nearly all the work of segmenting a range.
+    Pairs,
+    /// Annotations that are applied and spread.
+    Annotations,
+    /// Its labels.
+    Labels,
+}
+
+/// A frame that a [`Clip`] needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Index of the frame.
+    pub frame: usize,
+    /// What it is wanted for.
+    pub stage: Stage,
+    /// The step that needs it; `None` for [`Stage::Labels`].
+    pub step: Option<StepId>,
+}
+
+/// What is known of a frame of a [`Clip`].
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameStatus {
+    /// Whether it was segmented.
+    pub has_masks: bool,
+    /// Whether a person has accepted it.
+    pub accepted: bool,
+    /// Whether a person has annotated it.
+    pub annotated: bool,
+    /// A hash of everything that its labels follow from: equal revisions have equal labels. 0 before it is segmented.
+    pub revision: u64,
+}
+
+/// An object of a [`Clip`].
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Object {
+    /// Its number, 1…254.
+    pub number: u8,
+    /// Its name, class and colour.
+    pub description: Description,
+    /// Whether it is locked.
+    pub locked: bool,
+    /// Whether a person has annotated it in any frame.
+    pub annotated: bool,
+    /// The number under which it goes on: its own, that of the object it was merged into, or 0 if it was deleted.
+    pub became: u8,
+}
+
+/// What has happened in a [`Clip`] since the events were taken last.
+#[non_exhaustive]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Events {
+    /// Records for the journal. They have to be kept before anything else is told to anyone: what is kept can be read again.
+    pub records: Vec<u8>,
+    /// Whether the records take the place of the journal so far; otherwise they are appended to it.
+    pub replaces: bool,
+    /// Indices of the frames whose labels have changed, in ascending order.
+    pub frames: Vec<usize>,
+    /// Steps that have taken effect or failed, in order.
+    pub settled: Vec<Settled>,
+}
+
+/// A step that has taken effect or failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// The step.
+    pub step: StepId,
+    /// What objects have gained and lost, or why nothing has changed.
+    pub changes: Result<Vec<Changed>>,
+}
+
+/// A [`Clip`] that was read from a journal.
+#[derive(Debug)]
+pub struct Recovered {
+    /// The clip.
+    pub clip: Clip,
+    /// Number of bytes that were read. What follows was not written completely, or is damaged, and has to be cut off before more is appended.
+    pub used: usize,
+    /// Whether what follows is damaged: steps that had been kept are lost.
+    pub is_damaged: bool,
+}
+
+/// A command that waits, with the frames that it needs.
+#[derive(Clone, Debug)]
+struct Waiting {
+    step: u32,
+    frames: Vec<usize>,
+    /// As it is written in the journal: labels take less memory so.
+    command: Vec<u8>,
+}
+
+/// A clip of frames that can be read again: it is segmented, corrected, and read, from its opening to its closing.
+///
+/// A clip does not hold its frames, and does nothing by itself. [`apply`](Self::apply) takes a command; then the clip asks for the frames that
+/// it [wants](Self::wanted), one after another. Labels of a frame are known once it was [looked at](Self::look_at).
+///
+/// ```
+/// use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions};
+/// use veronese::{Frame, SegmentOptions};
+///
+/// # fn main() -> veronese::Result<()> {
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+/// # let frames = [scene.first().clone(), scene.second().clone()];
+/// let mut clip = Clip::new(frames.len(), OpenOptions::default());
+/// clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
+/// let strokes = (0..160 * 120).map(|p| if p % 160 < 8 { 1 } else { 255 }).collect();
+/// clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: 7, labels: strokes })]))?;
+/// clip.look_at(1);
+/// while let Some(wanted) = clip.wanted() {
+///     clip.take(wanted.frame, &frames[wanted.frame], None)?;
+/// }
+/// let after = clip.labels(1).expect("it was looked at");
+/// assert!(after.objects.iter().any(|object| object.id == 7));
+/// clip.undo();
+/// assert!(clip.objects().iter().all(|object| object.number != 7));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Clip {
+    options: OpenOptions,
+    history: History,
+    /// Commands other than ranges, in the order in which they were given.
+    waiting: VecDeque<Waiting>,
+    running: Option<Running>,
+    /// Ranges to segment; the first is under way.
+    ranges: VecDeque<RangeJob>,
+    /// Solved pairs of frames of ranges that are not complete.
+    pairs: BTreeMap<usize, FramePairs>,
+    /// The frame whose labels come before other work.
+    looked_at: Option<usize>,
+    /// Labels of frames that the command under way has changed.
+    remembered: Remembered,
+    /// The number of the next step.
+    next: u32,
+    log: Log,
+    settled: Vec<Settled>,
+    changed: BTreeSet<usize>,
+}
+
+impl Clip {
+    /// A clip of so many frames, without masks.
+    pub fn new(frames: usize, options: OpenOptions) -> Clip {
+        let mut log = Log::new();
+        log.append(Kind::Open, &frames);
+        Clip::of(frames, options, log)
+    }
+
+    fn of(frames: usize, options: OpenOptions, log: Log) -> Clip {
+        let frames = vec![FrameState::default(); frames];
+        let objects = Arc::new(Objects::new(0));
+        let empty = SegmentedClip { size: [0, 0], mark_unknown: false, objects, frames };
+        Clip {
+            options,
+            history: History::new(empty),
+            waiting: VecDeque::new(),
+            running: None,
+            ranges: VecDeque::new(),
+            pairs: BTreeMap::new(),
+            looked_at: None,
+            remembered: Remembered::new(),
+            next: 1,
+            log,
+            settled: Vec::new(),
+            changed: BTreeSet::new(),
+        }
+    }
+
+    /// A clip from its journal, or from what [`save`](Self::save) gave. Steps whose result the journal does not have wait, and take effect
+    /// again. Reading ends at the first record that is cut off or damaged.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for bytes that are no journal of a clip.
+    pub fn read(bytes: &[u8], options: OpenOptions) -> Result<Recovered> {
+        let reason = "it is no journal of a clip, or of another version".into();
+        let other = || Error::InvalidOption { name: "saved", reason };
+        let Some(mut reader) = Reader::new(bytes) else { return Err(other()) };
+        let Some((Kind::Open, mut content)) = reader.next() else { return Err(other()) };
+        let Some(frames) = usize::read(&mut content).filter(|&frames| frames <= MOST_FRAMES) else {
+            return Err(other());
+        };
+        let mut clip = Clip::of(frames, options, Log::new());
+        let mut is_damaged = false;
+        loop {
+            let before = reader.hash();
+            let Some((kind, content)) = reader.next() else { break };
+            if clip.replay(kind, content).is_none() {
+                reader.refuse(content, before);
+                is_damaged = true;
+                break;
+            }
+        }
+        clip.log = Log::after(&reader);
+        clip.history.forget(options.undo);
+        clip.advance();
+        clip.changed.clear();
+        Ok(Recovered { clip, used: reader.used, is_damaged: is_damaged || reader.is_damaged() })
+    }
+
+    /// Does again what a record says; `None` if that is not valid.
+    fn replay(&mut self, kind: Kind, mut content: &[u8]) -> Option<()> {
+        let length = content.len();
+        let bytes = &mut content;
+        match kind {
+            Kind::Open => return None,
+            Kind::Pairs => {
+                let (frame, pairs) = Saved::read(bytes)?;
+                self.pairs.insert(frame, pairs);
+            }
+            Kind::Command => {
+                let step: usize = Saved::read(bytes)?;
+                let command = Command::read(bytes)?;
+                self.next = u32::try_from(step).ok()?.max(self.next) + 1;
+                self.wait(step as u32, command).ok()?;
+            }
+            Kind::Result => {
+                let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
+                let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
+                let parent = if is_first { 0 } else { parent as u32 };
+                let before = self.history.after(parent)?;
+                let remembered = before.remembered.clone();
+                let segmented: Vec<usize> = difference.segmented().collect();
+                let clip = difference.applied(&before.clip)?;
+                let describes = Some(describes).filter(|&object| object > 0);
+                let state = State::new(step as u32, clip, remembered, describes, length);
+                self.forget_waiting(step as u32);
+                segmented.iter().for_each(|frame| drop(self.pairs.remove(frame)));
+                self.next = self.next.max(step as u32 + 1);
+                match is_first {
+                    true => self.history = History::first(state),
+                    false => self.history.push(parent, state),
+                }
+            }
+            Kind::Current => {
+                let step: usize = Saved::read(bytes)?;
+                self.history.go_to(step as u32).then_some(())?;
+            }
+            Kind::Dropped => {
+                let step: usize = Saved::read(bytes)?;
+                self.forget_waiting(step as u32);
+            }
+            Kind::Range => {
+                let ([step, end], is_complete) = Saved::read(bytes)?;
+                let range = self.ranges.iter_mut().find(|range| range.step as usize == step)?;
+                range.is_complete = is_complete;
+                if end < range.frames.end {
+                    range.finish(Some(end));
+                }
+            }
+            Kind::Shown => {
+                let (frame, shown): (usize, Shown) = Saved::read(bytes)?;
+                let state = self.history.current_mut();
+                let [width, height] = state.clip.size;
+                shown.is_valid(width * height).then_some(())?;
+                state.remembered.insert(frame, Arc::new(shown));
+            }
+        }
+        bytes.is_empty().then_some(())
+    }
+
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.state().clip.len()
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Width and height of the frames; 0 before any is segmented.
+    pub fn size(&self) -> [usize; 2] {
+        self.state().clip.size
+    }
+
+    /// Gives the clip something to do. Commands take effect in the order in which they are given; while a range is being segmented, other
+    /// commands go first if all their frames have masks.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`], [`Error::ObjectLocked`]; nothing has changed then. A command that has to wait can fail later, see
+    /// [`Settled`].
+    pub fn apply(&mut self, command: Command) -> Result<StepId> {
+        self.check(&command)?;
+        let step = self.next;
+        let mut content = Vec::new();
+        (step as usize).write(&mut content);
+        command.write(&mut content);
+        let can_begin = self.running.is_none() && self.waiting.is_empty();
+        match command {
+            command @ Command::Segment { .. } => self.wait(step, command)?,
+            command if can_begin && self.is_ready(&command.frames()) => {
+                self.running = Some(Running::new(step, &self.state().clip, command)?);
+            }
+            command => self.wait(step, command)?,
+        }
+        self.next += 1;
+        self.log.append(Kind::Command, &Written(content));
+        self.advance();
+        Ok(StepId(step))
+    }
+
+    /// Checks what does not depend on the commands before.
+    fn check(&self, command: &Command) -> Result<()> {
+        let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
+        let clip = &self.state().clip;
+        if self.waiting.len() + self.ranges.len() >= MOST_WAITING {
+            return invalid("command", format!("{MOST_WAITING} commands wait already"));
+        }
+        let frames = command.frames();
+        frames.iter().try_for_each(|&frame| clip.check_index(frame))?;
+        let is_coming = |frame: usize| self.ranges.iter().any(|range| range.frames.contains(&frame));
+        let has_masks = |frame: usize| clip.frames[frame].found.is_some();
+        if let Some(frame) = frames.into_iter().find(|&frame| !has_masks(frame) && !is_coming(frame)) {
+            return invalid("frame", format!("frame {frame} has no masks: segment it first"));
+        }
+        match command {
+            Command::Describe { object, .. } if !is_object(*object) => {
+                invalid("object", format!("{object} is no number of an object: these are 1 to 254"))
+            }
+            Command::Merge(objects) if objects.len() < 2 => invalid("objects", "there is nothing to merge".into()),
+            _ => Ok(()),
+        }
+    }
+
+    fn wait(&mut self, step: u32, command: Command) -> Result<()> {
+        if let Command::Segment { frames, options } = command {
+            self.ranges.push_back(RangeJob::new(step, frames, options, self.len())?);
+            return Ok(());
+        }
+        let frames = command.frames();
+        if frames.iter().any(|&frame| frame >= self.len()) {
+            return Err(Error::InvalidOption { name: "frame", reason: "there is no such frame".into() });
+        }
+        let mut bytes = Vec::new();
+        command.write(&mut bytes);
+        self.waiting.push_back(Waiting { step, frames, command: bytes });
+        Ok(())
+    }
+
+    /// Whether a command on some frames can begin: these frames have masks, or any if it is about objects alone.
+    fn is_ready(&self, frames: &[usize]) -> bool {
+        let all = &self.state().clip.frames;
+        let has_masks = |frame: &FrameState| frame.found.is_some();
+        match frames {
+            [] => self.ranges.is_empty() || all.iter().any(has_masks),
+            frames => frames.iter().all(|&frame| has_masks(&all[frame])),
+        }
+    }
+
+    /// Takes back: the last command that waits, or else the one under way, or else the last step. Returns whether there was one.
+    pub fn undo(&mut self) -> bool {
+        let last = self.waiting.back().map(|waiting| waiting.step);
+        match last.or_else(|| self.running.as_ref().map(|running| running.step)) {
+            Some(step) => self.drop_step(step),
+            None => self.go(true),
+        }
+    }
+
+    /// Does again the step that was undone last. Returns whether there was one; there is none while a command is under way.
+    pub fn redo(&mut self) -> bool {
+        self.running.is_none() && self.waiting.is_empty() && self.go(false)
+    }
+
+    /// Goes to the state before or after.
+    fn go(&mut self, is_undo: bool) -> bool {
+        let Some(step) = self.history.beside(is_undo) else { return false };
+        let before = self.state().clip.clone();
+        self.history.go_to(step);
+        self.log.append(Kind::Current, &(step as usize));
+        self.add_changed(&before);
+        true
+    }
+
+    /// Numbers of steps that can be undone and redone, and of commands that have not taken effect.
+    pub fn steps(&self) -> [usize; 3] {
+        let [undo, redo] = self.history.steps();
+        [undo, redo, self.waiting.len() + usize::from(self.running.is_some()) + self.ranges.len()]
+    }
+
+    /// Cancels a step that has not taken effect. Solved pairs are kept. Returns whether there was such a step.
+    pub fn cancel(&mut self, StepId(step): StepId) -> bool {
+        self.drop_step(step)
+    }
+
+    fn drop_step(&mut self, step: u32) -> bool {
+        let is_known = self.forget_waiting(step);
+        if is_known {
+            self.log.append(Kind::Dropped, &(step as usize));
+            self.advance();
+        }
+        is_known
+    }
+
+    fn forget_waiting(&mut self, step: u32) -> bool {
+        let count = self.steps()[2];
+        self.waiting.retain(|waiting| waiting.step != step);
+        self.ranges.retain(|range| range.step != step);
+        if let Some(running) = self.running.take_if(|running| running.step == step) {
+            self.changed.extend((0..self.len()).filter(|&index| running.has_changed(index)));
+            self.remembered.clear();
+        }
+        self.steps()[2] < count
+    }
+
+    /// Ends the range under way after the frames that are in; it fails if these are fewer than two.
+    pub fn finish(&mut self) {
+        if let Some(range) = self.ranges.front_mut() {
+            let end = range.finish(None);
+            self.log.append(Kind::Range, &([range.step as usize, end], false));
+            self.advance();
+        }
+    }
+
+    /// The frame to take next, and what for; `None` when there is nothing to do.
+    pub fn wanted(&self) -> Option<Wanted> {
+        if let Some(frame) = self.looked_at {
+            return Some(Wanted { frame, stage: Stage::Labels, step: None });
+        }
+        if let Some(running) = &self.running {
+            let step = Some(StepId(running.step));
+            return running.wanted().map(|frame| Wanted { frame, stage: Stage::Annotations, step });
+        }
+        let range = self.ranges.front()?;
+        let frame = range.wanted(&self.state().clip)?;
+        Some(Wanted { frame, stage: Stage::Pairs, step: Some(StepId(range.step)) })
+    }
+
+    /// Takes a frame. One that is not [wanted](Self::wanted) changes nothing. `solved` are the pairs of the frame with the previous one, if
+    /// [`solve_pair`](super::solve_pair) has solved them with the options of the range; others are not used.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`], and [`Error::OtherFrame`] for pixels that are not those that were segmented. The right frame can be taken
+    /// after that.
+    pub fn take(&mut self, index: usize, frame: &Frame, solved: Option<&FramePairs>) -> Result<()> {
+        let Some(wanted) = self.wanted().filter(|wanted| wanted.frame == index) else { return Ok(()) };
+        match wanted.stage {
+            Stage::Labels => self.describe(index, frame)?,
+            Stage::Annotations => {
+                let Some(running) = &mut self.running else { return Ok(()) };
+                match running.take(frame) {
+                    Err(error @ (Error::FrameSizeMismatch { .. } | Error::OtherFrame { .. })) => return Err(error),
+                    Err(error) => self.fail(error),
+                    Ok(()) => self.changed.extend(running.has_changed(index).then_some(index)),
+                }
+            }
+            Stage::Pairs => {
+                let clip = &self.history.current().clip;
+                let Some(range) = self.ranges.front_mut() else { return Ok(()) };
+                let known = solved.or_else(|| self.pairs.get(&index));
+                let new = range.take(clip, frame, known)?;
+                // Pairs of another worker are kept as well.
+                let new = new.or_else(|| Some((index, solved?.clone())));
+                if let Some(entry) = new {
+                    self.log.append(Kind::Pairs, &entry);
+                    self.pairs.insert(entry.0, entry.1);
+                }
+            }
+        }
+        self.advance();
+        Ok(())
+    }
+
+    /// Computes the labels of a frame.
+    fn describe(&mut self, index: usize, frame: &Frame) -> Result<()> {
+        let mark_unknown = self.options.mark_unknown;
+        let clip = self.clip_of(index);
+        let shown = Shown::of(&clip.described(index, frame, mark_unknown)?, clip.key(index, mark_unknown));
+        let is_running = self.is_changing(index);
+        let remembered = if is_running { &mut self.remembered } else { &mut self.history.current_mut().remembered };
+        remembered.insert(index, Arc::new(shown));
+        self.looked_at = None;
+        Ok(())
+    }
+
+    /// Asks for the labels of a frame before all other work, unless they are known or the frame is not segmented.
+    pub fn look_at(&mut self, index: usize) {
+        let has_masks = |index: usize| self.state().clip.frames.get(index).is_some_and(|frame| frame.found.is_some());
+        self.looked_at = Some(index).filter(|&index| has_masks(index) && self.shown(index).is_none());
+    }
+
+    /// The labels and objects of a frame as they are now; `None` if they are not known, see [`look_at`](Self::look_at).
+    pub fn labels(&self, index: usize) -> Option<ClipFrame> {
+        self.shown(index).map(|shown| shown.frame(index))
+    }
+
+    fn shown(&self, index: usize) -> Option<&Shown> {
+        let known = if self.is_changing(index) { &self.remembered } else { &self.state().remembered };
+        let shown = known.get(&index)?;
+        (shown.key == self.clip_of(index).key(index, self.options.mark_unknown)).then_some(shown)
+    }
+
+    /// A draft of the newest frame of the range under way, from its own pairs alone, with numbers that may differ from those of the masks.
+    /// `None` if it was returned already.
+    pub fn preview(&mut self) -> Option<ClipFrame> {
+        self.ranges.front_mut()?.preview()
+    }
+
+    /// What is known of each frame.
+    pub fn frames(&self) -> Vec<FrameStatus> {
+        let clip = &self.state().clip;
+        let status = |(index, frame): (usize, &FrameState)| FrameStatus {
+            has_masks: frame.found.is_some(),
+            accepted: frame.accepted,
+            annotated: frame.annotation.is_some() || frame.exact.is_some(),
+            revision: clip.key(index, self.options.mark_unknown),
+        };
+        clip.frames.iter().enumerate().map(status).collect()
+    }
+
+    /// All objects that there have been, by number.
+    pub fn objects(&self) -> Vec<Object> {
+        let clip = &self.state().clip;
+        let Objects { locked, used, descriptions, .. } = &*clip.objects;
+        let annotated = clip.annotated();
+        let object = |number: u8| Object {
+            number,
+            description: descriptions.get(&number).cloned().unwrap_or_default(),
+            locked: locked[usize::from(number)],
+            annotated: annotated[usize::from(number)],
+            became: clip.objects.number(number),
+        };
+        (1..UNLABELLED).filter(|&number| used[usize::from(number)]).map(object).collect()
+    }
+
+    /// The lowest number that no object has had; `None` if none is left.
+    pub fn next_object(&self) -> Option<u8> {
+        self.state().clip.next_object()
+    }
+
+    /// The tracks of all objects in the frames whose labels are known.
+    pub fn tracks(&self) -> ClipTracks {
+        let mut tracks = Tracks::default();
+        for (index, shown) in (0..self.len()).filter_map(|index| Some((index, self.shown(index)?))) {
+            tracks.add(index, shown.objects(), shown.background());
+        }
+        tracks.value(self.state().clip.dropped())
+    }
+
+    /// What has happened since the last call.
+    pub fn take_events(&mut self) -> Events {
+        let is_idle = self.running.is_none() && self.waiting.is_empty() && self.ranges.is_empty();
+        if is_idle && self.log.length > 2 * self.log.compacted + GROWTH {
+            let compacted = self.compacted();
+            self.log.replace(compacted);
+        }
+        let (records, replaces) = self.log.take();
+        let frames = std::mem::take(&mut self.changed).into_iter().collect();
+        Events { records, replaces, frames, settled: std::mem::take(&mut self.settled) }
+    }
+
+    /// The bytes of this clip, for [`read`](Self::read): its states, what waits, and all labels that are known.
+    pub fn save(&self) -> Vec<u8> {
+        self.compacted().take().0
+    }
+
+    fn compacted(&self) -> Log {
+        let mut log = Log::new();
+        log.append(Kind::Open, &self.len());
+        let empty = Clip::of(self.len(), self.options, Log::new()).history.current().clip.clone();
+        let mut before = (0, &empty);
+        for (k, state) in self.history.states().iter().enumerate() {
+            let difference = Difference::between(before.1, &mut state.clip.clone());
+            log.append(Kind::Result, &result(state.step, before.0, &difference, state.describes, k == 0));
+            before = (state.step, &state.clip);
+        }
+        let current = self.state();
+        log.append(Kind::Current, &(current.step as usize));
+        let is_valid = |index: &usize| self.is_known(*index, current);
+        for (index, shown) in current.remembered.iter().filter(|(index, _)| is_valid(index)) {
+            log.append(Kind::Shown, &(*index, shown.clone()));
+        }
+        self.pairs.iter().for_each(|(index, pairs)| log.append(Kind::Pairs, &(*index, pairs.clone())));
+        log
+    }
+
+    fn is_known(&self, index: usize, state: &State) -> bool {
+        let key = || state.clip.key(index, self.options.mark_unknown);
+        state.remembered.get(&index).is_some_and(|shown| shown.key == key())
+    }
+
+    /// The clip with the masks of a frame: as the command under way has left it, if it has changed this frame.
+    fn clip_of(&self, index: usize) -> &SegmentedClip {
+        match &self.running {
+            Some(running) if running.has_changed(index) => &running.clip,
+            _ => &self.state().clip,
+        }
+    }
+
+    fn is_changing(&self, index: usize) -> bool {
+        self.running.as_ref().is_some_and(|running| running.has_changed(index))
+    }
+
+    fn state(&self) -> &State {
+        self.history.current()
+    }
+
+    /// Goes on as far as no frame is needed: commands take effect, and the next ones begin.
+    fn advance(&mut self) {
+        loop {
+            if let Some(running) = self.running.take_if(|running| running.wanted().is_none()) {
+                self.commit(running);
+            } else if self.running.is_some() {
+                return;
+            } else if self.waiting.front().is_some_and(|waiting| self.is_ready(&waiting.frames)) && !self.has_complete_range()
+            {
+                if let Some(Waiting { step, command, .. }) = self.waiting.pop_front() {
+                    let command = Command::read(&mut &command[..]);
+                    let damaged = Error::InvalidOption { name: "command", reason: "it is damaged".into() };
+                    let begun = command.ok_or(damaged);
+                    self.begin(step, begun.and_then(|command| Running::new(step, &self.state().clip, command)));
+                }
+            } else if let Some(range) = self.ranges.pop_front_if(|range| range.wanted(&self.history.current().clip).is_none()) {
+                if !range.is_complete {
+                    self.log.append(Kind::Range, &([range.step as usize, range.frames.end], true));
+                }
+                self.begin(range.step, Running::of_range(range, &self.state().clip));
+            } else if let Some(Waiting { step, frames, .. }) = self.waiting.pop_front_if(|_| self.ranges.is_empty()) {
+                let frame = frames.into_iter().find(|&frame| !self.is_ready(&[frame])).unwrap_or(0);
+                let reason = format!("frame {frame} has no masks: segment it first");
+                self.begin(step, Err(Error::InvalidOption { name: "frame", reason }));
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn has_complete_range(&self) -> bool {
+        self.ranges.front().is_some_and(|range| range.is_complete)
+    }
+
+    fn begin(&mut self, step: u32, begun: Result<Running>) {
+        match begun {
+            Ok(running) => self.running = Some(running),
+            Err(error) => self.failed(step, error),
+        }
+    }
+
+    /// Ends the command under way, which has changed nothing.
+    fn fail(&mut self, error: Error) {
+        let Some(step) = self.running.as_ref().map(|running| running.step) else { return };
+        self.forget_waiting(step);
+        self.failed(step, error);
+    }
+
+    fn failed(&mut self, step: u32, error: Error) {
+        self.log.append(Kind::Dropped, &(step as usize));
+        self.settled.push(Settled { step: StepId(step), changes: Err(error) });
+    }
+
+    /// Makes the copy on which a command has taken effect the state. A command that has changed nothing is no step.
+    fn commit(&mut self, mut running: Running) {
+        let (step, changes) = (running.step, running.changes());
+        running.clip.mark_used();
+        let before = self.state();
+        let is_part = |(object, coalesce)| coalesce && before.describes == Some(object);
+        let joined = running.describes.is_some_and(is_part).then(|| self.history.before()).flatten();
+        let parent = joined.unwrap_or(before);
+        let (parent, difference) = (parent.step, Difference::between(&parent.clip, &mut running.clip));
+        let before_clip = before.clip.clone();
+        let mut remembered = before.remembered.clone();
+        remembered.append(&mut self.remembered);
+        if difference.is_empty() {
+            self.log.append(Kind::Dropped, &(step as usize));
+            self.history.current_mut().remembered = remembered;
+        } else {
+            let describes = running.describes.map(|(object, _)| object);
+            let start = self.log.length;
+            self.log.append(Kind::Result, &result(step, parent, &difference, describes, false));
+            let bytes = self.log.length - start;
+            difference.segmented().for_each(|frame| drop(self.pairs.remove(&frame)));
+            self.history.push(parent, State::new(step, running.clip, remembered, describes, bytes));
+            self.history.forget(self.options.undo);
+            self.add_changed(&before_clip);
+        }
+        self.settled.push(Settled { step: StepId(step), changes: Ok(changes) });
+    }
+
+    /// Adds the frames whose labels differ from those of a state before.
+    fn add_changed(&mut self, before: &SegmentedClip) {
+        let now = &self.history.current().clip;
+        let differs = |&index: &usize| before.key(index, false) != now.key(index, false);
+        self.changed.extend((0..now.len()).filter(differs));
+    }
+}
+
+/// Largest number of frames of a clip that is read.
+const MOST_FRAMES: usize = 1 << 24;
+
+/// A content of a record that is written already.
+struct Written(Vec<u8>);
+
+impl Saved for Written {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.0);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Written> {
+        Some(Written(std::mem::take(bytes).to_vec()))
+    }
+}
+
+/// The content of a record of what a step has changed.
+fn result(step: u32, parent: u32, difference: &Difference, describes: Option<u8>, is_first: bool) -> Written {
+    let mut bytes = Vec::new();
+    [step as usize, parent as usize].write(&mut bytes);
+    difference.write(&mut bytes);
+    (describes.unwrap_or(0), is_first).write(&mut bytes);
+    Written(bytes)
+}

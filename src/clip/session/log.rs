@@ -1,0 +1,164 @@
+//! The journal of a clip: an append-only log of records, from which the clip can be read again.
+//!
+//! A head of 16 bytes is followed by records. A record is its kind, the length of its content, a check of both, the content, and a hash of
+//! all that, seeded with the hash of the record before: a record that is missing, damaged or cut off ends the reading.
+
+use crate::clip::saved::Saved;
+use crate::hash::hash;
+
+/// The first bytes of a journal: the name of the format, its version and a zero.
+const HEAD: &[u8; 16] = b"VERONESE CLIP\x01\0\0";
+
+/// Bytes of a record before its content, and after it.
+const BEFORE: usize = 6;
+const AFTER: usize = 8;
+
+/// What a record contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The number of frames.
+    Open = 1,
+    /// A frame and its solved pairs.
+    Pairs = 2,
+    /// A command, when it is given.
+    Command = 3,
+    /// What a command has changed, when it has taken effect.
+    Result = 4,
+    /// The current step, after undo or redo.
+    Current = 5,
+    /// A command that was cancelled or failed.
+    Dropped = 6,
+    /// The labels of a frame as they are shown.
+    Shown = 7,
+    /// Where a range ends, and whether all its frames have been in.
+    Range = 8,
+}
+
+impl Kind {
+    fn of(code: u8) -> Option<Kind> {
+        use Kind::{Command, Current, Dropped, Open, Pairs, Range, Result, Shown};
+        [Open, Pairs, Command, Result, Current, Dropped, Shown, Range].into_iter().find(|kind| *kind as u8 == code)
+    }
+}
+
+/// A log that is being written.
+#[derive(Clone, Debug)]
+pub(super) struct Log {
+    /// Records that the host has not taken yet.
+    records: Vec<u8>,
+    /// The hash of the last record.
+    last: u64,
+    /// Length of the whole log, bytes.
+    pub(super) length: usize,
+    /// Its length when it was compacted last, bytes.
+    pub(super) compacted: usize,
+    /// Whether the records are the whole log, in place of the one before.
+    replaces: bool,
+}
+
+impl Log {
+    /// A new log.
+    pub(super) fn new() -> Log {
+        Log { records: HEAD.to_vec(), last: 0, length: HEAD.len(), compacted: 0, replaces: true }
+    }
+
+    /// A log that goes on after the records that were read.
+    pub(super) fn after(reader: &Reader<'_>) -> Log {
+        let length = reader.used;
+        Log { records: Vec::new(), last: reader.last, length, compacted: 0, replaces: false }
+    }
+
+    pub(super) fn append(&mut self, kind: Kind, content: &impl Saved) {
+        let start = self.records.len();
+        self.records.push(kind as u8);
+        [0u8; BEFORE - 1].write(&mut self.records);
+        content.write(&mut self.records);
+        let length = self.records.len() - start - BEFORE;
+        let head = head(kind as u8, length);
+        self.records[start..start + BEFORE].copy_from_slice(&head);
+        self.last = hash(self.last, &self.records[start..]);
+        self.last.write(&mut self.records);
+        self.length += self.records.len() - start;
+    }
+
+    /// Puts a compacted log in the place of this one.
+    pub(super) fn replace(&mut self, compacted: Log) {
+        let length = compacted.length;
+        *self = Log { compacted: length, replaces: true, ..compacted };
+    }
+
+    /// The records since the last call, and whether they replace the log.
+    pub(super) fn take(&mut self) -> (Vec<u8>, bool) {
+        let replaces = std::mem::take(&mut self.replaces);
+        (std::mem::take(&mut self.records), replaces)
+    }
+}
+
+/// Reads the records of a log.
+pub(super) struct Reader<'b> {
+    bytes: &'b [u8],
+    /// The hash of the last record.
+    last: u64,
+    /// Number of bytes that were read.
+    pub(super) used: usize,
+}
+
+impl<'b> Reader<'b> {
+    /// `None` for bytes that are no log of this format.
+    pub(super) fn new(bytes: &'b [u8]) -> Option<Reader<'b>> {
+        bytes.starts_with(HEAD).then_some(Reader { bytes, last: 0, used: HEAD.len() })
+    }
+
+    /// The next record; `None` at the end, and where a record is cut off or damaged.
+    pub(super) fn next(&mut self) -> Option<(Kind, &'b [u8])> {
+        let rest = self.bytes.get(self.used..)?;
+        let length = length_of(rest)?;
+        let end = length.checked_add(BEFORE)?;
+        let (record, mut sum) = (rest.get(..end)?, rest.get(end..end.checked_add(AFTER)?)?);
+        let hash = hash(self.last, record);
+        // A fuzzer does not guess sums.
+        if u64::read(&mut sum)? != hash && !cfg!(fuzzing) {
+            return None;
+        }
+        let kind = Kind::of(record[0])?;
+        self.last = hash;
+        self.used += end + AFTER;
+        Some((kind, &record[BEFORE..]))
+    }
+
+    /// Goes back before the record that was read last, whose length is given: its content is not valid.
+    pub(super) fn refuse(&mut self, content: &[u8], last: u64) {
+        self.used -= BEFORE + content.len() + AFTER;
+        self.last = last;
+    }
+
+    /// The hash of the last record.
+    pub(super) fn hash(&self) -> u64 {
+        self.last
+    }
+
+    /// Whether what could not be read is damaged. The beginning of a record that was cut off is not, nor are zeros that a file system has put
+    /// in the place of what was not written.
+    pub(super) fn is_damaged(&self) -> bool {
+        let rest = self.bytes.get(self.used..).unwrap_or_default();
+        let is_cut_off = match length_of(rest) {
+            Some(length) => rest.len() < length.saturating_add(BEFORE + AFTER),
+            None => rest.len() < BEFORE,
+        };
+        !is_cut_off && rest.iter().any(|&byte| byte != 0)
+    }
+}
+
+/// The bytes before the content of a record: its kind, the length of its content, and the sum of these bytes.
+fn head(kind: u8, length: usize) -> [u8; BEFORE] {
+    let [a, b, c, d] = (length as u32).to_le_bytes();
+    let sum = [kind, a, b, c, d].into_iter().fold(0x5a_u8, |sum, byte| sum.rotate_left(3).wrapping_add(byte));
+    [kind, a, b, c, d, sum]
+}
+
+/// The length of the content of a record; `None` if its head is cut off or damaged.
+fn length_of(record: &[u8]) -> Option<usize> {
+    let found = record.first_chunk::<BEFORE>()?;
+    let length = usize::read(&mut &found[1..5])?;
+    (*found == head(found[0], length)).then_some(length)
+}

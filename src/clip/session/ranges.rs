@@ -1,0 +1,272 @@
+//! Ranges of frames that are segmented together, and their place in the clip: the numbers of their objects, and the pairs with the frames
+//! beside them.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::answer::UNLABELLED;
+use crate::clip::description::ClipFrame;
+use crate::clip::frame_state::{Found, FrameState};
+use crate::clip::options::ClipOptions;
+use crate::clip::pairs::{KeptLayeredMotion, Pairs};
+use crate::clip::segmented_clip::SegmentedClip;
+use crate::clip::segmenter::{ClipSegmenter, FramePairs, solved};
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::options::SegmentOptions;
+use crate::order::descending;
+
+/// Objects are the same if the intersection of their pixels is at least this share of the union.
+const LEAST_SHARE: f64 = 0.1;
+
+/// A range that is being segmented. The frames beside it are taken as well, if they have masks of the same working size.
+#[derive(Debug)]
+pub(super) struct RangeJob {
+    pub(super) step: u32,
+    /// The frames of the range.
+    pub(super) frames: Range<usize>,
+    options: SegmentOptions,
+    segmenter: ClipSegmenter,
+    /// The next frame.
+    next: usize,
+    /// Whether it was ended early.
+    is_finished: bool,
+    /// Whether all frames have been in: it takes effect before any command that was given later.
+    pub(super) is_complete: bool,
+    /// The last frame that was taken.
+    last: Option<Frame>,
+    /// The pairs of the first frame with the one before the range, and of the frame after the range with the last one.
+    beside: [Option<Pairs>; 2],
+}
+
+impl RangeJob {
+    /// # Errors
+    /// [`Error::InvalidOption`] for a range of fewer than two frames and for options out of range.
+    pub(super) fn new(step: u32, frames: Range<usize>, options: SegmentOptions, length: usize) -> Result<RangeJob> {
+        if frames.end > length || frames.start + 2 > frames.end {
+            let Range { start, end } = frames;
+            let reason = format!("{start}..{end} is no range of at least two of the {length} frames");
+            return Err(Error::InvalidOption { name: "frames", reason });
+        }
+        let segmenter = ClipSegmenter::new(ClipOptions::default().with_pair(options))?;
+        let next = frames.start.saturating_sub(1);
+        Ok(RangeJob { step, frames, options, segmenter, next, is_finished: false, is_complete: false, last: None, beside: [None, None] })
+    }
+
+    /// The frame to take next; `None` when all are in.
+    pub(super) fn wanted(&self, clip: &SegmentedClip) -> Option<usize> {
+        let Range { start, end } = self.frames;
+        if self.is_finished && self.next >= end {
+            return None;
+        }
+        match self.next {
+            next if (start..end).contains(&next) => Some(next),
+            next if next < start => Some(if self.reaches(clip, next) { next } else { start }),
+            next => Some(next).filter(|&next| next == end && next < clip.len() && self.reaches(clip, next)),
+        }
+    }
+
+    /// Whether a frame beside the range has masks of the working size of the range.
+    fn reaches(&self, clip: &SegmentedClip, beside: usize) -> bool {
+        let halvings = ClipOptions::default().with_pair(self.options).settings(clip.size).scaling(clip.size).halvings();
+        clip.frames[beside].found.as_ref().is_some_and(|found| found.halvings == halvings)
+    }
+
+    /// Takes the frame that is [`wanted`](Self::wanted). Returns its pairs, if they had to be solved.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`], [`Error::OtherFrame`] for another frame beside the range; another frame can be taken.
+    pub(super) fn take(
+        &mut self,
+        clip: &SegmentedClip,
+        frame: &Frame,
+        known: Option<&FramePairs>,
+    ) -> Result<Option<(usize, FramePairs)>> {
+        let Some(index) = self.wanted(clip) else { return Ok(None) };
+        let is_beside = !self.frames.contains(&index);
+        if is_beside {
+            clip.check(index, frame)?;
+        } else if let Some(size) = self.other_size(clip, frame) {
+            return Err(size);
+        }
+        let mut new = None;
+        if !is_beside {
+            match known.filter(|known| self.segmenter.knows(frame, known)) {
+                Some(known) => self.segmenter.push_known(frame.clone(), known)?,
+                None => new = Some((index, self.segmenter.push(frame.clone())?)),
+            }
+        }
+        if let Some(last) = &self.last
+            && (index == self.frames.start || is_beside)
+        {
+            self.beside[usize::from(is_beside)] = Some(solved(last, frame, &self.options));
+        }
+        self.last = Some(frame.clone());
+        self.next = index + 1;
+        Ok(new)
+    }
+
+    /// A range of frames of another size has to contain all frames that have masks.
+    fn other_size(&self, clip: &SegmentedClip, frame: &Frame) -> Option<Error> {
+        let second = (frame.width(), frame.height());
+        let outside = (0..clip.len()).find(|t| !self.frames.contains(t) && clip.frames[*t].found.is_some());
+        let first = (clip.size[0], clip.size[1]);
+        (outside.is_some() && first != second).then_some(Error::FrameSizeMismatch { first, second })
+    }
+
+    /// Ends the range before a frame, or after the frames that are in. No frame beside it is wanted any more. Returns where it ends.
+    pub(super) fn finish(&mut self, end: Option<usize>) -> usize {
+        self.frames.end = end.unwrap_or(self.next).clamp(self.frames.start, self.frames.end);
+        self.is_finished = true;
+        self.frames.end
+    }
+
+    /// A draft of the newest frame.
+    pub(super) fn preview(&mut self) -> Option<ClipFrame> {
+        let mut preview = self.segmenter.preview()?;
+        preview.index += self.frames.start;
+        Some(preview)
+    }
+
+    /// The clip with the masks of this range in place of those before. It has no annotations yet in the scenes of the range; these scenes are
+    /// returned as well, from the first frame to the last.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for a range that was ended before its second frame.
+    pub(super) fn conclude(self, before: &SegmentedClip) -> Result<(SegmentedClip, [usize; 2])> {
+        let RangeJob { frames: range @ Range { start, end }, segmenter, beside, .. } = self;
+        if start + 2 > end {
+            let reason = format!("a range needs two frames, there are {}", end - start);
+            return Err(Error::InvalidOption { name: "frames", reason });
+        }
+        let run = segmenter.conclude();
+        let mut clip = before.clone();
+        clip.size = run.size;
+        let numbers = numbers_of(&run, before, start, &mut clip);
+        let [first, last] = [start, end - 1].map(|t| before.scene(t));
+        for (frame, now) in run.frames.into_iter().zip(&mut clip.frames[range]) {
+            let found = frame.found.as_deref().cloned().map(|mut found| {
+                found.layer.labels = found.layer.labels.map(|label| numbers[usize::from(label)]);
+                Arc::new(found)
+            });
+            *now = FrameState { found, exact: now.exact.take(), ..FrameState::default() };
+        }
+        let [from_before, to_after] = beside;
+        if start > 0 {
+            clip.join(start, from_before, before);
+        }
+        if end < clip.len() {
+            clip.join(end, to_after, before);
+        }
+        let [now_first, now_last] = [start, end - 1].map(|t| clip.scene(t));
+        Ok((clip, [first[0].min(now_first[0]), last[1].max(now_last[1])]))
+    }
+}
+
+impl SegmentedClip {
+    /// Sets the motions between a frame and the previous one. Without solved pairs they stay as they were before, if the working size is the
+    /// same.
+    fn join(&mut self, index: usize, pairs: Option<Pairs>, before: &SegmentedClip) {
+        let kept = |pair: Option<(_, _)>| pair.map(|(_, motion)| KeptLayeredMotion::of(&motion));
+        let halvings = |clip: &SegmentedClip| {
+            let found = |t: usize| clip.frames[t].found.as_ref().map(|found| found.halvings);
+            [found(index - 1), found(index)]
+        };
+        let old = |t: usize| before.frames[t].found.as_deref().filter(|_| halvings(before) == halvings(self));
+        let (onward, back) = match pairs {
+            Some(Pairs { onward, back, .. }) => (kept(onward), kept(back)),
+            None => (old(index - 1).and_then(|of| of.onward.clone()), old(index).and_then(|of| of.back.clone())),
+        };
+        let set = |found: Option<&mut Arc<Found>>, set: &dyn Fn(&mut Found)| {
+            if let Some(found) = found {
+                set(Arc::make_mut(found));
+            }
+        };
+        set(self.frames[index - 1].found.as_mut(), &|found| found.onward = onward.clone());
+        set(self.frames[index].found.as_mut(), &|found| found.back = back.clone());
+    }
+}
+
+/// The numbers of the objects of a run in the clip: each object keeps the number of the one that it overlaps most, compared with what was
+/// found before, then with what a person made. Another object gets its own number if it is free, or else the lowest free one; without any,
+/// it becomes background.
+fn numbers_of(run: &SegmentedClip, before: &SegmentedClip, start: usize, now: &mut SegmentedClip) -> [u8; 256] {
+    let mut numbers: [Option<u8>; 256] = [None; 256];
+    (numbers[0], numbers[usize::from(UNLABELLED)]) = (Some(0), Some(UNLABELLED));
+    let mut is_matched = [false; 256];
+    for is_layer in [false, true] {
+        for (was, is) in overlaps(run, before, start, is_layer) {
+            if was > 0 && was != UNLABELLED && numbers[usize::from(is)].is_none() && !is_matched[usize::from(was)] {
+                numbers[usize::from(is)] = Some(was);
+                is_matched[usize::from(was)] = true;
+            }
+        }
+    }
+    let objects = now.objects_mut();
+    objects.dropped += run.objects.dropped;
+    std::array::from_fn(|k| {
+        let own = k as u8;
+        numbers[k].unwrap_or_else(|| {
+            let is_there = run.frames.iter().any(|frame| frame.found_labels().names(own));
+            if !is_there {
+                return 0;
+            }
+            let mut free = std::iter::once(own).chain(1..UNLABELLED).filter(|&k| !objects.used[usize::from(k)]);
+            let number = free.next().unwrap_or(0);
+            match number {
+                0 => objects.dropped += 1,
+                number => objects.used[usize::from(number)] = true,
+            }
+            number
+        })
+    })
+}
+
+/// Pairs of a label before and an object of a run that overlap, those with the largest share in common first. A frame without masks is
+/// compared with its neighbour outside the run.
+fn overlaps(run: &SegmentedClip, before: &SegmentedClip, start: usize, is_layer: bool) -> Vec<(u8, u8)> {
+    let mut common: BTreeMap<(u8, u8), usize> = BTreeMap::new();
+    let mut areas = [[0usize; 256]; 2];
+    for (k, frame) in run.frames.iter().enumerate() {
+        let known = |t: usize| before.frames.get(t).is_some_and(|frame| frame.found.is_some());
+        let (index, end) = (start + k, start + run.len());
+        let neighbour = match index {
+            index if known(index) => Some(index),
+            index if index == start && start > 0 && known(start - 1) => Some(start - 1),
+            index if index + 1 == end && known(end) => Some(end),
+            _ => None,
+        };
+        let Some(neighbour) = neighbour else { continue };
+        let size = run.scaling(k).small;
+        let Some(labels) = before.labels_at(neighbour, size, is_layer) else { continue };
+        for (was, is) in labels.into_iter().zip(frame.found_labels().values()) {
+            areas[0][usize::from(was)] += 1;
+            areas[1][usize::from(is)] += 1;
+            *common.entry((was, is)).or_default() += 1;
+        }
+    }
+    let share = |&((was, is), pixels): &((u8, u8), usize)| {
+        pixels as f64 / (areas[0][usize::from(was)] + areas[1][usize::from(is)] - pixels) as f64
+    };
+    let pairs: Vec<((u8, u8), usize)> =
+        common.into_iter().filter(|of| share(of) >= LEAST_SHARE).collect();
+    descending(pairs.iter().map(share)).into_iter().map(|k| pairs[k].0).collect()
+}
+
+impl SegmentedClip {
+    /// The labels found in a frame or, with `is_layer`, those of its layer, at some size: each pixel has that of the nearest one.
+    fn labels_at(&self, index: usize, size: [usize; 2], is_layer: bool) -> Option<Vec<u8>> {
+        let frame = &self.frames[index];
+        let (labels, before) = match is_layer {
+            true => (frame.layer.as_ref()?.labels.values(), self.size),
+            false => (frame.found_labels().values(), self.scaling(index).small),
+        };
+        Some(resized(&labels, before, size))
+    }
+}
+
+/// A label image at another size: each pixel has the label of the nearest one.
+pub(super) fn resized(labels: &[u8], [w, h]: [usize; 2], [width, height]: [usize; 2]) -> Vec<u8> {
+    (0..width * height).map(|p| labels[(p / width * h / height) * w + p % width * w / width]).collect()
+}
