@@ -9,8 +9,9 @@
 //!    joined, and objects of a few frames are dropped (`clip/grouping.rs`).
 //! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
-//! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels at the working size; its [`SegmentedClip`]
-//! returns any frame as often as it is asked, takes corrections and can be saved.
+//! A [`StreamSegmenter`] does all this frame by frame, for frames that come once. A [`Clip`] keeps the labels at the working size, from its
+//! opening to its closing: it is segmented in one range of frames or several, returns the labels of any frame, takes annotations, undoes
+//! them, and can be read again from its journal (`clip/session.rs`).
 
 mod annotation;
 mod carry;
@@ -45,18 +46,26 @@ mod stream;
 mod tracker;
 mod tracks;
 
-pub use annotation::{Accepted, Annotations, Click, Painted, Prompt, Spread};
+pub use annotation::{Click, Spread};
 pub use changes::Changed;
 pub use command::{Annotation, Command, Content, Declaration};
 pub use description::{ClipFrame, ClipObject};
-pub use job::ClipJob;
 pub use objects::Description;
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use options::vary;
 pub use options::{ClipOptions, MAX_LOOK_AHEAD};
-pub use segmented_clip::SegmentedClip;
-pub use segmenter::{ClipSegmenter, FramePairs, solve_pair};
+pub use segmenter::{FramePairs, solve_pair};
 pub use session::{Clip, Events, FrameStatus, Object, OpenOptions, Recovered, Settled, Stage, StepId, Wanted};
 pub use stream::StreamSegmenter;
 pub use tracks::{ClipTrack, ClipTracks};
+
+// What the npm package calls: a segmented clip whose states the caller keeps.
+#[doc(hidden)]
+pub use annotation::{Accepted, Annotations, Painted, Prompt};
+#[doc(hidden)]
+pub use job::ClipJob;
+#[doc(hidden)]
+pub use segmented_clip::SegmentedClip;
+#[doc(hidden)]
+pub use segmenter::ClipSegmenter;

@@ -72,40 +72,43 @@
 //! # }
 //! ```
 //!
-//! # Correcting masks
+//! # A clip, from its opening to its closing
 //!
-//! A [`clip`] takes corrections: a person annotates which object some pixels of some frames belong to, and masks change in all frames
-//! without solving a pair again. Two frames are a clip, too. Here a stroke takes the upper half of an object away from it:
+//! A [`Clip`](clip::Clip) is segmented, read and corrected: a person annotates which object some pixels of some frames belong to, and masks
+//! change in all frames without solving a pair again. Each command is a step that can be undone, and is kept in a journal. The clip asks for
+//! the frames that it needs. Two frames are a clip, too. Here a stroke takes the upper half of an object away from it:
 //!
 //! ```
-//! use veronese::clip::{Annotations, ClipOptions, ClipSegmenter, Painted, Spread};
+//! use veronese::SegmentOptions;
+//! use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions};
 //!
 //! # fn main() -> veronese::Result<()> {
 //! # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 //! # let frames = [scene.first(), scene.second()];
-//! let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
-//! for frame in frames {
-//!     segmenter.push(frame.clone())?;
-//! }
-//! let mut clip = segmenter.conclude();
-//! let found = [clip.frame(0, frames[0])?, clip.frame(1, frames[1])?];
-//! let object = &found[0].objects[0];
+//! let mut clip = Clip::new(frames.len(), OpenOptions::default());
+//! let labels_of = |clip: &mut Clip, index| -> veronese::Result<_> {
+//!     clip.look_at(index);
+//!     while let Some(wanted) = clip.wanted() {
+//!         clip.take(wanted.frame, frames[wanted.frame], None)?;
+//!     }
+//!     Ok(clip.labels(index).expect("this frame was looked at"))
+//! };
+//! clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
+//! let found = [labels_of(&mut clip, 0)?, labels_of(&mut clip, 1)?];
 //!
-//! let mut labels = vec![255; 160 * 120]; // not annotated
-//! let [x, y, width, height] = object.bbox;
-//! for row in y..y + height / 2 {
-//!     labels[160 * row + x..][..width].fill(0); // not the object
-//! }
-//! let stroke = Painted { frame: 0, object: Some(object.id), labels, spread: Spread::Both };
-//! let mut job = clip.annotate(Annotations { corrections: vec![stroke], ..Annotations::default() })?;
-//! while let Some(wanted) = job.wanted() {
-//!     job.take(&mut clip, frames[wanted])?;
-//! }
+//! let object = &found[0].objects[0];
+//! let [_, y, _, height] = object.bbox;
+//! let is_upper = |p: usize| p / 160 < y + height / 2;
+//! let labels = (0..160 * 120).map(|p| if is_upper(p) { 0 } else { 255 }).collect(); // 0: not the object; 255: not annotated
+//! clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: object.id, labels })]))?;
 //! for (index, before) in found.iter().enumerate() {
-//!     let now = clip.frame(index, frames[index])?;
-//!     assert_eq!(now.objects[0].id, object.id);
-//!     assert!(now.objects[0].pixels < before.objects[0].pixels); // in both frames
+//!     assert!(labels_of(&mut clip, index)?.objects[0].pixels < before.objects[0].pixels); // in both frames
 //! }
+//!
+//! let again = Clip::read(&clip.save(), OpenOptions::default())?.clip; // tomorrow
+//! assert_eq!(again.labels(1).map(|frame| frame.labels), clip.labels(1).map(|frame| frame.labels));
+//! clip.undo();
+//! assert_eq!(labels_of(&mut clip, 1)?.labels, found[1].labels);
 //! # Ok(())
 //! # }
 //! ```

@@ -1,5 +1,6 @@
 //! The annotator benchmark: what somebody gets for what he says of a clip. `npm run annotator` runs it.
 
+mod clip;
 mod fit;
 mod harm;
 mod measure;
@@ -24,6 +25,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   harm           what a true mask of one frame, and rounds of strokes, do to the other frames: the same; writes harm.jsonl
   points         frames of the real clips with a box or clicks: the same; writes points.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
+  clip           200 frames with 50 strokes: latency, journal and memory; writes clip.jsonl
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
   --data DIR         folder of the real clips; default ../shared/data/clips
@@ -74,7 +76,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "harm" | "points" | "objects" | "fit" => options.step = name,
+            "frames" | "measure" | "harm" | "points" | "objects" | "clip" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -93,7 +95,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, harm, points, objects or fit.".into()),
+        true => Err("Say which step: frames, measure, harm, points, objects, clip or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -118,6 +120,11 @@ fn run(options: &Options) -> Result<(), Failure> {
         "objects" => {
             let cases = options.chosen(objects::cases());
             options.on_all(&cases, |case| objects::measure(case, options)).map(drop)
+        }
+        "clip" => {
+            let rows = options.real()?.iter().map(|case| clip::measure(case, options)).collect::<Result<Vec<_>, _>>()?;
+            let lines: Vec<String> = rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
+            Ok(fs::write(options.out.join("clip.jsonl"), lines.join("\n") + "\n")?)
         }
         "points" => options.on_all(&options.real()?, |case| points::measure(case, options)).map(drop),
         "harm" => {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 /// A rectangle of pixels.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Area {
     pub(crate) columns: Range<usize>,
     pub(crate) rows: Range<usize>,
@@ -57,6 +57,11 @@ impl Area {
     pub(crate) fn pixels(&self, width: usize) -> impl Iterator<Item = usize> + use<> {
         let columns = self.columns.clone();
         self.rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+
+    /// Whether a pixel of a grid that is `width` wide is inside. No pixel is inside an empty area.
+    pub(crate) fn contains(&self, p: usize, width: usize) -> bool {
+        !self.columns.is_empty() && self.columns.contains(&(p % width)) && self.rows.contains(&(p / width))
     }
 
     /// Index within the area of a pixel of a grid that is `width` wide.

@@ -278,6 +278,7 @@ fn annotations_of(value: &JsValue) -> Annotations {
         named: bytes_in(value, "named"),
         accepted: frames("accepted"),
         numbers: numbers.as_chunks::<2>().0.to_vec(),
+        ..Annotations::default()
     }
 }
 

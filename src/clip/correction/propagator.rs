@@ -12,7 +12,7 @@ use super::features::FrameFeatures;
 use super::label_ratios::LabelRatios;
 use super::placement::{OcclusionState, Placement};
 use super::prompt::overlap;
-use super::proposal::{Proposal, Signs, centre_of, logit};
+use super::proposal::{Patch, Proposal, Signs, centre_of, logit};
 use super::strokes;
 use super::trace::Trace;
 use crate::clip::annotation::Seed;
@@ -282,13 +282,16 @@ impl Propagator {
             z.clamp(-model().certain, most)
         });
         let log_odds = log_odds.collect();
-        let mut looks = vec![0.0; features.pixels()];
-        for (k, p) in area.pixels(width).enumerate() {
+        let looks = Patch::new(area.clone(), width, |p| {
+            let k = area.index_of(p, width);
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
-            looks[p] = memory + model().trace * traced.as_ref().map_or(0.0, |of| of[k]);
-        }
+            memory + model().trace * traced.as_ref().map_or(0.0, |of| of[k])
+        });
         let change = self.change.as_ref().map(|change| gaussian(change, model().blur));
-        let change = change.map(|change| (0..width * height).map(|p| along(&change, p)).collect());
+        let change = change.map(|change| {
+            let values: Vec<f32> = (0..width * height).map(|p| along(&change, p)).collect();
+            Patch::of(&values, width)
+        });
         let signs = Signs { looks, change };
         Some(Prediction { area, log_odds, signs, centre, placement, awaited })
     }
@@ -366,10 +369,10 @@ impl Propagator {
         }
         if let Some(change) = &signs.change {
             if !found.contains(&1) {
-                return Some(features.plane_of(&|p| change[p]));
+                return Some(features.plane_of(&|p| change.at(p)));
             }
             let mut now = now.to_vec();
-            strokes::settle(&mut now, &found, &|p| signs.looks_at(p), Some(&|p| change[p]), width);
+            strokes::settle(&mut now, &found, &|p| signs.looks.at(p), Some(&|p| change.at(p)), width);
             mark(&now);
         }
         Some(features.plane(&|p| is_changed[p]))

@@ -22,14 +22,23 @@ pub(super) struct Proposal {
     pub(super) signs: Signs,
 }
 
-/// For each pixel of the frame's features, what supports a change of the object's mask; empty if nothing is known.
+/// What supports a change of the object's mask, at the pixels of the frame's features.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Signs {
     /// Log-odds of the object by its appearance, and by the traced mask that a person has given, nats.
-    pub(super) looks: Vec<f32>,
+    pub(super) looks: Patch,
     /// Share of each pixel that annotations have changed, propagated from the previous frame, 0…1; `None` if they are about all of the
     /// object.
-    pub(super) change: Option<Vec<f32>>,
+    pub(super) change: Option<Patch>,
+}
+
+/// Values of pixels: some in a rectangle, and 0 elsewhere. Proposals that wait for the backward pass take little memory so.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Patch {
+    area: Area,
+    /// Width of the grid of pixels.
+    width: usize,
+    values: Vec<f32>,
 }
 
 impl Proposal {
@@ -61,10 +70,18 @@ impl Proposal {
         let mean = |of: [f32; 2]| (of[0] * weights[0] + of[1] * weights[1]) / (weights[0] + weights[1]);
         let log_odds: Vec<f32> =
             area.pixels(width).map(|p| mean(proposals.map(|of| of.log_odds_at(p, width)))).collect();
+        let both = |of: [&Patch; 2], joined: &dyn Fn([f32; 2]) -> f32| {
+            let area = match of.map(|of| of.values.is_empty()) {
+                [true, _] => of[1].area.clone(),
+                [_, true] => of[0].area.clone(),
+                _ => of[0].area.with(&of[1].area),
+            };
+            Patch::new(area, width, |p| joined(of.map(|of| of.at(p))))
+        };
         let signs = Signs {
-            looks: (0..features.pixels()).map(|p| mean(proposals.map(|of| of.signs.looks_at(p)))).collect(),
-            change: match proposals.map(|of| &of.signs.change) {
-                [Some(one), Some(other)] => Some(one.iter().zip(other).map(|(one, other)| one.max(*other)).collect()),
+            looks: both(proposals.map(|of| &of.signs.looks), &mean),
+            change: match proposals.map(|of| of.signs.change.as_ref()) {
+                [Some(one), Some(other)] => Some(both([one, other], &|[one, other]| one.max(other))),
                 _ => None,
             },
         };
@@ -91,16 +108,27 @@ impl Proposal {
     }
 }
 
-impl Signs {
-    pub(super) fn looks_at(&self, p: usize) -> f32 {
-        self.looks.get(p).copied().unwrap_or(0.0)
+impl Patch {
+    /// The values of a rectangle of a grid that is `width` wide.
+    pub(super) fn new(area: Area, width: usize, value: impl Fn(usize) -> f32) -> Patch {
+        let values = area.pixels(width).map(value).collect();
+        Patch { area, width, values }
+    }
+
+    /// The smallest patch of values.
+    pub(super) fn of(values: &[f32], width: usize) -> Patch {
+        let set: Vec<usize> = (0..values.len()).filter(|&p| values[p] != 0.0).collect();
+        Patch::new(Area::of(&set, width), width, |p| values[p])
+    }
+
+    pub(super) fn at(&self, p: usize) -> f32 {
+        if self.area.contains(p, self.width) { self.values[self.area.index_of(p, self.width)] } else { 0.0 }
     }
 }
 
 /// Log-odds at any pixel, nats; a negative constant outside the area.
 pub(super) fn log_odds_at(area: &Area, log_odds: &[f32], p: usize, width: usize) -> f32 {
-    let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
-    if inside { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
+    if area.contains(p, width) { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
 /// The mask of least energy: 1 inside.
