@@ -36,10 +36,20 @@ pub(super) struct Running {
 enum Phase {
     Annotate(Annotations),
     /// Draws labels exactly; of one object if there is one.
-    Draw { frame: usize, object: Option<u8>, labels: Vec<u8> },
-    Split { object: u8, frame: usize },
+    Draw {
+        frame: usize,
+        object: Option<u8>,
+        labels: Vec<u8>,
+    },
+    Split {
+        object: u8,
+        frame: usize,
+    },
     /// Restores locks and names that were lifted.
-    Restore { locked: ObjectSet, named: ObjectSet },
+    Restore {
+        locked: ObjectSet,
+        named: ObjectSet,
+    },
 }
 
 impl Running {
@@ -168,6 +178,9 @@ fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDeque<Phase>>
         Command::ReplaceAnnotations(all) => return replace(clip, all),
         Command::Clear { frame, object } => {
             let object = object.map(|object| current_number(clip, object)).transpose()?;
+            if let Some(object) = locked_above(clip, frame, object) {
+                return Err(Error::ObjectLocked { object });
+            }
             uncover(clip, frame, object);
             Annotations { cleared: vec![(frame, object)], accepted: reopened(clip, &[frame]), ..Annotations::default() }
         }
@@ -269,6 +282,14 @@ fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> 
     Some(accepted_as_shown((0..clip.len()).filter(stays).collect()))
 }
 
+/// A locked object that was drawn exactly in a frame, among all or only the given one.
+fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Option<u8> {
+    let mut labels = clip.frames[frame].exact.as_ref()?.each().map(|(label, _)| label);
+    let is_locked = |label: &u8| clip.objects.locked[usize::from(*label)];
+    let number = |label: u8| clip.objects.number(label);
+    labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
+}
+
 /// Removes what was drawn exactly in a frame, of one object or of all.
 fn uncover(clip: &mut SegmentedClip, frame: usize, object: Option<u8>) {
     let numbers = clip.objects.numbers;
@@ -319,7 +340,9 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
             painted.push(Painted { frame, object, labels, spread });
         };
         match content {
-            Content::Strokes { object, labels } | Content::Mask { object, labels } if labels.iter().any(|l| ![0, 1, 255].contains(l)) => {
+            Content::Strokes { object, labels } | Content::Mask { object, labels }
+                if labels.iter().any(|l| ![0, 1, 255].contains(l)) =>
+            {
                 return invalid("labels", format!("those of object {object} alone are 1, 0 and 255"));
             }
             Content::Strokes { object, labels } => {
@@ -361,6 +384,7 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
                 if let Some(&object) = labels.iter().find(|label| clip.objects.locked[usize::from(**label)]) {
                     return Err(Error::ObjectLocked { object });
                 }
+                current_labels(clip, &labels)?;
                 annotations.masks.retain(|of| of.frame != frame);
                 annotations.masks.push(Painted { frame, object: None, labels, spread });
             }
@@ -376,8 +400,10 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
     }
     annotations.corrections = painted;
     // Labels that are drawn exactly are no annotations that could be checked later.
+    let is_locked = |object: &u8| clip.objects.locked[usize::from(*object)];
     let locked = draws.iter().find_map(|draw| match draw {
-        Phase::Draw { object: Some(object), .. } => Some(*object).filter(|&k| clip.objects.locked[usize::from(k)]),
+        Phase::Draw { object: Some(object), .. } => Some(*object).filter(is_locked),
+        Phase::Draw { labels, .. } => labels.iter().copied().find(is_locked),
         _ => None,
     });
     locked.map_or(Ok((annotations, draws)), |object| Err(Error::ObjectLocked { object }))
@@ -453,7 +479,10 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     numbers.extend(deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
         let given = annotations.masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
-        let labels = seen.remove(&frame).map(|seen| over(Some(seen), given.unwrap_or_default()));
+        let labels = seen.remove(&frame).map(|seen| match given {
+            Some(given) => over(Some(seen), given),
+            None => seen,
+        });
         Accepted { frame, labels }
     });
     let accepted = accepted.collect();
