@@ -2,9 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 use crate::support::moving::{SIZE, annotate, frames_of, moving_and_resting, options, whole};
-use veronese::clip::{
-    Annotation, Annotations, Clip, ClipFrame, Command, Content, OpenOptions, Painted, Spread,
-};
+use veronese::clip::{Annotation, Annotations, Clip, ClipFrame, Command, Content, OpenOptions, Painted, Spread};
 use veronese::{Frame, Quality, SegmentOptions};
 
 fn run(clip: &mut Clip, frames: &[Frame]) {
@@ -42,7 +40,8 @@ fn a_clip_gives_the_masks_of_a_segmented_clip() {
         }
     };
     same(labels(&mut clip, &frames), frames_of(&before, &frames));
-    let strokes: Vec<u8> = (0..SIZE[0] * SIZE[1]).map(|p| if p % SIZE[0] < 30 && p / SIZE[0] > 60 { 1 } else { 255 }).collect();
+    let strokes: Vec<u8> =
+        (0..SIZE[0] * SIZE[1]).map(|p| if p % SIZE[0] < 30 && p / SIZE[0] > 60 { 1 } else { 255 }).collect();
     let painted = strokes.iter().map(|&label| if label == 1 { 9 } else { 255 }).collect();
     clip.apply(Command::Annotate(vec![Annotation::new(2, Content::Strokes { object: 9, labels: strokes })])).unwrap();
     run(&mut clip, &frames);
