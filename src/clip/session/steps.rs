@@ -28,8 +28,9 @@ pub(super) struct Running {
     pub(super) describes: Option<(u8, bool)>,
     phases: VecDeque<Phase>,
     job: Option<ClipJob>,
-    /// What objects have gained and lost in earlier phases.
+    /// What objects have gained and lost in earlier phases, and the frames that these have changed.
     changes: Vec<Changed>,
+    changed: BTreeSet<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -64,7 +65,7 @@ impl Running {
             _ => None,
         };
         let phases = phases(&mut clip, command)?;
-        Running { step, clip, describes, phases, job: None, changes: Vec::new() }.advanced()
+        Running { step, clip, describes, phases, job: None, changes: Vec::new(), changed: BTreeSet::new() }.advanced()
     }
 
     /// Puts a segmented range in its place, and applies the annotations of its scenes again.
@@ -75,7 +76,8 @@ impl Running {
         let step = range.step;
         let (mut clip, scenes) = range.conclude(before)?;
         let phases = repeated(before, &mut clip, scenes).into();
-        Running { step, clip, describes: None, phases, job: None, changes: Vec::new() }.advanced()
+        Running { step, clip, describes: None, phases, job: None, changes: Vec::new(), changed: BTreeSet::new() }
+            .advanced()
     }
 
     /// The frame to [`take`](Self::take) next; `None` when the command has taken effect.
@@ -109,8 +111,7 @@ impl Running {
 
     /// Whether it has changed a frame.
     pub(super) fn has_changed(&self, index: usize) -> bool {
-        self.job.as_ref().is_some_and(|job| job.changed().contains(&index))
-            || self.changes.iter().any(|changed| changed.frame == index)
+        self.job.as_ref().is_some_and(|job| job.changed().contains(&index)) || self.changed.contains(&index)
     }
 
     /// What objects have gained and lost.
@@ -126,19 +127,23 @@ impl Running {
 
     /// Goes on to the next phase that needs a frame.
     fn advance(&mut self) -> Result<()> {
-        while self.wanted().is_none() {
-            self.changes = self.changes();
-            self.job = None;
+        loop {
+            if self.job.as_ref().and_then(ClipJob::wanted).is_none() {
+                self.changes = self.changes();
+                self.changed.extend(self.job.take().iter().flat_map(ClipJob::changed));
+            }
+            if self.wanted().is_some() {
+                return Ok(());
+            }
             match self.phases.pop_front() {
                 Some(Phase::Annotate(annotations)) => self.job = Some(self.clip.annotate(annotations)?),
                 Some(Phase::Restore { locked, named }) => {
                     let objects = self.clip.objects_mut();
                     (objects.locked, objects.named) = (locked, named);
                 }
-                _ => break,
+                _ => return Ok(()),
             }
         }
-        Ok(())
     }
 
     /// Draws labels exactly. Pixels of locked objects stay as they are; the ground of one object is ground for this object alone.
@@ -158,6 +163,7 @@ impl Running {
         let mut changes = Changes::default();
         changes.set(*index, shown, &now);
         self.changes.extend(changes.list());
+        self.changed.insert(*index);
     }
 }
 
