@@ -276,7 +276,7 @@ fn frames_of_another_size_cover_all_masks_and_scale_what_was_said() {
             2 => assert!(differ.clone().all(|p| before[2][p] != 8) && count < 1000, "drawn exactly: {count}"),
             _ => assert!(count < 1000, "{index}: {count}"),
         }
-        assert!([7, 8, 9].iter().all(|k| before[index].contains(k) == labels.contains(k)), "{index}");
+        assert!([(4, 7), (2, 8), (1, 9)].iter().all(|(t, k)| *t != index || labels.contains(k)), "{index}");
     }
     clip.undo();
     assert_eq!(clip.size(), SIZE);
