@@ -293,6 +293,7 @@ impl Clip {
                 let step: usize = Saved::read(bytes)?;
                 let command = Command::read(bytes)?;
                 self.note_step(step)?;
+                self.history.after(step as u32).is_none().then_some(())?;
                 self.wait(step as u32, command).ok()?;
                 let is_new = self.given.insert(step as u32, vec![(kind, Written(content.to_vec()))]).is_none();
                 is_new.then_some(())?;
@@ -301,6 +302,7 @@ impl Clip {
                 let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
                 let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
                 let parent = if is_first { 0 } else { parent as u32 };
+                (is_first || self.history.after(step as u32).is_none()).then_some(())?;
                 let before = self.history.after(parent)?;
                 let remembered = before.remembered.clone();
                 let segmented: Vec<usize> = difference.segmented().collect();
@@ -711,14 +713,16 @@ impl Clip {
                     let begun = self.command(step).ok_or(damaged);
                     self.begin(step, begun.and_then(|command| Running::new(step, &self.state().clip, command)));
                 }
-            } else if let Some(range) =
-                self.ranges.pop_front_if(|range| range.wanted(&self.history.current().clip).is_none())
+            } else if self.ranges.front().is_some_and(|range| range.wanted(&self.state().clip).is_none())
+                && let Some(range) = self.ranges.pop_front()
             {
                 if !range.is_complete {
                     self.note(range.step, Kind::Range, range_record(range.step, range.frames.end, true));
                 }
                 self.begin(range.step, Running::of_range(range, &self.state().clip));
-            } else if let Some(Waiting { step, frames, .. }) = self.waiting.pop_front_if(|_| self.ranges.is_empty()) {
+            } else if self.ranges.is_empty()
+                && let Some(Waiting { step, frames }) = self.waiting.pop_front()
+            {
                 let frame = frames.into_iter().find(|&frame| !self.is_ready(&[frame])).unwrap_or(0);
                 let reason = format!("frame {frame} has no masks: segment it first");
                 self.begin(step, Err(Error::InvalidOption { name: "frame", reason }));

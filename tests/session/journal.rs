@@ -3,9 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-use super::{
-    PIXELS, fast, print, read, run, said, segment, settle, start, summary,
-};
+use super::{PIXELS, fast, print, read, run, said, segment, settle, start, summary};
 use crate::support::moving::{scene_of, thing};
 use veronese::clip::{
     Annotation, Click, Clip, Command, Content, Declaration, Description, FramePairs, OpenOptions, Recovered, Spread,
@@ -234,8 +232,10 @@ fn script(seed: u64, length: usize, frames: usize, size: [usize; 2]) -> Vec<Acti
 /// Two things that move, in few small frames.
 fn small() -> Film<'static> {
     static MADE: LazyLock<(Vec<Frame>, Vec<FramePairs>)> = LazyLock::new(|| {
-        let things =
-            [thing(2, [14.0, 12.0], |t| [2.0 + 4.0 * t as f32, 4.0]), thing(3, [12.0, 12.0], |t| [32.0 - 3.0 * t as f32, 22.0])];
+        let things = [
+            thing(2, [14.0, 12.0], |t| [2.0 + 4.0 * t as f32, 4.0]),
+            thing(3, [12.0, 12.0], |t| [32.0 - 3.0 * t as f32, 22.0]),
+        ];
         let frames = scene_of(SMALL, 1, &things, 5).0;
         let pairs = frames.windows(2).map(|pair| solve_pair(&pair[0], &pair[1], &fast()).unwrap()).collect();
         (frames, pairs)
@@ -381,7 +381,11 @@ fn a_journal_that_grows_is_compacted_and_stays_the_same_clip() {
         let labels: Vec<u8> = (0..PIXELS).map(|_| [0, 1, 255][random.uniform(0.0, 3.0) as usize]).collect();
         let spread = Spread::Exact;
         let step = clip
-            .apply(Command::Annotate(vec![Annotation { frame: count % 3, content: Content::Mask { object: 9, labels }, spread }]))
+            .apply(Command::Annotate(vec![Annotation {
+                frame: count % 3,
+                content: Content::Mask { object: 9, labels },
+                spread,
+            }]))
             .unwrap();
         run(&mut clip);
         count += 1;

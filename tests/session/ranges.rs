@@ -1,8 +1,8 @@
 //! Ranges of a clip: beside, inside and over each other, with annotations in and around them.
 
 use super::{
-    COUNT, SCENE, SIZE, assert_same, fast, in_box, labels, pairs_of_annotations, print, read, run, said,
-    segment, settle, shown, start, summary, take,
+    COUNT, SCENE, SIZE, assert_same, fast, in_box, labels, pairs_of_annotations, print, read, run, said, segment,
+    settle, shown, start, summary, take,
 };
 use crate::support::moving::{scene_of, thing};
 use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions, Spread, Stage, solve_pair};
@@ -59,7 +59,8 @@ fn a_range_without_a_frame_beside_it_ends_a_scene() {
     let mut clip = first(2);
     settle(&mut clip, segment(3..COUNT)).unwrap();
     settle(&mut clip, said(4, strokes(9))).unwrap();
-    let has: Vec<bool> = labels(&mut clip).iter().map(|of| of.as_ref().is_some_and(|of| of.labels.contains(&9))).collect();
+    let has: Vec<bool> =
+        labels(&mut clip).iter().map(|of| of.as_ref().is_some_and(|of| of.labels.contains(&9))).collect();
     assert_eq!(has, [false, false, false, true, true, true]);
     // The frame between them joins them.
     settle(&mut clip, segment(2..COUNT)).unwrap();
@@ -118,7 +119,9 @@ fn commands_go_before_a_range_and_those_that_need_it_wait() {
     assert!(labels.iter().all(|labels| labels.contains(&9) && labels.contains(&8)));
     // The same, one after another.
     let mut other = first(4);
-    for command in [said(1, strokes(9)), segment(4..COUNT), said(5, strokes(8)), Command::Lock { objects: vec![9], on: true }] {
+    for command in
+        [said(1, strokes(9)), segment(4..COUNT), said(5, strokes(8)), Command::Lock { objects: vec![9], on: true }]
+    {
         settle(&mut other, command).unwrap();
     }
     assert_eq!(print(&mut other), state);
@@ -193,7 +196,8 @@ fn solved_pairs_of_a_cancelled_range_are_kept() {
 fn pairs_of_others_give_the_same_bits() {
     let mut alone = Clip::new(COUNT, OpenOptions::default());
     alone.apply(segment(0..COUNT)).unwrap();
-    let mut segmenter = veronese::clip::ClipSegmenter::new(crate::support::moving::options(veronese::Quality::Fast, None)).unwrap();
+    let mut segmenter =
+        veronese::clip::ClipSegmenter::new(crate::support::moving::options(veronese::Quality::Fast, None)).unwrap();
     for (index, frame) in SCENE.frames.iter().enumerate() {
         let pushed = segmenter.push(frame.clone()).unwrap();
         if index > 0 {
@@ -237,10 +241,12 @@ fn larger() -> Vec<Frame> {
 fn frames_of_another_size_cover_all_masks_and_scale_what_was_said() {
     let larger = larger();
     let mut clip = start();
-    let exact = |labels: Vec<u8>| Annotation { frame: 2, content: Content::Mask { object: 8, labels }, spread: Spread::Exact };
+    let exact =
+        |labels: Vec<u8>| Annotation { frame: 2, content: Content::Mask { object: 8, labels }, spread: Spread::Exact };
     settle(&mut clip, said(1, strokes(9))).unwrap();
     settle(&mut clip, Command::Annotate(vec![exact(in_box([4, 4, 20, 10], 1, 255))])).unwrap();
-    settle(&mut clip, said(4, Content::Prompt { object: 7, clicks: Vec::new(), within: Some([60, 72, 30, 20]) })).unwrap();
+    settle(&mut clip, said(4, Content::Prompt { object: 7, clicks: Vec::new(), within: Some([60, 72, 30, 20]) }))
+        .unwrap();
     settle(&mut clip, Command::Accept { frames: vec![3], on: true }).unwrap();
     let (state, before) = (print(&mut clip), shown(&mut clip));
     // A part of the clip cannot have another size.

@@ -1,5 +1,6 @@
 //! A command that takes effect: on a copy of the state, in phases that ask for the frames that they need.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -47,10 +48,7 @@ enum Phase {
         frame: usize,
     },
     /// Restores locks and names that were lifted.
-    Restore {
-        locked: ObjectSet,
-        named: ObjectSet,
-    },
+    Restore(Box<[ObjectSet; 2]>),
 }
 
 impl Running {
@@ -84,7 +82,7 @@ impl Running {
     pub(super) fn wanted(&self) -> Option<usize> {
         self.job.as_ref().and_then(ClipJob::wanted).or_else(|| match self.phases.front()? {
             Phase::Draw { frame, .. } | Phase::Split { frame, .. } => Some(*frame),
-            Phase::Annotate(_) | Phase::Restore { .. } => None,
+            Phase::Annotate(_) | Phase::Restore(_) => None,
         })
     }
 
@@ -137,9 +135,9 @@ impl Running {
             }
             match self.phases.pop_front() {
                 Some(Phase::Annotate(annotations)) => self.job = Some(self.clip.annotate(annotations)?),
-                Some(Phase::Restore { locked, named }) => {
+                Some(Phase::Restore(sets)) => {
                     let objects = self.clip.objects_mut();
-                    (objects.locked, objects.named) = (locked, named);
+                    [objects.locked, objects.named] = *sets;
                 }
                 _ => return Ok(()),
             }
@@ -431,8 +429,8 @@ fn own_labels(clip: &SegmentedClip, object: u8, labels: &[u8]) -> Result<(u8, Ve
 fn current_labels(clip: &SegmentedClip, labels: &[u8]) -> Result<Vec<u8>> {
     let mut numbers: BTreeMap<u8, u8> = [0, UNLABELLED].map(|label| (label, label)).into();
     for &label in labels {
-        if !numbers.contains_key(&label) {
-            numbers.insert(label, current_number(clip, label)?);
+        if let Entry::Vacant(number) = numbers.entry(label) {
+            number.insert(current_number(clip, label)?);
         }
     }
     Ok(labels.iter().map(|label| numbers[label]).collect())
@@ -559,7 +557,7 @@ fn repeated(before: &SegmentedClip, clip: &mut SegmentedClip, [first, last]: [us
     vec![
         Phase::Annotate(Annotations { corrections, prompts, ..Annotations::default() }),
         Phase::Annotate(Annotations { accepted: Some(accepted), ..Annotations::default() }),
-        Phase::Restore { locked, named },
+        Phase::Restore(Box::new([locked, named])),
     ]
 }
 
