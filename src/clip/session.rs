@@ -184,10 +184,11 @@ struct Waiting {
 /// clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
 /// let strokes = (0..160 * 120).map(|p| if p % 160 < 8 { 1 } else { 255 }).collect();
 /// clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: 7, labels: strokes })]))?;
-/// clip.look_at(1);
 /// while let Some(wanted) = clip.wanted() {
 ///     clip.take(wanted.frame, &frames[wanted.frame], None)?;
 /// }
+/// clip.look_at(1);
+/// clip.take(1, &frames[1], None)?;
 /// let after = clip.labels(1).expect("it was looked at");
 /// assert!(after.objects.iter().any(|object| object.id == 7));
 /// clip.undo();
