@@ -16,8 +16,8 @@
 mod annotation;
 mod carry;
 mod changes;
-mod command;
 mod colours;
+mod command;
 mod correction;
 mod description;
 mod edits;

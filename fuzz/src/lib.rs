@@ -3,7 +3,9 @@
 use std::sync::OnceLock;
 
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
-use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, SegmentedClip};
+use veronese::clip::{
+    Annotation, Clip, ClipOptions, ClipSegmenter, Command, Content, FramePairs, OpenOptions, SegmentedClip, Spread,
+};
 use veronese::{Frame, MotionCount, Quality, SegmentOptions};
 
 /// A film: a texture that moves, and a box of it that moves otherwise.
@@ -78,8 +80,8 @@ pub struct Known {
     pub frames: Vec<Frame>,
     /// The pairs of each frame with those before it.
     pub pairs: Vec<FramePairs>,
-    /// The bytes of the segmented clip.
-    pub state: Vec<u8>,
+    /// The journal of the segmented clip: two steps after that, one undone, and one that has not taken effect.
+    pub journal: Vec<u8>,
 }
 
 /// Options of [`known`].
@@ -97,9 +99,59 @@ pub fn known() -> &'static Known {
         let mut segmenter = ClipSegmenter::new(known_options()).expect("the options are valid");
         let pairs =
             frames.iter().map(|frame| segmenter.push(frame.clone()).expect("the frames have one size")).collect();
-        let state = segmenter.conclude().to_bytes();
-        Known { frames, pairs, state }
+        let mut clip = Clip::new(frames.len(), OpenOptions::default());
+        let labels: Vec<u8> = (0..32 * 24).map(|p| if p % 32 < 9 { 1 } else { 255 }).collect();
+        let content = Content::Strokes { object: 7, labels };
+        let exact = Annotation { frame: 0, content: content.clone(), spread: Spread::Exact };
+        let segment = Command::Segment { frames: 0..frames.len(), options: known_options().pair };
+        let annotate = Command::Annotate(vec![Annotation::new(1, content)]);
+        for command in [segment.clone(), annotate.clone(), Command::Annotate(vec![exact])] {
+            clip.apply(command).expect("the command is valid");
+            run(&mut clip, &frames);
+        }
+        clip.undo();
+        clip.apply(segment).expect("the range is valid");
+        clip.take(0, &frames[0], None).expect("it is a frame of the clip");
+        clip.apply(annotate).expect("the command is valid");
+        Known { frames, pairs, journal: clip.take_events().records }
     })
+}
+
+/// Gives a clip the frames that it wants, as far as there are such; steps that cannot go on are cancelled.
+pub fn run(clip: &mut Clip, frames: &[Frame]) {
+    for _ in 0..500 {
+        let Some(wanted) = clip.wanted() else { return };
+        let taken = frames.get(wanted.frame).map(|frame| clip.take(wanted.frame, frame, None).is_ok());
+        if taken != Some(true) {
+            match wanted.step {
+                Some(step) => assert!(clip.cancel(step), "a step under way can be cancelled"),
+                None => clip.look_at(usize::MAX),
+            }
+        }
+    }
+    panic!("a clip of few frames ends");
+}
+
+/// Asks an opened clip for all that can be asked: every frame, and its own bytes back.
+pub fn check_opened(clip: &mut Clip, frames: &[Frame]) {
+    run(clip, frames);
+    let [width, height] = clip.size();
+    for index in 0..clip.len() {
+        clip.look_at(index);
+        run(clip, frames);
+        if let Some(found) = clip.labels(index) {
+            assert_eq!(found.labels.len(), width * height);
+        }
+    }
+    drop((clip.tracks(), clip.next_object()));
+    let saved = clip.save();
+    let mut again = Clip::read(&saved, OpenOptions::default()).expect("a clip reads what it has written");
+    assert!(again.used == saved.len() && !again.is_damaged);
+    assert_eq!((again.clip.frames(), again.clip.objects()), (clip.frames(), clip.objects()));
+    while clip.undo() {
+        assert!(again.clip.undo());
+        assert_eq!((again.clip.frames(), again.clip.objects()), (clip.frames(), clip.objects()));
+    }
 }
 
 /// Asks a clip for all that can be asked: every frame, and its own bytes back.

@@ -208,7 +208,8 @@ impl Saved for Command {
         match self {
             Command::Segment { frames, options: SegmentOptions { motions, quality, subject, .. } } => {
                 let motions = if let MotionCount::Given(motions) = motions { *motions } else { 0 };
-                (0u8.write(bytes), [frames.start, frames.end, motions].write(bytes));
+                0u8.write(bytes);
+                [frames.start, frames.end, motions].write(bytes);
                 [*quality == Quality::Best, *subject].write(bytes);
             }
             Command::Annotate(annotations) => (1u8.write(bytes), annotations.write(bytes)).1,

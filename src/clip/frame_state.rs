@@ -100,7 +100,8 @@ impl FrameState {
     /// Whether it fits frames of a width and height.
     pub(super) fn is_valid(&self, [width, height]: [usize; 2]) -> bool {
         let Some(found) = &self.found else {
-            return self.renumbered.is_none() && self.annotation.is_none() && self.layer.is_none() && !self.accepted;
+            let Self { renumbered, annotation, layer, exact, accepted, .. } = self;
+            return renumbered.is_none() && annotation.is_none() && layer.is_none() && exact.is_none() && !accepted;
         };
         // No frame is halved more often than its sides have bits.
         let [w, h] = Scaling::halved([width, height], found.halvings.min(15)).small;

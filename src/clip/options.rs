@@ -31,7 +31,8 @@ pub fn vary(model: ClipModel) {
 
 /// The scalings to the working size with each quality, of a whole clip and of a stream.
 pub(super) fn working_sizes(size: [usize; 2]) -> [Scaling; 4] {
-    let options = |quality, look_ahead| ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead };
+    let options =
+        |quality, look_ahead| ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead };
     let all = [(Quality::Best, None), (Quality::Best, Some(0)), (Quality::Fast, None), (Quality::Fast, Some(0))];
     all.map(|(quality, look_ahead)| options(quality, look_ahead).settings(size).scaling(size))
 }

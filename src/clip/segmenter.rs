@@ -6,12 +6,12 @@ use super::description::{ClipFrame, WorkingFrame};
 use super::frame_state::{Found, FrameState};
 use super::grouping::Census;
 use super::identity::{Identities, Parting};
+use super::objects::Objects;
 use super::options::ClipOptions;
 use super::pairing;
 use super::pairs::{KeptPairs, Pairs};
 use super::parting::divide;
 use super::record::PendingFrame;
-use super::objects::Objects;
 use super::runs::Runs;
 use super::saved::{Format, saved};
 use super::segmented_clip::SegmentedClip;
@@ -134,6 +134,11 @@ impl ClipSegmenter {
     pub(super) fn knows(&self, frame: &Frame, pairs: &FramePairs) -> bool {
         let [width, height] = self.working_size(frame);
         pairs.origin == self.origin_of(frame) && pairs.pairs.is_valid(width * height)
+    }
+
+    /// Width and height of the frames; `None` before the first.
+    pub(super) fn size(&self) -> Option<[usize; 2]> {
+        self.tracker.size()
     }
 
     fn working_size(&self, frame: &Frame) -> [usize; 2] {

@@ -166,8 +166,6 @@ pub struct Recovered {
 struct Waiting {
     step: u32,
     frames: Vec<usize>,
-    /// As it is written in the journal: labels take less memory so.
-    command: Vec<u8>,
 }
 
 /// A clip of frames that can be read again: it is segmented, corrected, and read, from its opening to its closing.
@@ -186,10 +184,11 @@ struct Waiting {
 /// clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
 /// let strokes = (0..160 * 120).map(|p| if p % 160 < 8 { 1 } else { 255 }).collect();
 /// clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: 7, labels: strokes })]))?;
-/// clip.look_at(1);
 /// while let Some(wanted) = clip.wanted() {
 ///     clip.take(wanted.frame, &frames[wanted.frame], None)?;
 /// }
+/// clip.look_at(1);
+/// clip.take(1, &frames[1], None)?;
 /// let after = clip.labels(1).expect("it was looked at");
 /// assert!(after.objects.iter().any(|object| object.id == 7));
 /// clip.undo();
@@ -204,6 +203,8 @@ pub struct Clip {
     /// Commands other than ranges, in the order in which they were given.
     waiting: VecDeque<Waiting>,
     running: Option<Running>,
+    /// The records of each step that has not taken effect: its command, and the ends of its range. Labels take less memory so.
+    given: BTreeMap<u32, Vec<(Kind, Written)>>,
     /// Ranges to segment; the first is under way.
     ranges: VecDeque<RangeJob>,
     /// Solved pairs of frames of ranges that are not complete.
@@ -236,6 +237,7 @@ impl Clip {
             history: History::new(empty),
             waiting: VecDeque::new(),
             running: None,
+            given: BTreeMap::new(),
             ranges: VecDeque::new(),
             pairs: BTreeMap::new(),
             looked_at: None,
@@ -279,9 +281,9 @@ impl Clip {
     }
 
     /// Does again what a record says; `None` if that is not valid.
-    fn replay(&mut self, kind: Kind, mut content: &[u8]) -> Option<()> {
-        let length = content.len();
-        let bytes = &mut content;
+    fn replay(&mut self, kind: Kind, content: &[u8]) -> Option<()> {
+        let mut rest = content;
+        let bytes = &mut rest;
         match kind {
             Kind::Open => return None,
             Kind::Pairs => {
@@ -291,22 +293,26 @@ impl Clip {
             Kind::Command => {
                 let step: usize = Saved::read(bytes)?;
                 let command = Command::read(bytes)?;
-                self.next = u32::try_from(step).ok()?.max(self.next) + 1;
+                self.note_step(step)?;
+                self.history.after(step as u32).is_none().then_some(())?;
                 self.wait(step as u32, command).ok()?;
+                let is_new = self.given.insert(step as u32, vec![(kind, Written(content.to_vec()))]).is_none();
+                is_new.then_some(())?;
             }
             Kind::Result => {
                 let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
                 let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
                 let parent = if is_first { 0 } else { parent as u32 };
+                (is_first || self.history.after(step as u32).is_none()).then_some(())?;
                 let before = self.history.after(parent)?;
                 let remembered = before.remembered.clone();
                 let segmented: Vec<usize> = difference.segmented().collect();
                 let clip = difference.applied(&before.clip)?;
                 let describes = Some(describes).filter(|&object| object > 0);
-                let state = State::new(step as u32, clip, remembered, describes, length);
+                let state = State::new(step as u32, clip, remembered, describes, content.len());
                 self.forget_waiting(step as u32);
                 segmented.iter().for_each(|frame| drop(self.pairs.remove(frame)));
-                self.next = self.next.max(step as u32 + 1);
+                self.note_step(step)?;
                 match is_first {
                     true => self.history = History::first(state),
                     false => self.history.push(parent, state),
@@ -323,20 +329,29 @@ impl Clip {
             Kind::Range => {
                 let ([step, end], is_complete) = Saved::read(bytes)?;
                 let range = self.ranges.iter_mut().find(|range| range.step as usize == step)?;
-                range.is_complete = is_complete;
-                if end < range.frames.end {
-                    range.finish(Some(end));
+                match is_complete {
+                    true => range.is_complete = true,
+                    false => drop(range.finish(Some(end))),
                 }
+                self.given.get_mut(&(step as u32))?.push((kind, Written(content.to_vec())));
             }
             Kind::Shown => {
                 let (frame, shown): (usize, Shown) = Saved::read(bytes)?;
                 let state = self.history.current_mut();
+                state.clip.frames.get(frame)?.found.as_ref()?;
                 let [width, height] = state.clip.size;
                 shown.is_valid(width * height).then_some(())?;
                 state.remembered.insert(frame, Arc::new(shown));
             }
         }
         bytes.is_empty().then_some(())
+    }
+
+    /// The next step follows one that was read.
+    fn note_step(&mut self, step: usize) -> Option<()> {
+        let step = u32::try_from(step).ok().filter(|&step| step < u32::MAX / 2)?;
+        self.next = self.next.max(step + 1);
+        Some(())
     }
 
     /// Number of frames.
@@ -366,7 +381,7 @@ impl Clip {
         let mut content = Vec::new();
         (step as usize).write(&mut content);
         command.write(&mut content);
-        let can_begin = self.running.is_none() && self.waiting.is_empty();
+        let can_begin = !self.is_under_way() && self.waiting.is_empty();
         match command {
             command @ Command::Segment { .. } => self.wait(step, command)?,
             command if can_begin && self.is_ready(&command.frames()) => {
@@ -375,9 +390,15 @@ impl Clip {
             command => self.wait(step, command)?,
         }
         self.next += 1;
-        self.log.append(Kind::Command, &Written(content));
+        self.note(step, Kind::Command, Written(content));
         self.advance();
         Ok(StepId(step))
+    }
+
+    /// Writes a record of a step that has not taken effect.
+    fn note(&mut self, step: u32, kind: Kind, content: Written) {
+        self.log.append(kind, &content);
+        self.given.entry(step).or_default().push((kind, content));
     }
 
     /// Checks what does not depend on the commands before.
@@ -412,9 +433,7 @@ impl Clip {
         if frames.iter().any(|&frame| frame >= self.len()) {
             return Err(Error::InvalidOption { name: "frame", reason: "there is no such frame".into() });
         }
-        let mut bytes = Vec::new();
-        command.write(&mut bytes);
-        self.waiting.push_back(Waiting { step, frames, command: bytes });
+        self.waiting.push_back(Waiting { step, frames });
         Ok(())
     }
 
@@ -431,7 +450,9 @@ impl Clip {
     /// Takes back: the last command that waits, or else the one under way, or else the last step. Returns whether there was one.
     pub fn undo(&mut self) -> bool {
         let last = self.waiting.back().map(|waiting| waiting.step);
-        match last.or_else(|| self.running.as_ref().map(|running| running.step)) {
+        let running = self.running.as_ref().map(|running| running.step);
+        let range = self.ranges.front().filter(|range| range.is_complete).map(|range| range.step);
+        match last.or(running).or(range) {
             Some(step) => self.drop_step(step),
             None => self.go(true),
         }
@@ -439,7 +460,7 @@ impl Clip {
 
     /// Does again the step that was undone last. Returns whether there was one; there is none while a command is under way.
     pub fn redo(&mut self) -> bool {
-        self.running.is_none() && self.waiting.is_empty() && self.go(false)
+        !self.is_under_way() && self.waiting.is_empty() && self.go(false)
     }
 
     /// Goes to the state before or after.
@@ -449,6 +470,8 @@ impl Clip {
         self.history.go_to(step);
         self.log.append(Kind::Current, &(step as usize));
         self.add_changed(&before);
+        // Another frame beside the range under way may have masks now, or none.
+        self.advance();
         true
     }
 
@@ -473,28 +496,27 @@ impl Clip {
     }
 
     fn forget_waiting(&mut self, step: u32) -> bool {
-        let count = self.steps()[2];
         self.waiting.retain(|waiting| waiting.step != step);
         self.ranges.retain(|range| range.step != step);
         if let Some(running) = self.running.take_if(|running| running.step == step) {
             self.changed.extend((0..self.len()).filter(|&index| running.has_changed(index)));
             self.remembered.clear();
         }
-        self.steps()[2] < count
+        self.given.remove(&step).is_some()
     }
 
     /// Ends the range under way after the frames that are in; it fails if these are fewer than two.
     pub fn finish(&mut self) {
         if let Some(range) = self.ranges.front_mut() {
-            let end = range.finish(None);
-            self.log.append(Kind::Range, &([range.step as usize, end], false));
+            let (end, step) = (range.finish(None), range.step);
+            self.note(step, Kind::Range, range_record(step, end, false));
             self.advance();
         }
     }
 
     /// The frame to take next, and what for; `None` when there is nothing to do.
     pub fn wanted(&self) -> Option<Wanted> {
-        if let Some(frame) = self.looked_at {
+        if let Some(frame) = self.looked_at.filter(|&frame| self.is_unknown(frame)) {
             return Some(Wanted { frame, stage: Stage::Labels, step: None });
         }
         if let Some(running) = &self.running {
@@ -527,11 +549,7 @@ impl Clip {
             Stage::Pairs => {
                 let clip = &self.history.current().clip;
                 let Some(range) = self.ranges.front_mut() else { return Ok(()) };
-                let known = solved.or_else(|| self.pairs.get(&index));
-                let new = range.take(clip, frame, known)?;
-                // Pairs of another worker are kept as well.
-                let new = new.or_else(|| Some((index, solved?.clone())));
-                if let Some(entry) = new {
+                if let Some(entry) = range.take(clip, frame, solved, self.pairs.get(&index))? {
                     self.log.append(Kind::Pairs, &entry);
                     self.pairs.insert(entry.0, entry.1);
                 }
@@ -555,8 +573,13 @@ impl Clip {
 
     /// Asks for the labels of a frame before all other work, unless they are known or the frame is not segmented.
     pub fn look_at(&mut self, index: usize) {
-        let has_masks = |index: usize| self.state().clip.frames.get(index).is_some_and(|frame| frame.found.is_some());
-        self.looked_at = Some(index).filter(|&index| has_masks(index) && self.shown(index).is_none());
+        self.looked_at = Some(index).filter(|&index| self.is_unknown(index));
+    }
+
+    /// Whether a frame has masks, but its labels are not known.
+    fn is_unknown(&self, index: usize) -> bool {
+        let frame = self.state().clip.frames.get(index);
+        frame.is_some_and(|frame| frame.found.is_some()) && self.shown(index).is_none()
     }
 
     /// The labels and objects of a frame as they are now; `None` if they are not known, see [`look_at`](Self::look_at).
@@ -651,6 +674,7 @@ impl Clip {
             log.append(Kind::Shown, &(*index, shown.clone()));
         }
         self.pairs.iter().for_each(|(index, pairs)| log.append(Kind::Pairs, &(*index, pairs.clone())));
+        self.given.values().flatten().for_each(|(kind, content)| log.append(*kind, content));
         log
     }
 
@@ -682,20 +706,24 @@ impl Clip {
                 self.commit(running);
             } else if self.running.is_some() {
                 return;
-            } else if self.waiting.front().is_some_and(|waiting| self.is_ready(&waiting.frames)) && !self.has_complete_range()
+            } else if self.waiting.front().is_some_and(|waiting| self.is_ready(&waiting.frames))
+                && !self.has_complete_range()
             {
-                if let Some(Waiting { step, command, .. }) = self.waiting.pop_front() {
-                    let command = Command::read(&mut &command[..]);
+                if let Some(Waiting { step, .. }) = self.waiting.pop_front() {
                     let damaged = Error::InvalidOption { name: "command", reason: "it is damaged".into() };
-                    let begun = command.ok_or(damaged);
+                    let begun = self.command(step).ok_or(damaged);
                     self.begin(step, begun.and_then(|command| Running::new(step, &self.state().clip, command)));
                 }
-            } else if let Some(range) = self.ranges.pop_front_if(|range| range.wanted(&self.history.current().clip).is_none()) {
+            } else if self.ranges.front().is_some_and(|range| range.wanted(&self.state().clip).is_none())
+                && let Some(range) = self.ranges.pop_front()
+            {
                 if !range.is_complete {
-                    self.log.append(Kind::Range, &([range.step as usize, range.frames.end], true));
+                    self.note(range.step, Kind::Range, range_record(range.step, range.frames.end, true));
                 }
                 self.begin(range.step, Running::of_range(range, &self.state().clip));
-            } else if let Some(Waiting { step, frames, .. }) = self.waiting.pop_front_if(|_| self.ranges.is_empty()) {
+            } else if self.ranges.is_empty()
+                && let Some(Waiting { step, frames }) = self.waiting.pop_front()
+            {
                 let frame = frames.into_iter().find(|&frame| !self.is_ready(&[frame])).unwrap_or(0);
                 let reason = format!("frame {frame} has no masks: segment it first");
                 self.begin(step, Err(Error::InvalidOption { name: "frame", reason }));
@@ -705,8 +733,20 @@ impl Clip {
         }
     }
 
+    /// The command of a step that has not taken effect.
+    fn command(&self, step: u32) -> Option<Command> {
+        let (_, Written(content)) = self.given.get(&step)?.first()?;
+        let (_, command): (usize, Command) = Saved::read(&mut &content[..])?;
+        Some(command)
+    }
+
     fn has_complete_range(&self) -> bool {
         self.ranges.front().is_some_and(|range| range.is_complete)
+    }
+
+    /// Whether a step is taking effect. After reading, a range whose frames have all been in takes effect when they are in again.
+    fn is_under_way(&self) -> bool {
+        self.running.is_some() || self.has_complete_range()
     }
 
     fn begin(&mut self, step: u32, begun: Result<Running>) {
@@ -724,6 +764,7 @@ impl Clip {
     }
 
     fn failed(&mut self, step: u32, error: Error) {
+        self.given.remove(&step);
         self.log.append(Kind::Dropped, &(step as usize));
         self.settled.push(Settled { step: StepId(step), changes: Err(error) });
     }
@@ -731,23 +772,25 @@ impl Clip {
     /// Makes the copy on which a command has taken effect the state. A command that has changed nothing is no step.
     fn commit(&mut self, mut running: Running) {
         let (step, changes) = (running.step, running.changes());
+        self.given.remove(&step);
         running.clip.mark_used();
         let before = self.state();
         let is_part = |(object, coalesce)| coalesce && before.describes == Some(object);
         let joined = running.describes.is_some_and(is_part).then(|| self.history.before()).flatten();
         let parent = joined.unwrap_or(before);
+        let is_same = Difference::between(&before.clip, &mut running.clip).is_empty();
         let (parent, difference) = (parent.step, Difference::between(&parent.clip, &mut running.clip));
         let before_clip = before.clip.clone();
         let mut remembered = before.remembered.clone();
         remembered.append(&mut self.remembered);
-        if difference.is_empty() {
+        if is_same {
             self.log.append(Kind::Dropped, &(step as usize));
             self.history.current_mut().remembered = remembered;
         } else {
             let describes = running.describes.map(|(object, _)| object);
-            let start = self.log.length;
-            self.log.append(Kind::Result, &result(step, parent, &difference, describes, false));
-            let bytes = self.log.length - start;
+            let content = result(step, parent, &difference, describes, false);
+            let bytes = content.0.len();
+            self.log.append(Kind::Result, &content);
             difference.segmented().for_each(|frame| drop(self.pairs.remove(&frame)));
             self.history.push(parent, State::new(step, running.clip, remembered, describes, bytes));
             self.history.forget(self.options.undo);
@@ -765,9 +808,10 @@ impl Clip {
 }
 
 /// Largest number of frames of a clip that is read.
-const MOST_FRAMES: usize = 1 << 24;
+const MOST_FRAMES: usize = 1 << 20;
 
 /// A content of a record that is written already.
+#[derive(Clone, Debug)]
 struct Written(Vec<u8>);
 
 impl Saved for Written {
@@ -778,6 +822,13 @@ impl Saved for Written {
     fn read(bytes: &mut &[u8]) -> Option<Written> {
         Some(Written(std::mem::take(bytes).to_vec()))
     }
+}
+
+/// The content of a record of where a range ends, and whether all its frames have been in.
+fn range_record(step: u32, end: usize, is_complete: bool) -> Written {
+    let mut bytes = Vec::new();
+    ([step as usize, end], is_complete).write(&mut bytes);
+    Written(bytes)
 }
 
 /// The content of a record of what a step has changed.

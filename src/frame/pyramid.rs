@@ -1,7 +1,7 @@
 //! The pyramid of one frame. Nothing in it depends on another frame: a frame of a clip is prepared once and shared by its pairs.
 
-use std::sync::OnceLock;
 use std::sync::Arc;
+use std::sync::OnceLock;
 
 use super::filter::{gaussian, gradients, halve};
 use super::palette::Palette;

@@ -213,3 +213,48 @@ fn part<T: PartialEq>(before: &Option<Arc<T>>, now: &mut Option<Arc<T>>) -> Opti
         (_, now) => Some(now.clone()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history(bytes: &[usize]) -> History {
+        let clip = || SegmentedClip {
+            size: [0, 0],
+            mark_unknown: false,
+            objects: Arc::new(Objects::new(0)),
+            frames: Vec::new(),
+        };
+        let mut history = History::new(clip());
+        for (parent, &bytes) in bytes.iter().enumerate() {
+            history.push(parent as u32, State::new(parent as u32 + 1, clip(), Remembered::new(), None, bytes));
+        }
+        history
+    }
+
+    #[test]
+    fn the_oldest_states_are_forgotten_and_neither_the_current_one_nor_what_was_undone() {
+        let steps = |undone: usize, budget: usize| {
+            let mut history = history(&[10, 20, 30, 40]);
+            (0..undone).for_each(|_| assert!(history.beside(true).is_some_and(|step| history.go_to(step))));
+            history.forget(budget);
+            (history.steps(), history.current().step)
+        };
+        assert_eq!(steps(0, 100), ([4, 0], 4));
+        assert_eq!(steps(0, 90), ([3, 0], 4));
+        assert_eq!(steps(0, 89), ([2, 0], 4));
+        assert_eq!(steps(0, 0), ([0, 0], 4));
+        assert_eq!(steps(2, 0), ([0, 2], 2));
+    }
+
+    #[test]
+    fn a_step_takes_the_place_of_what_was_undone() {
+        let mut history = history(&[1, 1, 1]);
+        assert!(history.go_to(1) && !history.go_to(9));
+        assert_eq!((history.beside(true), history.beside(false)), (Some(0), Some(2)));
+        let state = State { step: 7, ..history.current().clone() };
+        history.push(1, state);
+        assert_eq!((history.steps(), history.current().step, history.beside(false)), ([2, 0], 7, None));
+        assert!(history.after(2).is_none() && history.after(3).is_none());
+    }
+}

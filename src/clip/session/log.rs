@@ -162,3 +162,124 @@ fn length_of(record: &[u8]) -> Option<usize> {
     let length = usize::read(&mut &found[1..5])?;
     (*found == head(found[0], length)).then_some(length)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::{Annotation, Clip, Command, Content, OpenOptions, Spread};
+    use crate::{Frame, Quality, Random, SegmentOptions};
+
+    const SEEDS: std::ops::Range<u64> = 0..4000;
+
+    /// The log with other bytes, and sums that fit them: as of somebody who can compute sums.
+    fn sealed(bytes: &[u8], changed: impl Fn(usize, Kind, Vec<u8>) -> Vec<u8>) -> Vec<u8> {
+        let mut reader = Reader::new(bytes).expect("it is a log");
+        let mut log = Log::new();
+        let mut at = 0;
+        while let Some((kind, content)) = reader.next() {
+            let content = changed(at, kind, content.to_vec());
+            log.append(kind, &super::super::Written(content));
+            at += 1;
+        }
+        log.take().0
+    }
+
+    fn frames() -> Vec<Frame> {
+        let value = |t: usize, p: usize| {
+            let [x, y] = [p % 32, p / 32];
+            let is_in = (4 + 3 * t..16 + 3 * t).contains(&x) && (6..16).contains(&y);
+            let seed = if is_in { 7 * (x - 3 * t) + 13 * y } else { 11 * x + 5 * y };
+            (seed.wrapping_mul(seed) >> 2) as u8
+        };
+        let rgba =
+            |t: usize| (0..32 * 24).flat_map(|p| [value(t, p), value(t, p), value(t, p), 255]).collect::<Vec<u8>>();
+        (0..3).map(|t| Frame::from_rgba(32, 24, rgba(t)).expect("a frame")).collect()
+    }
+
+    /// Gives the clip all frames that it wants, as far as they are the right ones.
+    fn run(clip: &mut Clip, frames: &[Frame]) {
+        for _ in 0..200 {
+            let Some(wanted) = clip.wanted() else { return };
+            if frames.get(wanted.frame).is_none_or(|frame| clip.take(wanted.frame, frame, None).is_err()) {
+                match wanted.step {
+                    Some(step) => assert!(clip.cancel(step)),
+                    None => clip.look_at(usize::MAX),
+                }
+            }
+        }
+        panic!("it does not end");
+    }
+
+    fn journal(frames: &[Frame]) -> Vec<u8> {
+        let mut clip = Clip::new(3, OpenOptions::default());
+        let options = SegmentOptions::default().with_quality(Quality::Fast);
+        let content =
+            Content::Strokes { object: 7, labels: (0..32 * 24).map(|p| if p % 32 < 9 { 1 } else { 255 }).collect() };
+        let commands = [
+            Command::Segment { frames: 0..3, options },
+            Command::Annotate(vec![Annotation::new(1, content.clone())]),
+            Command::Annotate(vec![Annotation { frame: 0, content: content.clone(), spread: Spread::Exact }]),
+            Command::Accept { frames: vec![1], on: true },
+        ];
+        for command in commands {
+            clip.apply(command).expect("the command is valid");
+            run(&mut clip, frames);
+        }
+        clip.undo();
+        clip.look_at(1);
+        run(&mut clip, frames);
+        clip.apply(Command::Segment { frames: 0..3, options }).expect("the range is valid");
+        clip.take(0, &frames[0], None).expect("the first frame");
+        clip.apply(Command::Annotate(vec![Annotation::new(1, content)])).expect("the command is valid");
+        clip.take_events().records
+    }
+
+    #[test]
+    fn records_that_somebody_has_changed_are_refused_or_are_those_of_a_clip() {
+        let frames = frames();
+        let original = journal(&frames);
+        assert!(sealed(&original, |_, _, content| content) == original);
+        let saved = Clip::read(&original, OpenOptions::default()).expect("it is a journal").clip.save();
+        let mut read = [0; 2];
+        for seed in SEEDS {
+            let bytes = if seed % 2 == 0 { &original } else { &saved };
+            let mut random = Random::from_seed(seed);
+            let mut below = |limit: usize| random.uniform(0.0, limit as f64) as usize;
+            let count = bytes.len() / 200;
+            let (record, at, length) = (below(count.clamp(8, 24)), below(1 << 16), 1 + below(5));
+            // Small numbers, that are indices, counts and objects, and large ones.
+            let value = [below(8), below(256), 255, 0, 254][below(5)] as u8;
+            let bytes = sealed(bytes, |index, kind, mut content| {
+                if index == record && kind != Kind::Open && !content.is_empty() {
+                    // Most at the beginning, where numbers are.
+                    let at = if at % 3 == 0 { at % content.len() } else { at % content.len().min(40) };
+                    content.iter_mut().skip(at).take(length).for_each(|byte| *byte = value);
+                }
+                content
+            });
+            let Ok(recovered) = Clip::read(&bytes, OpenOptions::default()) else { continue };
+            read[usize::from(recovered.is_damaged)] += 1;
+            let mut clip = recovered.clip;
+            if clip.size()[0] > 48 || clip.size()[1] > 48 {
+                continue;
+            }
+            run(&mut clip, &frames);
+            for index in 0..clip.len() {
+                clip.look_at(index);
+                run(&mut clip, &frames);
+            }
+            drop((clip.tracks(), clip.objects(), clip.frames()));
+            let options = SegmentOptions::default().with_quality(Quality::Fast);
+            if seed % 16 == 0 && clip.apply(Command::Segment { frames: 0..3, options }).is_ok() {
+                run(&mut clip, &frames);
+            }
+            assert!(
+                !Clip::read(&clip.save(), OpenOptions::default()).expect("it is its own").is_damaged,
+                "seed {seed}"
+            );
+            while clip.undo() {}
+            assert!(!clip.frames().is_empty());
+        }
+        assert!(read.iter().all(|count| *count > 100), "{read:?}");
+    }
+}

@@ -20,7 +20,7 @@ use crate::order::descending;
 /// Objects are the same if the intersection of their pixels is at least this share of the union.
 const LEAST_SHARE: f64 = 0.1;
 
-/// A range that is being segmented. The frames beside it are taken as well, if they have masks of the same working size.
+/// A range that is being segmented. At its end the frames beside it are taken as well, if they have masks of the same working size.
 #[derive(Debug)]
 pub(super) struct RangeJob {
     pub(super) step: u32,
@@ -28,52 +28,62 @@ pub(super) struct RangeJob {
     pub(super) frames: Range<usize>,
     options: SegmentOptions,
     segmenter: ClipSegmenter,
-    /// The next frame.
+    /// The next frame of the range.
     next: usize,
-    /// Whether it was ended early.
-    is_finished: bool,
+    /// How often it was ended early.
+    finished: usize,
     /// Whether all frames have been in: it takes effect before any command that was given later.
     pub(super) is_complete: bool,
-    /// The last frame that was taken.
-    last: Option<Frame>,
-    /// The pairs of the first frame with the one before the range, and of the frame after the range with the last one.
-    beside: [Option<Pairs>; 2],
+    /// The first and the last frame of the range, if there are frames beside them.
+    ends: [Option<Frame>; 2],
+    /// The pairs of the first frame with the one before the range, and of the frame after the range with the last one; each with the hash of
+    /// the frame beside the range.
+    beside: [Option<(u64, Pairs)>; 2],
 }
 
 impl RangeJob {
     /// # Errors
     /// [`Error::InvalidOption`] for a range of fewer than two frames and for options out of range.
     pub(super) fn new(step: u32, frames: Range<usize>, options: SegmentOptions, length: usize) -> Result<RangeJob> {
-        if frames.end > length || frames.start + 2 > frames.end {
+        if frames.end > length || frames.start.saturating_add(2) > frames.end {
             let Range { start, end } = frames;
             let reason = format!("{start}..{end} is no range of at least two of the {length} frames");
             return Err(Error::InvalidOption { name: "frames", reason });
         }
         let segmenter = ClipSegmenter::new(ClipOptions::default().with_pair(options))?;
-        let next = frames.start.saturating_sub(1);
-        Ok(RangeJob { step, frames, options, segmenter, next, is_finished: false, is_complete: false, last: None, beside: [None, None] })
+        let next = frames.start;
+        let (ends, beside) = ([None, None], [None, None]);
+        Ok(RangeJob { step, frames, options, segmenter, next, finished: 0, is_complete: false, ends, beside })
     }
 
     /// The frame to take next; `None` when all are in.
     pub(super) fn wanted(&self, clip: &SegmentedClip) -> Option<usize> {
+        if self.frames.contains(&self.next) {
+            return Some(self.next);
+        }
+        // Which frames are beside it can change until the end: undo and redo go on meanwhile.
+        (0..2).find_map(|side| {
+            self.beside(clip, side).filter(|_| self.finished + side < 2 && self.solved(clip, side).is_none())
+        })
+    }
+
+    /// The frame before the range, or the one after it, if it has masks of the working size of the range.
+    fn beside(&self, clip: &SegmentedClip, side: usize) -> Option<usize> {
         let Range { start, end } = self.frames;
-        if self.is_finished && self.next >= end {
-            return None;
-        }
-        match self.next {
-            next if (start..end).contains(&next) => Some(next),
-            next if next < start => Some(if self.reaches(clip, next) { next } else { start }),
-            next => Some(next).filter(|&next| next == end && next < clip.len() && self.reaches(clip, next)),
-        }
-    }
-
-    /// Whether a frame beside the range has masks of the working size of the range.
-    fn reaches(&self, clip: &SegmentedClip, beside: usize) -> bool {
+        let beside = if side == 0 { start.checked_sub(1)? } else { end };
         let halvings = ClipOptions::default().with_pair(self.options).settings(clip.size).scaling(clip.size).halvings();
-        clip.frames[beside].found.as_ref().is_some_and(|found| found.halvings == halvings)
+        let found = clip.frames.get(beside)?.found.as_ref()?;
+        (found.halvings == halvings && self.ends[side].is_some()).then_some(beside)
     }
 
-    /// Takes the frame that is [`wanted`](Self::wanted). Returns its pairs, if they had to be solved.
+    /// The pairs with the frame before the range, or after it, if they were solved.
+    fn solved(&self, clip: &SegmentedClip, side: usize) -> Option<&Pairs> {
+        let found = clip.frames[self.beside(clip, side)?].found.as_ref()?;
+        self.beside[side].as_ref().filter(|(hash, _)| *hash == found.hash).map(|(_, pairs)| pairs)
+    }
+
+    /// Takes the frame that is [`wanted`](Self::wanted), with pairs that others have solved or that were solved before. Returns its pairs if
+    /// they are new.
     ///
     /// # Errors
     /// [`Error::FrameSizeMismatch`], [`Error::OtherFrame`] for another frame beside the range; another frame can be taken.
@@ -81,44 +91,51 @@ impl RangeJob {
         &mut self,
         clip: &SegmentedClip,
         frame: &Frame,
+        of_others: Option<&FramePairs>,
         known: Option<&FramePairs>,
     ) -> Result<Option<(usize, FramePairs)>> {
         let Some(index) = self.wanted(clip) else { return Ok(None) };
-        let is_beside = !self.frames.contains(&index);
-        if is_beside {
+        if !self.frames.contains(&index) {
             clip.check(index, frame)?;
-        } else if let Some(size) = self.other_size(clip, frame) {
-            return Err(size);
+            let side = usize::from(index >= self.frames.end);
+            let pairs = match &self.ends {
+                [Some(first), _] if side == 0 => solved(frame, first, &self.options),
+                [_, Some(last)] => solved(last, frame, &self.options),
+                _ => return Ok(None),
+            };
+            self.beside[side] = Some((frame.hash(), pairs));
+            return Ok(None);
         }
-        let mut new = None;
-        if !is_beside {
-            match known.filter(|known| self.segmenter.knows(frame, known)) {
-                Some(known) => self.segmenter.push_known(frame.clone(), known)?,
-                None => new = Some((index, self.segmenter.push(frame.clone())?)),
-            }
+        self.check_size(clip, [frame.width(), frame.height()])?;
+        let knows = |pairs: &&FramePairs| self.segmenter.knows(frame, pairs);
+        let new = match (known.filter(knows), of_others.filter(knows)) {
+            (Some(known), _) => self.segmenter.push_known(frame.clone(), known).map(|()| None)?,
+            (_, Some(solved)) => self.segmenter.push_known(frame.clone(), solved).map(|()| Some(solved.clone()))?,
+            _ => Some(self.segmenter.push(frame.clone())?),
+        };
+        let is_end = [index == self.frames.start && index > 0, index + 1 == self.frames.end && index + 1 < clip.len()];
+        for (end, _) in self.ends.iter_mut().zip(is_end).filter(|(_, is_end)| *is_end) {
+            *end = Some(frame.clone());
         }
-        if let Some(last) = &self.last
-            && (index == self.frames.start || is_beside)
-        {
-            self.beside[usize::from(is_beside)] = Some(solved(last, frame, &self.options));
-        }
-        self.last = Some(frame.clone());
         self.next = index + 1;
-        Ok(new)
+        Ok(new.map(|pairs| (index, pairs)))
     }
 
     /// A range of frames of another size has to contain all frames that have masks.
-    fn other_size(&self, clip: &SegmentedClip, frame: &Frame) -> Option<Error> {
-        let second = (frame.width(), frame.height());
-        let outside = (0..clip.len()).find(|t| !self.frames.contains(t) && clip.frames[*t].found.is_some());
-        let first = (clip.size[0], clip.size[1]);
-        (outside.is_some() && first != second).then_some(Error::FrameSizeMismatch { first, second })
+    fn check_size(&self, clip: &SegmentedClip, size: [usize; 2]) -> Result<()> {
+        let is_outside = |t: usize| !self.frames.contains(&t) && clip.frames[t].found.is_some();
+        let [first, second] = [clip.size, size].map(|[width, height]| (width, height));
+        match first != second && (0..clip.len()).any(is_outside) {
+            true => Err(Error::FrameSizeMismatch { first, second }),
+            false => Ok(()),
+        }
     }
 
-    /// Ends the range before a frame, or after the frames that are in. No frame beside it is wanted any more. Returns where it ends.
+    /// Ends the range before a frame, or after the frames that are in. The frame after it is not wanted any more; nor is the one before it,
+    /// if the range was ended before. Returns where it ends.
     pub(super) fn finish(&mut self, end: Option<usize>) -> usize {
         self.frames.end = end.unwrap_or(self.next).clamp(self.frames.start, self.frames.end);
-        self.is_finished = true;
+        self.finished += 1;
         self.frames.end
     }
 
@@ -133,26 +150,30 @@ impl RangeJob {
     /// returned as well, from the first frame to the last.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for a range that was ended before its second frame.
+    /// [`Error::InvalidOption`] for a range that was ended before its second frame, [`Error::FrameSizeMismatch`] for one of another size than
+    /// masks outside.
     pub(super) fn conclude(self, before: &SegmentedClip) -> Result<(SegmentedClip, [usize; 2])> {
-        let RangeJob { frames: range @ Range { start, end }, segmenter, beside, .. } = self;
+        let Range { start, end } = self.frames;
         if start + 2 > end {
             let reason = format!("a range needs two frames, there are {}", end - start);
             return Err(Error::InvalidOption { name: "frames", reason });
         }
-        let run = segmenter.conclude();
+        let [from_before, to_after] = [0, 1].map(|side| self.solved(before, side).cloned());
+        let size = self.segmenter.size().unwrap_or(before.size);
+        // The frames outside may have got masks of another size meanwhile.
+        self.check_size(before, size)?;
+        let run = self.segmenter.conclude();
         let mut clip = before.clone();
         clip.size = run.size;
         let numbers = numbers_of(&run, before, start, &mut clip);
         let [first, last] = [start, end - 1].map(|t| before.scene(t));
-        for (frame, now) in run.frames.into_iter().zip(&mut clip.frames[range]) {
+        for (frame, now) in run.frames.into_iter().zip(&mut clip.frames[start..end]) {
             let found = frame.found.as_deref().cloned().map(|mut found| {
                 found.layer.labels = found.layer.labels.map(|label| numbers[usize::from(label)]);
                 Arc::new(found)
             });
             *now = FrameState { found, exact: now.exact.take(), ..FrameState::default() };
         }
-        let [from_before, to_after] = beside;
         if start > 0 {
             clip.join(start, from_before, before);
         }
@@ -249,8 +270,7 @@ fn overlaps(run: &SegmentedClip, before: &SegmentedClip, start: usize, is_layer:
     let share = |&((was, is), pixels): &((u8, u8), usize)| {
         pixels as f64 / (areas[0][usize::from(was)] + areas[1][usize::from(is)] - pixels) as f64
     };
-    let pairs: Vec<((u8, u8), usize)> =
-        common.into_iter().filter(|of| share(of) >= LEAST_SHARE).collect();
+    let pairs: Vec<((u8, u8), usize)> = common.into_iter().filter(|of| share(of) >= LEAST_SHARE).collect();
     descending(pairs.iter().map(share)).into_iter().map(|k| pairs[k].0).collect()
 }
 

@@ -56,8 +56,10 @@ impl SegmentedClip {
         (mark_unknown, found.hash).write(&mut bytes);
         [found.halvings, self.size[0], self.size[1]].write(&mut bytes);
         frame.found_labels().write(&mut bytes);
-        (found.layer.log_odds.write(&mut bytes), found.onward.write(&mut bytes));
-        (frame.layer.write(&mut bytes), frame.exact.write(&mut bytes));
+        found.layer.log_odds.write(&mut bytes);
+        found.onward.write(&mut bytes);
+        frame.layer.write(&mut bytes);
+        frame.exact.write(&mut bytes);
         let mut is_there: ObjectSet = [false; 256];
         frame.labels().for_each(|(label, _)| is_there[usize::from(label)] = true);
         let users = self.user_objects_in(index);

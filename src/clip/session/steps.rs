@@ -1,5 +1,6 @@
 //! A command that takes effect: on a copy of the state, in phases that ask for the frames that they need.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
@@ -28,18 +29,26 @@ pub(super) struct Running {
     pub(super) describes: Option<(u8, bool)>,
     phases: VecDeque<Phase>,
     job: Option<ClipJob>,
-    /// What objects have gained and lost in earlier phases.
+    /// What objects have gained and lost in earlier phases, and the frames that these have changed.
     changes: Vec<Changed>,
+    changed: BTreeSet<usize>,
 }
 
 #[derive(Clone, Debug)]
 enum Phase {
     Annotate(Annotations),
     /// Draws labels exactly; of one object if there is one.
-    Draw { frame: usize, object: Option<u8>, labels: Vec<u8> },
-    Split { object: u8, frame: usize },
+    Draw {
+        frame: usize,
+        object: Option<u8>,
+        labels: Vec<u8>,
+    },
+    Split {
+        object: u8,
+        frame: usize,
+    },
     /// Restores locks and names that were lifted.
-    Restore { locked: ObjectSet, named: ObjectSet },
+    Restore(Box<[ObjectSet; 2]>),
 }
 
 impl Running {
@@ -54,7 +63,7 @@ impl Running {
             _ => None,
         };
         let phases = phases(&mut clip, command)?;
-        Running { step, clip, describes, phases, job: None, changes: Vec::new() }.advanced()
+        Running { step, clip, describes, phases, job: None, changes: Vec::new(), changed: BTreeSet::new() }.advanced()
     }
 
     /// Puts a segmented range in its place, and applies the annotations of its scenes again.
@@ -65,14 +74,15 @@ impl Running {
         let step = range.step;
         let (mut clip, scenes) = range.conclude(before)?;
         let phases = repeated(before, &mut clip, scenes).into();
-        Running { step, clip, describes: None, phases, job: None, changes: Vec::new() }.advanced()
+        Running { step, clip, describes: None, phases, job: None, changes: Vec::new(), changed: BTreeSet::new() }
+            .advanced()
     }
 
     /// The frame to [`take`](Self::take) next; `None` when the command has taken effect.
     pub(super) fn wanted(&self) -> Option<usize> {
         self.job.as_ref().and_then(ClipJob::wanted).or_else(|| match self.phases.front()? {
             Phase::Draw { frame, .. } | Phase::Split { frame, .. } => Some(*frame),
-            Phase::Annotate(_) | Phase::Restore { .. } => None,
+            Phase::Annotate(_) | Phase::Restore(_) => None,
         })
     }
 
@@ -99,8 +109,7 @@ impl Running {
 
     /// Whether it has changed a frame.
     pub(super) fn has_changed(&self, index: usize) -> bool {
-        self.job.as_ref().is_some_and(|job| job.changed().contains(&index))
-            || self.changes.iter().any(|changed| changed.frame == index)
+        self.job.as_ref().is_some_and(|job| job.changed().contains(&index)) || self.changed.contains(&index)
     }
 
     /// What objects have gained and lost.
@@ -116,19 +125,23 @@ impl Running {
 
     /// Goes on to the next phase that needs a frame.
     fn advance(&mut self) -> Result<()> {
-        while self.wanted().is_none() {
-            self.changes = self.changes();
-            self.job = None;
+        loop {
+            if self.job.as_ref().and_then(ClipJob::wanted).is_none() {
+                self.changes = self.changes();
+                self.changed.extend(self.job.take().iter().flat_map(ClipJob::changed));
+            }
+            if self.wanted().is_some() {
+                return Ok(());
+            }
             match self.phases.pop_front() {
                 Some(Phase::Annotate(annotations)) => self.job = Some(self.clip.annotate(annotations)?),
-                Some(Phase::Restore { locked, named }) => {
+                Some(Phase::Restore(sets)) => {
                     let objects = self.clip.objects_mut();
-                    (objects.locked, objects.named) = (locked, named);
+                    [objects.locked, objects.named] = *sets;
                 }
-                _ => break,
+                _ => return Ok(()),
             }
         }
-        Ok(())
     }
 
     /// Draws labels exactly. Pixels of locked objects stay as they are; the ground of one object is ground for this object alone.
@@ -148,6 +161,7 @@ impl Running {
         let mut changes = Changes::default();
         changes.set(*index, shown, &now);
         self.changes.extend(changes.list());
+        self.changed.insert(*index);
     }
 }
 
@@ -168,6 +182,9 @@ fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDeque<Phase>>
         Command::ReplaceAnnotations(all) => return replace(clip, all),
         Command::Clear { frame, object } => {
             let object = object.map(|object| current_number(clip, object)).transpose()?;
+            if let Some(object) = locked_above(clip, frame, object) {
+                return Err(Error::ObjectLocked { object });
+            }
             uncover(clip, frame, object);
             Annotations { cleared: vec![(frame, object)], accepted: reopened(clip, &[frame]), ..Annotations::default() }
         }
@@ -269,6 +286,14 @@ fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> 
     Some(accepted_as_shown((0..clip.len()).filter(stays).collect()))
 }
 
+/// A locked object that was drawn exactly in a frame, among all or only the given one.
+fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Option<u8> {
+    let mut labels = clip.frames[frame].exact.as_ref()?.each().map(|(label, _)| label);
+    let is_locked = |label: &u8| clip.objects.locked[usize::from(*label)];
+    let number = |label: u8| clip.objects.number(label);
+    labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
+}
+
 /// Removes what was drawn exactly in a frame, of one object or of all.
 fn uncover(clip: &mut SegmentedClip, frame: usize, object: Option<u8>) {
     let numbers = clip.objects.numbers;
@@ -319,7 +344,9 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
             painted.push(Painted { frame, object, labels, spread });
         };
         match content {
-            Content::Strokes { object, labels } | Content::Mask { object, labels } if labels.iter().any(|l| ![0, 1, 255].contains(l)) => {
+            Content::Strokes { object, labels } | Content::Mask { object, labels }
+                if labels.iter().any(|l| ![0, 1, 255].contains(l)) =>
+            {
                 return invalid("labels", format!("those of object {object} alone are 1, 0 and 255"));
             }
             Content::Strokes { object, labels } => {
@@ -361,6 +388,7 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
                 if let Some(&object) = labels.iter().find(|label| clip.objects.locked[usize::from(**label)]) {
                     return Err(Error::ObjectLocked { object });
                 }
+                current_labels(clip, &labels)?;
                 annotations.masks.retain(|of| of.frame != frame);
                 annotations.masks.push(Painted { frame, object: None, labels, spread });
             }
@@ -376,8 +404,10 @@ fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(Annotations, 
     }
     annotations.corrections = painted;
     // Labels that are drawn exactly are no annotations that could be checked later.
+    let is_locked = |object: &u8| clip.objects.locked[usize::from(*object)];
     let locked = draws.iter().find_map(|draw| match draw {
-        Phase::Draw { object: Some(object), .. } => Some(*object).filter(|&k| clip.objects.locked[usize::from(k)]),
+        Phase::Draw { object: Some(object), .. } => Some(*object).filter(is_locked),
+        Phase::Draw { labels, .. } => labels.iter().copied().find(is_locked),
         _ => None,
     });
     locked.map_or(Ok((annotations, draws)), |object| Err(Error::ObjectLocked { object }))
@@ -399,8 +429,8 @@ fn own_labels(clip: &SegmentedClip, object: u8, labels: &[u8]) -> Result<(u8, Ve
 fn current_labels(clip: &SegmentedClip, labels: &[u8]) -> Result<Vec<u8>> {
     let mut numbers: BTreeMap<u8, u8> = [0, UNLABELLED].map(|label| (label, label)).into();
     for &label in labels {
-        if !numbers.contains_key(&label) {
-            numbers.insert(label, current_number(clip, label)?);
+        if let Entry::Vacant(number) = numbers.entry(label) {
+            number.insert(current_number(clip, label)?);
         }
     }
     Ok(labels.iter().map(|label| numbers[label]).collect())
@@ -453,7 +483,10 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     numbers.extend(deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
         let given = annotations.masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
-        let labels = seen.remove(&frame).map(|seen| over(Some(seen), given.unwrap_or_default()));
+        let labels = seen.remove(&frame).map(|seen| match given {
+            Some(given) => over(Some(seen), given),
+            None => seen,
+        });
         Accepted { frame, labels }
     });
     let accepted = accepted.collect();
@@ -524,7 +557,7 @@ fn repeated(before: &SegmentedClip, clip: &mut SegmentedClip, [first, last]: [us
     vec![
         Phase::Annotate(Annotations { corrections, prompts, ..Annotations::default() }),
         Phase::Annotate(Annotations { accepted: Some(accepted), ..Annotations::default() }),
-        Phase::Restore { locked, named },
+        Phase::Restore(Box::new([locked, named])),
     ]
 }
 
