@@ -57,3 +57,22 @@ fn a_clip_gives_the_masks_of_a_segmented_clip() {
     assert!(again.clip.undo());
     same(labels(&mut again.clip, &frames), frames_of(&whole(&frames, options(Quality::Fast, None)), &frames));
 }
+
+#[test]
+fn what_is_drawn_exactly_changes_no_other_pixel() {
+    let frames = moving_and_resting().0;
+    let mut clip = segmented(&frames);
+    let before = labels(&mut clip, &frames);
+    let corner: Vec<u8> =
+        (0..SIZE[0] * SIZE[1]).map(|p| if p % SIZE[0] < 9 && p / SIZE[0] < 9 { 1 } else { 255 }).collect();
+    let content = Content::Strokes { object: 9, labels: corner.clone() };
+    let annotation = Annotation { spread: Spread::Exact, ..Annotation::new(2, content) };
+    clip.apply(Command::Annotate(vec![annotation])).unwrap();
+    assert_eq!(clip.wanted().map(|wanted| wanted.frame), Some(2));
+    clip.take(2, &frames[2], None).unwrap();
+    assert_eq!(clip.wanted(), None, "it is done");
+    for (index, (before, now)) in before.iter().zip(labels(&mut clip, &frames)).enumerate() {
+        let drawn = |(p, &label): (usize, &u8)| if index == 2 && corner[p] == 1 { 9 } else { label };
+        assert!(before.labels.iter().enumerate().map(drawn).eq(now.labels.iter().copied()), "frame {index}");
+    }
+}

@@ -81,7 +81,7 @@ impl Running {
     /// # Errors
     /// [`Error::FrameSizeMismatch`], [`Error::OtherFrame`]: the right frame can be taken. Other errors end the command.
     pub(super) fn take(&mut self, frame: &Frame) -> Result<()> {
-        if let Some(job) = &mut self.job {
+        if let Some(job) = self.job.as_mut().filter(|job| job.wanted().is_some()) {
             job.take(&mut self.clip, frame)?;
         } else if let Some(index) = self.wanted() {
             let shown = self.clip.frame(index, frame)?;
