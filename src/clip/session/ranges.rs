@@ -57,7 +57,7 @@ impl RangeJob {
     /// The frame to take next; `None` when all are in.
     pub(super) fn wanted(&self, clip: &SegmentedClip) -> Option<usize> {
         let Range { start, end } = self.frames;
-        if self.is_finished && self.next >= end {
+        if self.is_finished && self.next.max(start) >= end {
             return None;
         }
         match self.next {
