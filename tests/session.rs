@@ -82,7 +82,7 @@ fn a_range_that_ends_before_its_first_frame_fails() {
     let frames = moving_and_resting().0;
     let mut clip = Clip::new(frames.len(), OpenOptions::default());
     let segment = |frames| Command::Segment { frames, options: SegmentOptions::default().with_quality(Quality::Fast) };
-    clip.apply(segment(0..2)).unwrap();
+    let first = clip.apply(segment(0..2)).unwrap();
     run(&mut clip, &frames);
     let second = clip.apply(segment(2..4)).unwrap();
     assert_eq!(clip.wanted().map(|wanted| wanted.frame), Some(1), "the frame beside it");
@@ -90,4 +90,5 @@ fn a_range_that_ends_before_its_first_frame_fails() {
     assert_eq!(clip.wanted(), None);
     let settled = clip.take_events().settled;
     assert!(settled.iter().any(|of| of.step == second && of.changes.is_err()));
+    assert_eq!(clip.last_step(), Some(first));
 }
