@@ -1,254 +1,259 @@
-//! Clips: frames in, labelled frames and tracks out.
+//! A clip of frames that can be read again: it is segmented, corrected and read, from its opening to its closing.
 //!
-//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where annotations need them, and once for their
-//! labels. Each step is done in the thread that keeps the clip; frames are read between the steps.
+//! A call gives the clip a command, reads the frames that it wants, and returns when it has taken effect. Work on each frame is done in the
+//! thread that keeps the clip.
 
 mod annotations;
-mod kept;
+mod home;
+mod journal;
 mod source;
-mod tracks;
+pub(crate) mod stream;
 
-use std::collections::VecDeque;
+use std::path::PathBuf;
 
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyUserWarning};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
-use veronese::clip::{Annotations, Changed, ClipFrame, ClipOptions, MAX_LOOK_AHEAD};
-use veronese::{Frame, SegmentOptions};
+use veronese::clip::{Changed, Command, Description, OpenOptions, Stage, Wanted};
 
 use crate::errors::Failure;
-use crate::options::{self, LookAhead};
+use crate::options::{self, index, invalid, object};
 use crate::results;
 use crate::worker::Worker;
-use annotations::{FrameAnnotations, Given};
-use kept::{Kept, Step, Summary};
+use home::Home;
 use source::Source;
-use tracks::Tracks;
 
-/// Begins a clip. Arguments are checked; segmentation begins with the first request.
+/// An argument that may be left out.
+type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+type Changes<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
+
+/// Opens a clip, and finishes what was begun when its journal ended.
 #[pyfunction]
-#[allow(clippy::too_many_arguments, reason = "they are named in Python")]
-pub(crate) fn segment_clip(
+pub(crate) fn open_clip(
     py: Python<'_>,
     frames: &Bound<'_, PyAny>,
-    motions: &Bound<'_, PyAny>,
-    quality: &Bound<'_, PyAny>,
+    saved: Option<Vec<u8>>,
+    journal: Option<PathBuf>,
     mark_unknown: bool,
-    subject: bool,
-    look_ahead: Option<&Bound<'_, PyAny>>,
-    masks: Option<&Bound<'_, PyAny>>,
-    corrections: Option<&Bound<'_, PyAny>>,
-    prompts: Option<&Bound<'_, PyAny>>,
-    locked: Option<&Bound<'_, PyAny>>,
-    named: Option<&Bound<'_, PyAny>>,
-    accepted: Option<&Bound<'_, PyAny>>,
-    state: Option<Vec<u8>>,
-    progress: Option<Py<PyAny>>,
 ) -> PyResult<Clip> {
-    let pair = SegmentOptions::default()
-        .with_motions(options::motions(motions)?)
-        .with_quality(options::quality(quality)?)
-        .with_mark_unknown(mark_unknown)
-        .with_subject(subject);
-    let look_ahead = options::look_ahead(look_ahead)?;
     let source = Source::of(frames)?;
-    // These need frames that can be read again.
-    let needs = [
-        ("masks", masks.is_some()),
-        ("corrections", corrections.is_some()),
-        ("prompts", prompts.is_some()),
-        ("locked", locked.is_some()),
-        ("named", named.is_some()),
-        ("accepted", accepted.is_some()),
-        ("state", state.is_some()),
-        ("look_ahead", look_ahead == LookAhead::All),
-    ];
-    let needed = needs.iter().find(|(_, given)| *given).map(|(name, _)| *name);
-    let length = match (source.length(), needed) {
-        (None, Some(name)) => {
-            let reason = "needs frames that can be read again: a sequence, or the path of a folder";
-            return Err(Failure::option(name, reason).into());
-        }
-        (length, _) => length.unwrap_or(0),
+    let Some(length) = source.length() else {
+        let sentence =
+            "a clip needs frames that can be read again, a sequence or a folder: segment_stream takes others";
+        return Err(Failure::input(sentence.into()).into());
     };
-    let whole = needed.is_some() || (source.length().is_some() && look_ahead == LookAhead::Usual);
-    let look_ahead = match look_ahead {
-        LookAhead::Frames(frames) => Some(frames),
-        _ if whole => None,
-        _ => Some(MAX_LOOK_AHEAD),
-    };
-    let annotations = FrameAnnotations::of(&Given { masks, corrections, prompts, locked, named, accepted }, length)?;
-    let worker = Worker::<Kept>::start()?;
-    worker
-        .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
-    Ok(Clip {
-        worker: Some(worker),
-        source,
-        progress,
-        mark_unknown,
-        options: Some(Options { annotations, state }),
-        size: None,
-        place: if whole {
-            Place::Unsegmented
-        } else {
-            Place::Stream { ready: VecDeque::new(), next: 0, ended: false, live: look_ahead == Some(0) }
-        },
-        changes: Vec::new(),
-        tracks: Tracks::default(),
-        failure: None,
-    })
+    let is_kept = journal.is_some();
+    let options = OpenOptions::default().with_mark_unknown(mark_unknown);
+    let (home, warning) = py.detach(|| Home::open(length, saved.as_deref(), journal, options))?;
+    let mut clip = Clip { worker: Some(Worker::start(home)?), source, length, is_kept };
+    if let Some(warning) = warning {
+        let warnings = py.import("warnings")?;
+        warnings.call_method1("warn", (warning, py.get_type::<PyUserWarning>(), 2))?;
+    }
+    let finished = clip.work(py, None);
+    if finished.is_err() {
+        clip.close(py)?;
+    }
+    finished.map(|_| clip)
 }
 
-/// The options of a whole clip.
-struct Options {
-    annotations: FrameAnnotations,
-    state: Option<Vec<u8>>,
-}
-
-/// The state of a clip.
-enum Place {
-    Stream {
-        ready: VecDeque<ClipFrame>,
-        /// The frame that is read next.
-        next: usize,
-        ended: bool,
-        /// Whether frames are returned as they come, so that the clip may end at any time.
-        live: bool,
-    },
-    Unsegmented,
-    Segmented {
-        length: usize,
-        /// The frame that is returned next.
-        next: usize,
-    },
-}
-
-/// The frames of a clip, in order, as they are finished.
+/// A clip, from its opening to its closing.
 #[pyclass(module = "veronese")]
 pub(crate) struct Clip {
     /// `None` when the clip is closed.
-    worker: Option<Worker<Kept>>,
+    worker: Option<Worker<Home>>,
     source: Source,
-    progress: Option<Py<PyAny>>,
-    mark_unknown: bool,
-    options: Option<Options>,
-    /// Width and height of all frames, once known.
-    size: Option<[usize; 2]>,
-    place: Place,
-    /// The changes by the last annotations.
-    changes: Vec<Changed>,
-    tracks: Tracks,
-    /// The error of the source, or of a frame; it is raised after the frames before it.
-    failure: Option<PyErr>,
+    /// Number of frames.
+    length: usize,
+    /// Whether there is a journal.
+    is_kept: bool,
 }
 
 #[pymethods]
 impl Clip {
-    fn __iter__(clip: PyRef<'_, Self>) -> PyRef<'_, Self> {
-        clip
+    fn __len__(&self) -> usize {
+        self.length
     }
 
     fn __repr__(&self) -> String {
-        match (&self.worker, self.source.length()) {
+        match (&self.worker, self.length) {
             (None, _) => "Clip(closed)".into(),
-            (_, None) => "Clip(a stream)".into(),
-            (_, Some(1)) => "Clip(1 frame)".into(),
-            (_, Some(length)) => format!("Clip({length} frames)"),
+            (_, 1) => "Clip(1 frame)".into(),
+            (_, length) => format!("Clip({length} frames)"),
         }
     }
 
-    fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        if self.worker.is_none() {
-            return Ok(None);
+    /// The frames that have masks, in order.
+    fn __iter__<'py>(clip: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        results::class(clip.py(), "labelled_frames")?.call1((clip,))
+    }
+
+    /// Segments a range of frames.
+    #[pyo3(
+        signature = (first = None, last = None, motions = None, quality = None, subject = false, progress = None),
+        text_signature = "($self, first=0, last=None, motions='auto', quality='best', subject=False, progress=None)"
+    )]
+    #[allow(clippy::too_many_arguments, reason = "they are named in Python")]
+    fn segment(
+        &mut self,
+        py: Python<'_>,
+        first: Optional<'_, '_>,
+        last: Optional<'_, '_>,
+        motions: Optional<'_, '_>,
+        quality: Optional<'_, '_>,
+        subject: bool,
+        progress: Optional<'_, '_>,
+    ) -> PyResult<()> {
+        if self.length < 2 {
+            return Err(stream::too_few(self.length).into());
         }
-        let next =
-            if matches!(self.place, Place::Stream { .. }) { self.next_of_stream(py) } else { self.next_of_whole(py) };
-        match next {
-            Ok(Some(frame)) => self.returned(py, frame).map(Some),
-            Ok(None) => {
-                if matches!(self.place, Place::Stream { .. }) {
-                    self.tracks.end();
-                }
-                self.failure.take().map_or(Ok(None), Err)
-            }
-            Err(error) => {
-                self.close();
-                Err(error)
-            }
+        let options = options::pair(motions, quality, subject)?;
+        let first = first.map_or(Ok(0), |first| index("first", first))?;
+        let last = last.map_or(Ok(self.length - 1), |last| index("last", last))?;
+        if last >= self.length || first >= last {
+            let reason = format!("there are no two frames from {first} to {last} in a clip of {} frames", self.length);
+            return Err(Failure::option(if last >= self.length { "last" } else { "first" }, &reason).into());
         }
+        self.run(py, Command::Segment { frames: first..last + 1, options }, progress).map(drop)
     }
 
-    /// A frame of a whole clip as it is now, as often as it is asked for.
-    fn frame<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        self.prepare(py)?;
-        let frame = self.labelled(py, index)?;
-        self.returned(py, frame)
+    /// Annotates frames, all in one step.
+    #[pyo3(signature = (*annotations, progress = None))]
+    fn annotate<'py>(
+        &mut self,
+        py: Python<'py>,
+        annotations: &Bound<'_, PyTuple>,
+        progress: Optional<'_, '_>,
+    ) -> Changes<'py> {
+        let size = self.call(py, |home| Ok(home.clip.size()))?;
+        self.change(py, Command::Annotate(annotations::annotations(annotations, size)?), progress)
     }
 
-    /// Annotates frames of a whole clip by label maps, strokes and prompts. Returns the indices of the frames that change.
-    #[pyo3(signature = (*annotations))]
-    fn correct(&mut self, py: Python<'_>, annotations: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        self.apply(py, &Given { corrections: Some(annotations), ..Given::default() })
+    /// Takes back the annotations of a frame, of one object or of all.
+    #[pyo3(signature = (frame, object = None))]
+    fn clear<'py>(&mut self, py: Python<'py>, frame: &Bound<'_, PyAny>, object: Optional<'_, '_>) -> Changes<'py> {
+        let object = object.map(|number| options::object("object", number)).transpose()?;
+        self.change(py, Command::Clear { frame: index("frame", frame)?, object }, None)
     }
 
-    /// Locks these objects: no annotation changes their pixels. All others are unlocked.
-    fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.apply(py, &Given { locked: Some(objects), ..Given::default() }).map(drop)
+    /// Accepts frames as correct, or no longer.
+    #[pyo3(signature = (frames, on = true))]
+    fn accept<'py>(&mut self, py: Python<'py>, frames: &Bound<'_, PyAny>, on: bool) -> Changes<'py> {
+        self.change(py, Command::Accept { frames: options::all("frames", frames, index)?, on }, None)
     }
 
-    /// Names these objects: like annotated objects, they change only by annotations of themselves.
-    fn name(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.apply(py, &Given { named: Some(objects), ..Given::default() }).map(drop)
+    /// Locks objects, or unlocks them.
+    #[pyo3(signature = (objects, on = true))]
+    fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>, on: bool) -> PyResult<()> {
+        self.run(py, Command::Lock { objects: options::all("objects", objects, object)?, on }, None).map(drop)
     }
 
-    /// Accepts these frames as correct. Returns the indices of those that change.
-    fn accept(&mut self, py: Python<'_>, frames: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
-        self.apply(py, &Given { accepted: Some(frames), ..Given::default() })
+    /// Gives an object a name, a class and a colour.
+    #[pyo3(signature = (number, name = "", class_name = "", colour = None))]
+    fn describe(
+        &mut self,
+        py: Python<'_>,
+        number: &Bound<'_, PyAny>,
+        name: &str,
+        class_name: &str,
+        colour: Optional<'_, '_>,
+    ) -> PyResult<()> {
+        let colour = colour.map(|given| {
+            given.extract::<[u8; 3]>().map_err(|_| invalid("colour", "red, green and blue from 0 to 255", given))
+        });
+        let description = Description { name: name.into(), class: class_name.into(), colour: colour.transpose()? };
+        let object = object("object", number)?;
+        self.run(py, Command::Describe { object, description, coalesce: false }, None).map(drop)
     }
 
-    /// Merges objects under the number of the first. Returns the indices of the frames that change.
+    /// Merges objects under the number of the first.
     #[pyo3(signature = (*objects))]
-    fn merge(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        let objects = annotations::objects("objects", objects)?;
-        let [kept, others @ ..] = &objects[..] else {
-            return Err(Failure::option("objects", "there is nothing to merge").into());
+    fn merge(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<()> {
+        self.run(py, Command::Merge(options::all("objects", objects, object)?), None).map(drop)
+    }
+
+    /// Turns objects into background.
+    #[pyo3(signature = (*objects))]
+    fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<()> {
+        self.run(py, Command::Delete(options::all("objects", objects, object)?), None).map(drop)
+    }
+
+    /// Makes a new object of all connected pieces of an object but the largest in a frame.
+    fn split<'py>(&mut self, py: Python<'py>, object: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>) -> Changes<'py> {
+        let (object, frame) = (options::object("object", object)?, index("frame", frame)?);
+        self.change(py, Command::Split { object, frame }, None)
+    }
+
+    /// Takes back the last step. Returns whether there was one.
+    fn undo(&mut self, py: Python<'_>) -> PyResult<bool> {
+        self.call(py, |home| home.with(|clip| clip.undo()))
+    }
+
+    /// Does again the step that was taken back last. Returns whether there was one.
+    fn redo(&mut self, py: Python<'_>) -> PyResult<bool> {
+        self.call(py, |home| home.with(|clip| clip.redo()))
+    }
+
+    /// The labels and objects of a frame.
+    fn labels<'py>(&mut self, py: Python<'py>, frame: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let frame = index("frame", frame)?;
+        let labels = match self.call(py, move |home| home.labels(frame))? {
+            Some(labels) => labels,
+            None => self.read(py, frame, Home::labels_of)?,
         };
-        self.renumber(py, others, *kept)
+        let size = self.call(py, |home| Ok(home.clip.size()))?;
+        results::clip_frame(py, labels, size)
     }
 
-    /// Turns objects into background. Returns the indices of the frames that change.
-    #[pyo3(signature = (*objects))]
-    fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
-        let objects = annotations::objects("objects", objects)?;
-        self.renumber(py, &objects, 0)
+    /// All objects that there have been.
+    #[getter]
+    fn objects<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        results::clip_entries(py, &self.call(py, |home| Ok(home.clip.objects()))?)
     }
 
-    /// The numbers of pixels that objects have gained and lost by the last annotations.
-    fn changes<'py>(&mut self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        self.prepare(py)?;
-        self.changes.iter().map(|changed| results::clip_change(py, changed)).collect()
+    /// What is known of each frame.
+    #[getter]
+    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        results::frame_statuses(py, &self.call(py, |home| Ok(home.clip.frames()))?)
     }
 
-    /// The state of a whole clip, as bytes for the option `state`.
-    fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        self.prepare(py)?;
-        let state = self.call(py, |kept| kept.segmented(|clip| Ok(clip.to_bytes())))?;
-        Ok(PyBytes::new(py, &state))
+    /// The lowest number that no object has had.
+    #[getter]
+    fn next_object(&self, py: Python<'_>) -> PyResult<Option<u8>> {
+        self.call(py, |home| Ok(home.clip.next_object()))
     }
 
-    /// The objects of the frames returned so far, as they are now.
+    /// The tracks of all objects in all frames that have masks.
     fn tracks<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        for index in self.tracks.stale() {
-            let frame = self.labelled(py, index)?;
-            self.tracks.add(&frame);
+        for index in 0..self.length {
+            if self.call(py, move |home| Ok(home.needs(index)))? {
+                self.read(py, index, Home::labels_of)?;
+            }
         }
-        self.tracks.value(py)
+        let tracks = self.call(py, |home| Ok(home.clip.tracks()))?;
+        let objects = tracks.objects.iter().map(|track| {
+            let seen = track.frames.iter().map(|(frame, object)| (*frame, object));
+            (track.id, seen.collect())
+        });
+        results::clip_tracks(py, objects, tracks.background.iter().copied(), tracks.dropped)
     }
 
-    /// Frees what the clip holds.
-    fn close(&mut self) {
-        self.worker = None;
+    /// The clip as bytes.
+    fn save<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let saved = self.call(py, |home| Ok(home.clip.save()))?;
+        Ok(PyBytes::new(py, &saved))
+    }
+
+    /// Frees what the clip holds. Its journal can be opened again when this returns.
+    fn close(&mut self, py: Python<'_>) -> PyResult<()> {
+        let Some(worker) = self.worker.take().filter(|_| self.is_kept) else { return Ok(()) };
+        let closed = worker.call(py, |home| {
+            home.journal = None;
+            Ok(())
+        });
+        // A worker that is lost has no journal; an interruption is passed on.
+        closed.or_else(|error| if error.is_instance_of::<PyException>(py) { Ok(()) } else { Err(error) })
     }
 
     fn __enter__(clip: PyRef<'_, Self>) -> PyRef<'_, Self> {
@@ -256,19 +261,17 @@ impl Clip {
     }
 
     #[pyo3(signature = (*_exception))]
-    fn __exit__(&mut self, _exception: &Bound<'_, PyTuple>) {
-        self.close();
+    fn __exit__(&mut self, py: Python<'_>, _exception: &Bound<'_, PyTuple>) -> PyResult<()> {
+        self.close(py)
     }
 
-    // The source or the listener may refer back to the clip.
+    // The source may refer back to the clip.
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        self.source.traverse(&visit)?;
-        visit.call(&self.progress)
+        self.source.traverse(&visit)
     }
 
     fn __clear__(&mut self) {
         self.source = Source::default();
-        self.progress = None;
     }
 }
 
@@ -276,7 +279,7 @@ impl Clip {
     fn call<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Kept) -> Result<R, Failure> + Send + 'static,
+        work: impl FnOnce(&mut Home) -> Result<R, Failure> + Send + 'static,
     ) -> PyResult<R> {
         match &self.worker {
             Some(worker) => worker.call(py, work),
@@ -284,222 +287,57 @@ impl Clip {
         }
     }
 
-    /// Calls the listener when work on a frame begins.
-    fn report(&self, py: Python<'_>, stage: &str, index: usize) -> PyResult<()> {
-        match &self.progress {
-            Some(progress) => progress.call1(py, (stage, index, self.source.length())).map(|_| ()),
-            None => Ok(()),
-        }
-    }
-
-    /// A frame of the source, checked against the size of the others. `None` at the end.
-    fn read(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
-        let Some(given) = self.source.read(py, index)? else { return Ok(None) };
-        let frame = py.detach(|| given.frame()).map_err(|failure| failure.about(&format!("frame {index}")))?;
-        let (width, height) = (frame.width(), frame.height());
-        let [w, h] = *self.size.get_or_insert([width, height]);
-        if [w, h] != [width, height] {
-            let message = format!("frame {index} has {width}×{height} pixels, the others have {w}×{h}");
-            return Err(Failure { code: "frame-size-mismatch", message }.into());
-        }
-        Ok(Some(frame))
-    }
-
-    /// A frame that was read before.
-    fn read_again(&mut self, py: Python<'_>, index: usize) -> PyResult<Frame> {
+    /// Reads a frame and does something with it.
+    fn read<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        index: usize,
+        work: impl FnOnce(&mut Home, usize, &veronese::Frame) -> Result<R, Failure> + Send + 'static,
+    ) -> PyResult<R> {
         let gone = || Failure::input(format!("frame {index} is not there any more"));
-        Ok(self.read(py, index)?.ok_or_else(gone)?)
+        let frame = self.source.frame(py, index)?.ok_or_else(gone)?;
+        self.call(py, move |home| work(home, index, &frame))
     }
 
-    /// [`read`](Self::read), but an error is raised only after the frames before it.
-    fn read_or_fail(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
-        match self.read(py, index) {
-            // Exceptions that end the program, such as KeyboardInterrupt, are raised at once.
-            Err(error) if error.is_instance_of::<PyException>(py) => {
-                self.failure = Some(error);
-                Ok(None)
-            }
-            read => read,
+    /// Runs a command. Returns what it has changed.
+    fn change<'py>(&mut self, py: Python<'py>, command: Command, progress: Optional<'_, '_>) -> Changes<'py> {
+        results::clip_changes(py, &self.run(py, command, progress)?)
+    }
+
+    /// Runs a command until it has taken effect. If that ends early, it is taken back.
+    fn run(&mut self, py: Python<'_>, command: Command, progress: Optional<'_, '_>) -> PyResult<Vec<Changed>> {
+        let done = self.call(py, move |home| home.apply(command)).and_then(|()| {
+            let failure = self.work(py, progress)?;
+            let outcome = self.call(py, Home::outcome);
+            failure.map_or(outcome, Err)
+        });
+        if let (Err(_), Some(worker)) = (&done, &self.worker) {
+            worker.post(Home::take_back);
         }
+        done
     }
 
-    /// A frame to return.
-    fn returned<'py>(&mut self, py: Python<'py>, frame: ClipFrame) -> PyResult<Bound<'py, PyAny>> {
-        self.tracks.add(&frame);
-        results::clip_frame(py, frame, self.size.unwrap_or_default())
-    }
-
-    fn next_of_stream(&mut self, py: Python<'_>) -> PyResult<Option<ClipFrame>> {
-        loop {
-            let Place::Stream { ready, next, ended, live } = &mut self.place else { return Ok(None) };
-            if let Some(frame) = ready.pop_front() {
-                return Ok(Some(frame));
-            }
-            if *ended {
-                return Ok(None);
-            }
-            let (index, live) = (*next, *live);
-            *next += 1;
-            let done = match self.read_or_fail(py, index)? {
-                Some(frame) => {
-                    self.report(py, "pairs", index)?;
-                    self.call(py, move |kept| kept.push(frame))?.into_iter().collect()
+    /// Reads the frames that are wanted, until none is. A frame that is unusable ends the range that is being segmented before it; the
+    /// error is returned.
+    fn work(&mut self, py: Python<'_>, progress: Optional<'_, '_>) -> PyResult<Option<PyErr>> {
+        let mut failure = None;
+        while let Some(Wanted { frame, stage, .. }) = self.call(py, Home::wanted)? {
+            py.check_signals()?;
+            let is_pairs = stage == Stage::Pairs;
+            report(progress, if is_pairs { "pairs" } else { "annotations" }, frame, Some(self.length))?;
+            match self.read(py, frame, Home::take) {
+                Err(error) if is_pairs && error.is_instance_of::<PyException>(py) => {
+                    failure = Some(error);
+                    self.call(py, |home| home.with(|clip| clip.finish()))?;
                 }
-                None if live => self.finished(py)?,
-                None => {
-                    self.check_count(index)?;
-                    self.finished(py)?
-                }
-            };
-            if let Place::Stream { ready, .. } = &mut self.place {
-                ready.extend(done);
+                taken => taken?,
             }
         }
+        Ok(failure)
     }
+}
 
-    /// Rejects a source that ended, and did not fail, before its second frame.
-    fn check_count(&self, frames: usize) -> Result<(), Failure> {
-        if frames >= 2 || self.failure.is_some() {
-            return Ok(());
-        }
-        let message = format!("a clip needs two frames, found {}", if frames == 0 { "none" } else { "one" });
-        Err(Failure { code: "too-few-frames", message })
-    }
-
-    /// The frames of a stream that still wait.
-    fn finished(&mut self, py: Python<'_>) -> PyResult<Vec<ClipFrame>> {
-        let (rest, dropped) = self.call(py, Kept::finish)?;
-        if let Place::Stream { ended, .. } = &mut self.place {
-            *ended = true;
-        }
-        self.tracks.dropped = dropped;
-        Ok(rest)
-    }
-
-    fn next_of_whole(&mut self, py: Python<'_>) -> PyResult<Option<ClipFrame>> {
-        self.prepare(py)?;
-        let Place::Segmented { length, next } = &mut self.place else { return Ok(None) };
-        if next == length {
-            return Ok(None);
-        }
-        let index = *next;
-        *next += 1;
-        let frame = self.read_again(py, index)?;
-        self.report(py, "labels", index)?;
-        self.described(py, index, frame).map(Some)
-    }
-
-    fn length(&self) -> usize {
-        if let Place::Segmented { length, .. } = self.place { length } else { 0 }
-    }
-
-    fn labelled(&mut self, py: Python<'_>, index: usize) -> PyResult<ClipFrame> {
-        let length = self.length();
-        if index >= length {
-            let reason = format!("there is no frame {index} in a clip of {length} frames");
-            return Err(Failure::option("frame", &reason).into());
-        }
-        let frame = self.read_again(py, index)?;
-        self.described(py, index, frame)
-    }
-
-    fn described(&self, py: Python<'_>, index: usize, frame: Frame) -> PyResult<ClipFrame> {
-        self.call(py, move |kept| kept.segmented(|clip| clip.frame(index, &frame)))
-    }
-
-    /// Segments a whole clip, or restores its state, and applies the annotations given with it. Runs once.
-    fn prepare(&mut self, py: Python<'_>) -> PyResult<()> {
-        if matches!(self.place, Place::Stream { .. }) {
-            let sentence = "this needs a whole clip, and the frames of this one come once".into();
-            return Err(Failure::input(sentence).into());
-        }
-        let Some(options) = self.options.take() else { return Ok(()) };
-        let prepared = self.prepare_as(py, options);
-        if prepared.is_err() {
-            self.close();
-        }
-        prepared
-    }
-
-    fn prepare_as(&mut self, py: Python<'_>, mut options: Options) -> PyResult<()> {
-        let summary = match options.state.take() {
-            Some(state) => self.restored(py, &options, state)?,
-            None => self.solved(py, &options)?,
-        };
-        self.tracks.dropped = summary.dropped;
-        self.place = Place::Segmented { length: summary.length, next: 0 };
-        // The source may have failed before it reached an annotated frame.
-        self.annotate(py, options.annotations.of_first(summary.length)).map(drop)
-    }
-
-    /// Solves all pairs. If the source fails, the frames before form the clip.
-    fn solved(&mut self, py: Python<'_>, options: &Options) -> PyResult<Summary> {
-        let mut index = 0;
-        while let Some(frame) = self.read_or_fail(py, index)? {
-            if let (0, Some(size)) = (index, self.size) {
-                options.annotations.check(size)?;
-            }
-            self.report(py, "pairs", index)?;
-            self.call(py, move |kept| kept.push(frame))?;
-            index += 1;
-        }
-        self.check_count(index)?;
-        self.call(py, Kept::conclude)
-    }
-
-    fn restored(&mut self, py: Python<'_>, options: &Options, state: Vec<u8>) -> PyResult<Summary> {
-        let mark_unknown = self.mark_unknown;
-        let summary = self.call(py, move |kept| kept.restore(&state, mark_unknown))?;
-        let (found, wanted) = (summary.length, self.source.length().unwrap_or(0));
-        if found != wanted {
-            return Err(Failure::option("state", &format!("it is of a clip of {found} frames, not {wanted}")).into());
-        }
-        if found > 0 {
-            self.size = Some(summary.size);
-            options.annotations.check(summary.size)?;
-        }
-        Ok(summary)
-    }
-
-    fn apply(&mut self, py: Python<'_>, given: &Given<'_, '_>) -> PyResult<Vec<usize>> {
-        self.prepare(py)?;
-        let given = FrameAnnotations::of(given, self.length())?;
-        given.check(self.size.unwrap_or_default())?;
-        self.annotate(py, given.annotations)
-    }
-
-    fn renumber(&mut self, py: Python<'_>, objects: &[u8], number: u8) -> PyResult<Vec<usize>> {
-        self.prepare(py)?;
-        let others = objects.iter().filter(|&&object| object != number);
-        let numbers = others.map(|&object| [object, number]).collect();
-        self.annotate(py, Annotations { numbers, ..Annotations::default() })
-    }
-
-    /// Applies annotations. Returns the frames that have changed, in order. If it ends early, the clip is as before.
-    fn annotate(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<Vec<usize>> {
-        let done = self.annotate_through(py, annotations);
-        if let Some(worker) = &self.worker {
-            let holds = done.is_ok();
-            worker.post(move |kept| kept.settle(holds));
-        }
-        let (mut changed, changes) = done?;
-        self.changes = changes;
-        self.tracks.changed(&changed);
-        changed.sort_unstable();
-        Ok(changed)
-    }
-
-    fn annotate_through(&mut self, py: Python<'_>, annotations: Annotations) -> PyResult<(Vec<usize>, Vec<Changed>)> {
-        let mut step = self.call(py, move |kept| kept.annotate(annotations))?;
-        loop {
-            match step {
-                Step::Done(changed, changes) => return Ok((changed, changes)),
-                Step::Wants(index) => {
-                    self.report(py, "corrections", index)?;
-                    let frame = self.read_again(py, index)?;
-                    step = self.call(py, move |kept| kept.take(&frame))?;
-                }
-            }
-        }
-    }
+/// Tells the listener that work on a frame begins.
+fn report(progress: Optional<'_, '_>, stage: &str, index: usize, of: Option<usize>) -> PyResult<()> {
+    progress.map_or(Ok(()), |progress| progress.call1((stage, index, of)).map(drop))
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyMemoryView;
 use veronese::codecs::decode_image;
@@ -117,19 +117,31 @@ fn pixels(which: &str, frame: &Bound<'_, PyAny>) -> Result<Given, Failure> {
 }
 
 /// A copy of the values of an array, row by row.
-fn values(which: &str, array: &Bound<'_, PyArrayDyn<u8>>) -> Result<Vec<u8>, Failure> {
+fn values<T: Element + Copy>(which: &str, array: &Bound<'_, PyArrayDyn<T>>) -> Result<Vec<T>, Failure> {
     let array = array.try_readonly().map_err(|_| Failure::input(format!("{which} is being written to")))?;
     let view = array.as_array();
     // The array's own slice may be one of columns.
-    Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[u8]>::to_vec))
+    Ok(view.as_slice().map_or_else(|| view.iter().copied().collect(), <[T]>::to_vec))
 }
 
-/// The labels of an image, row by row, with its width and height.
-pub(crate) fn label_image(given: &Bound<'_, PyAny>) -> Result<(Vec<u8>, [usize; 2]), Failure> {
-    let shape = || Failure::input("the labels must be an array of uint8 of shape (height, width)".into());
-    let array = given.cast::<PyArrayDyn<u8>>().map_err(|_| shape())?;
-    let [height, width] = *array.shape() else { return Err(shape()) };
-    Ok((values("the labels", array)?, [width, height]))
+/// The labels of an image, row by row, with its width and height. Of an array of bools, True is 1 and False is what is given for it.
+pub(crate) fn label_image(given: &Bound<'_, PyAny>, no: Option<u8>) -> Result<(Vec<u8>, [usize; 2]), Failure> {
+    let name = "an image of labels";
+    let kinds = if no.is_some() { "uint8 or bool" } else { "uint8" };
+    let form = || Failure::input(format!("must be an array of {kinds} of shape (height, width)"));
+    let bools = no.and_then(|no| given.cast::<PyArrayDyn<bool>>().ok().map(|array| (no, array)));
+    let (labels, shape) = match bools {
+        Some((no, array)) => {
+            let labels = values(name, array)?.into_iter().map(|is_set| if is_set { 1 } else { no });
+            (labels.collect(), array.shape())
+        }
+        None => {
+            let array = given.cast::<PyArrayDyn<u8>>().map_err(|_| form())?;
+            (values(name, array)?, array.shape())
+        }
+    };
+    let [height, width] = *shape else { return Err(form()) };
+    Ok((labels, [width, height]))
 }
 
 impl Given {

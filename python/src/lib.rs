@@ -20,6 +20,8 @@ fn _veronese(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_function(wrap_pyfunction!(pair::segment_pair, module)?)?;
     module.add_function(wrap_pyfunction!(points::fit_points, module)?)?;
-    module.add_function(wrap_pyfunction!(clip::segment_clip, module)?)?;
-    module.add_class::<clip::Clip>()
+    module.add_function(wrap_pyfunction!(clip::open_clip, module)?)?;
+    module.add_function(wrap_pyfunction!(clip::stream::segment_stream, module)?)?;
+    module.add_class::<clip::Clip>()?;
+    module.add_class::<clip::stream::ClipStream>()
 }

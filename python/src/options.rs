@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat};
 use veronese::clip::MAX_LOOK_AHEAD;
-use veronese::{MAX_MOTIONS, Method, MotionCount, Quality};
+use veronese::{MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
 
 use crate::errors::Failure;
 
@@ -31,22 +31,44 @@ pub(crate) fn seed(given: &Bound<'_, PyAny>) -> Result<u64, Failure> {
 /// 2⁵³ − 1, the largest that JavaScript has.
 const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// The look-ahead of a clip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum LookAhead {
-    /// Chosen by the frames.
-    Usual,
-    All,
-    Frames(usize),
+/// Options of each pair of a clip.
+pub(crate) fn pair(
+    motions: Option<&Bound<'_, PyAny>>,
+    quality: Option<&Bound<'_, PyAny>>,
+    subject: bool,
+) -> Result<SegmentOptions, Failure> {
+    let mut options = SegmentOptions::default().with_subject(subject);
+    if let Some(motions) = motions {
+        options = options.with_motions(self::motions(motions)?);
+    }
+    quality.map_or(Ok(options), |quality| Ok(options.with_quality(self::quality(quality)?)))
 }
 
-pub(crate) fn look_ahead(given: Option<&Bound<'_, PyAny>>) -> Result<LookAhead, Failure> {
-    let Some(given) = given else { return Ok(LookAhead::Usual) };
-    match (text(given).as_deref(), whole(given)) {
-        (Some("all"), _) => Ok(LookAhead::All),
-        (_, Some(frames)) if frames <= MAX_LOOK_AHEAD => Ok(LookAhead::Frames(frames)),
-        _ => Err(invalid("look_ahead", &format!("'all' or a whole number from 0 to {MAX_LOOK_AHEAD}"), given)),
-    }
+pub(crate) fn look_ahead(given: &Bound<'_, PyAny>) -> Result<usize, Failure> {
+    let frames = whole(given).filter(|&frames| frames <= MAX_LOOK_AHEAD);
+    frames.ok_or_else(|| invalid("look_ahead", &format!("a whole number from 0 to {MAX_LOOK_AHEAD}"), given))
+}
+
+/// An index, of a frame for instance.
+pub(crate) fn index(name: &str, given: &Bound<'_, PyAny>) -> Result<usize, Failure> {
+    whole(given).ok_or_else(|| invalid(name, "a whole number from 0 on", given))
+}
+
+/// The number of an object.
+pub(crate) fn object(name: &str, given: &Bound<'_, PyAny>) -> Result<u8, Failure> {
+    let number =
+        whole(given).and_then(|number| u8::try_from(number).ok()).filter(|number| (1..u8::MAX).contains(number));
+    number.ok_or_else(|| invalid(name, "the number of an object, from 1 to 254", given))
+}
+
+/// Several values of an option.
+pub(crate) fn all<T>(
+    name: &str,
+    given: &Bound<'_, PyAny>,
+    one: impl Fn(&str, &Bound<'_, PyAny>) -> Result<T, Failure>,
+) -> PyResult<Vec<T>> {
+    let values = given.try_iter().map_err(|_| invalid(name, "a sequence", given))?;
+    values.map(|value| Ok(one(name, &value?)?)).collect()
 }
 
 fn choice<T: Copy>(name: &str, given: &Bound<'_, PyAny>, choices: [(&str, T); 2]) -> Result<T, Failure> {

@@ -4,7 +4,7 @@
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
-use veronese::clip::{Changed, ClipFrame, ClipObject};
+use veronese::clip::{Changed, ClipFrame, ClipObject, Description, FrameStatus, Object};
 use veronese::embedding::rank::RankCandidate;
 use veronese::refinement::Report;
 use veronese::{
@@ -32,7 +32,7 @@ pub(crate) fn labels<'py>(py: Python<'py>, bytes: Vec<u8>, [width, height]: [usi
 }
 
 /// An array of six numbers.
-pub(crate) fn matrix<'py>(py: Python<'py>, motion: &AffineMotion) -> Value<'py> {
+fn matrix<'py>(py: Python<'py>, motion: &AffineMotion) -> Value<'py> {
     PyArray1::from_slice(py, &motion.matrix).into_any()
 }
 
@@ -139,14 +139,47 @@ fn clip_object<'py>(py: Python<'py>, object: &ClipObject) -> PyResult<Value<'py>
     class(py, "ClipObject")?.call1((*id, *pixels, bbox(*sides), *confidence, motion))
 }
 
-/// An object in a frame of its track.
-pub(crate) fn sighting<'py>(py: Python<'py>, frame: usize, object: &ClipObject) -> PyResult<Value<'py>> {
-    let ClipObject { id: _, pixels, bbox: sides, confidence, matrix: motion, .. } = object;
-    let motion = motion.as_ref().map(|motion| matrix(py, motion));
-    class(py, "Sighting")?.call1((frame, *pixels, bbox(*sides), *confidence, motion))
+/// `ClipTracks`, from the frames of each object, the motion of the background in frames, and the number of objects without a number.
+pub(crate) fn clip_tracks<'py, 'o>(
+    py: Python<'py>,
+    objects: impl IntoIterator<Item = (u8, Vec<(usize, &'o ClipObject)>)>,
+    background: impl IntoIterator<Item = (usize, AffineMotion)>,
+    dropped: usize,
+) -> PyResult<Value<'py>> {
+    let track = |(id, seen): (u8, Vec<(usize, &ClipObject)>)| {
+        let [first, last] = [seen.first(), seen.last()].map(|at| at.map(|(frame, _)| *frame));
+        class(py, "ClipTrack")?.call1((id, first, last, all(py, &seen, sighting)?))
+    };
+    let objects: Vec<Value<'_>> = objects.into_iter().map(track).collect::<PyResult<_>>()?;
+    let motion = |(frame, motion)| class(py, "BackgroundMotion")?.call1((frame, matrix(py, &motion)));
+    let background: Vec<Value<'_>> = background.into_iter().map(motion).collect::<PyResult<_>>()?;
+    class(py, "ClipTracks")?.call1((objects, background, dropped))
 }
 
-pub(crate) fn clip_change<'py>(py: Python<'py>, changed: &Changed) -> PyResult<Value<'py>> {
-    let Changed { frame, object, gained, lost, .. } = *changed;
-    class(py, "ClipChange")?.call1((frame, object, gained, lost))
+fn sighting<'py>(py: Python<'py>, (frame, object): &(usize, &ClipObject)) -> PyResult<Value<'py>> {
+    let ClipObject { id: _, pixels, bbox: sides, confidence, matrix: motion, .. } = object;
+    let motion = motion.as_ref().map(|motion| matrix(py, motion));
+    class(py, "Sighting")?.call1((*frame, *pixels, bbox(*sides), *confidence, motion))
+}
+
+pub(crate) fn clip_changes<'py>(py: Python<'py>, changes: &[Changed]) -> PyResult<Vec<Value<'py>>> {
+    all(py, changes, |py, &Changed { frame, object, gained, lost, .. }| {
+        class(py, "ClipChange")?.call1((frame, object, gained, lost))
+    })
+}
+
+pub(crate) fn clip_entries<'py>(py: Python<'py>, objects: &[Object]) -> PyResult<Vec<Value<'py>>> {
+    all(py, objects, |py, object| {
+        let Object {
+            number, description: Description { name, class: kind, colour }, locked, annotated, became, ..
+        } = object;
+        let colour = colour.map(|[red, green, blue]| (red, green, blue));
+        class(py, "ClipEntry")?.call1((*number, name, kind, colour, *locked, *annotated, *became))
+    })
+}
+
+pub(crate) fn frame_statuses<'py>(py: Python<'py>, frames: &[FrameStatus]) -> PyResult<Vec<Value<'py>>> {
+    all(py, frames, |py, &FrameStatus { has_masks, accepted, annotated, .. }| {
+        class(py, "ClipFrameStatus")?.call1((has_masks, accepted, annotated))
+    })
 }

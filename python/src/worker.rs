@@ -1,7 +1,5 @@
 //! Work in threads without the interpreter. The thread that waits for it checks for signals: Ctrl-C ends a call at once, and its thread at
-//! the next stage or, for a clip, when the frame is done.
-//!
-//! A thread also keeps a clip, which cannot move from one to another: it shares its frames without atomic counters.
+//! the next stage or, for a clip, when the frame is done. A clip is kept by a thread of its own, which does one thing after another.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -60,11 +58,10 @@ pub(crate) struct Worker<T> {
     process: u32,
 }
 
-impl<T: Default + 'static> Worker<T> {
-    pub(crate) fn start() -> PyResult<Worker<T>> {
+impl<T: Send + 'static> Worker<T> {
+    pub(crate) fn start(mut kept: T) -> PyResult<Worker<T>> {
         let (jobs, given) = channel::<Job<T>>();
         spawn(move || {
-            let mut kept = T::default();
             for job in given {
                 if !job(&mut kept) {
                     break;

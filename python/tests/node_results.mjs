@@ -1,7 +1,7 @@
 // Results of the npm package for the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
 //
 // Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, said }], points: [{ positions, derivatives, options }] }.
-// `said` has masks, corrections, prompts and accepted frames, with files of labels. A frame is a path of an image, or of RGBA bytes with their size.
+// `said` has masks, corrections and prompts, with files of labels, and accepted frames. A frame is a path of an image, or of RGBA bytes with their size.
 
 import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
@@ -58,7 +58,6 @@ async function ofClip({ frames, stream, options, said }) {
   see('Sighting', objects.flatMap((object) => object.frames));
   see('BackgroundMotion', background);
   const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
-  const state = await clip.state();
   const changes = (await clip.changes()).map(({ frame, object, gained, lost }) => [frame, object, gained, lost]);
   return {
     labels,
@@ -67,7 +66,6 @@ async function ofClip({ frames, stream, options, said }) {
       background.map(({ frame, matrix }) => [frame, matrix]),
       dropped,
     ]),
-    state: state ? hash(state) : null,
     changes,
   };
 }

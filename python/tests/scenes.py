@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import List, Tuple
+from typing import Any, Iterable, List, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
+from veronese import Clip, ClipFrame, open_clip
 
 Pixels = NDArray[np.uint8]
 
@@ -57,3 +58,20 @@ def write_image(path: Path, pixels: Pixels) -> Path:
     height, width, _ = pixels.shape
     path.write_bytes(b"P6\n%d %d\n255\n" % (width, height) + pixels.tobytes())
     return path
+
+
+def corner(label: int) -> Pixels:
+    """Labels of the top left corner of a frame, which is background."""
+    labels = np.full((72, 96), 255, np.uint8)
+    labels[2:14, 2:18] = label
+    return labels
+
+
+def segmented(frames: Any) -> Clip:
+    opened = open_clip(frames)
+    opened.segment(quality="fast")
+    return opened
+
+
+def labels_of(frames: Iterable[ClipFrame]) -> List[bytes]:
+    return [found.labels.tobytes() for found in frames]

@@ -1,4 +1,4 @@
-"""Clips: whole ones and streams, their annotations, and what happens when something goes wrong."""
+"""Clips and streams: their calls, and what happens when something goes wrong. Journals are in test_journals.py."""
 
 from __future__ import annotations
 
@@ -6,31 +6,27 @@ import gc
 import os
 import time
 from pathlib import Path
-from typing import Any, Iterator, List, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Tuple
 
 import numpy as np
 import pytest
-from scenes import Pixels, clip, frame, square_mask, write_image
-from veronese import Accepted, Clip, ClipFrame, Correction, Mask, Prompt, VeroneseError, segment_clip
+from scenes import Pixels, clip, corner, frame, labels_of, segmented, square_mask, write_image
+from veronese import Clip, ClipEntry, ClipFrame, Labels, Mask, Prompt, Strokes, VeroneseError, open_clip, segment_stream
 
 COUNT = 6
 FRAMES = clip(COUNT)
 FAST: Any = {"quality": "fast"}
+WHOLE = labels_of(segmented(FRAMES))
 
 
-def labels_of(frames: Any, **options: Any) -> List[bytes]:
-    return [found.labels.tobytes() for found in segment_clip(frames, **FAST, **options)]
-
-
-WHOLE = labels_of(FRAMES)
-
-
-def test_an_object_keeps_its_number_through_a_whole_clip() -> None:
+def test_an_object_keeps_its_number_through_a_clip() -> None:
     told: List[Tuple[str, int, Any]] = []
-    segmented = segment_clip(FRAMES, **FAST, progress=lambda *step: told.append(step))
-    assert not told, "nothing is done before somebody asks"
-    found = list(segmented)
-    assert [one.index for one in found] == list(range(COUNT))
+    opened = open_clip(FRAMES)
+    assert [status.has_masks for status in opened.frames] == [False] * COUNT and list(opened) == []
+    opened.segment(**FAST, progress=lambda *step: told.append(step))
+    assert told == [("pairs", index, COUNT) for index in range(COUNT)]
+    found = list(opened)
+    assert [one.index for one in found] == list(range(COUNT)) == [one.index for one in opened], "as often as one likes"
     for one in found:
         assert one.labels.shape == (72, 96)
         (thing,) = one.objects
@@ -38,12 +34,11 @@ def test_an_object_keeps_its_number_through_a_whole_clip() -> None:
         x, y, width, height = thing.bbox
         assert (one.labels[y : y + height, x : x + width] == 1).sum() == thing.pixels
     assert found[0].background is not None and found[-1].background is None
-    assert told == [(stage, index, COUNT) for stage in ("pairs", "labels") for index in range(COUNT)]
-    (track,) = segmented.tracks().objects
+    (track,) = opened.tracks().objects
     assert (track.id, track.first, track.last, len(track.frames)) == (1, 0, COUNT - 1, COUNT)
     assert [sighting.pixels for sighting in track.frames] == [one.objects[0].pixels for one in found]
-    assert [motion.frame for motion in segmented.tracks().background] == list(range(COUNT - 1))
-    assert next(segmented, None) is None
+    assert [motion.frame for motion in opened.tracks().background] == list(range(COUNT - 1))
+    assert len(opened) == COUNT and repr(opened) == "Clip(6 frames)" and repr(open_clip(FRAMES[:1])) == "Clip(1 frame)"
 
 
 class Readable:
@@ -58,7 +53,7 @@ class Readable:
         return FRAMES[index]
 
 
-def test_all_forms_of_a_whole_clip_give_the_same(tmp_path: Path) -> None:
+def test_all_forms_of_frames_give_the_same(tmp_path: Path) -> None:
     paths = [write_image(tmp_path / f"frame-{9 + index}.png", pixels) for index, pixels in enumerate(FRAMES)]
     (tmp_path / ".hidden.png").touch()
     (tmp_path / "notes.txt").touch()
@@ -71,12 +66,15 @@ def test_all_forms_of_a_whole_clip_give_the_same(tmp_path: Path) -> None:
         "name of a folder": str(tmp_path),
     }
     for name, form in forms.items():
-        assert labels_of(form) == WHOLE, name
-    assert labels_of(iter(paths)) == labels_of(iter(FRAMES)), "a stream of paths"
+        assert labels_of(segmented(form)) == WHOLE, name
+    again: List[Any] = [iter(paths), iter(FRAMES), FRAMES, tmp_path]
+    streams = [labels_of(segment_stream(form, **FAST)) for form in again]
+    assert all(stream == streams[0] for stream in streams)
 
 
 def test_a_stream_takes_frames_when_they_are_wanted() -> None:
     taken: List[int] = []
+    told: List[Any] = []
 
     def camera() -> Iterator[Pixels]:
         buffer = np.empty_like(FRAMES[0])
@@ -85,120 +83,189 @@ def test_a_stream_takes_frames_when_they_are_wanted() -> None:
             buffer[:] = pixels
             yield buffer
 
-    stream = segment_clip(camera(), **FAST, look_ahead=2)
+    stream = segment_stream(camera(), **FAST, look_ahead=2, progress=lambda *step: told.append(step))
     assert taken == []
     assert next(stream).index == 0
     assert taken == [0, 1, 2]
     assert [one.index for one in stream] == list(range(1, COUNT))
+    assert told == [("pairs", index, None) for index in range(COUNT)]
     tracks = stream.tracks()
     assert tracks.objects[0].frames[-1].matrix is None, "nothing moves on from the last frame"
     assert tracks.objects[0].frames[0].matrix is not None
     assert [motion.frame for motion in tracks.background] == list(range(COUNT - 1))
-    with pytest.raises(VeroneseError, match="whole clip"):
-        stream.state()
+    stream.close()
+    assert next(stream, None) is None and repr(stream) == "ClipStream(closed)"
 
 
 def test_fewer_than_two_frames_are_no_clip() -> None:
     for count, found in ((0, "none"), (1, "one")):
-        for given in (FRAMES[:count], iter(FRAMES[:count])):
+        calls: List[Callable[[], Any]] = [lambda: segmented(FRAMES[:count]), lambda: list(segment_stream(iter(FRAMES[:count])))]
+        for call in calls:
             with pytest.raises(VeroneseError, match=f"a clip needs two frames, found {found}") as raised:
-                list(segment_clip(given, **FAST))
+                call()
             assert raised.value.code == "too-few-frames"
-        assert len(list(segment_clip(iter(FRAMES[:count]), **FAST, look_ahead=0))) == count, "it may end at any time"
+        assert len(list(segment_stream(iter(FRAMES[:count]), look_ahead=0))) == count, "it may end at any time"
 
 
-def test_a_number_to_look_ahead_makes_a_stream_of_a_sequence() -> None:
-    steps: List[Any] = []
-    found = labels_of(FRAMES, look_ahead=2, progress=lambda *step: steps.append(step))
-    assert found == labels_of(iter(FRAMES), look_ahead=2)
-    assert steps == [("pairs", index, COUNT) for index in range(COUNT)]
-    assert labels_of(iter(FRAMES)) == labels_of(FRAMES, look_ahead=8)
+def test_steps_are_taken_back_and_done_again() -> None:
+    opened = segmented(FRAMES)
+    steps: List[Callable[[], Any]] = [
+        lambda: opened.annotate(Strokes(3, 9, square_mask(1.5, 1, 255)), Prompt(1, 8, click=(5, 5))),
+        lambda: opened.annotate(Labels(0, square_mask(0, 7, 0), own=True)),
+        lambda: opened.clear(3, 9),
+        lambda: opened.accept([4]),
+        lambda: opened.describe(7, "car", "vehicle", (255, 0, 9)),
+        lambda: opened.lock([7]),
+        lambda: opened.merge(8, 9),
+        lambda: opened.delete(8),
+    ]
+
+    def state() -> Any:
+        return labels_of(opened), opened.objects, opened.frames, opened.next_object, repr(opened.tracks())
+
+    states = [state()]
+    for step in steps:
+        changes = step()
+        assert changes is None or all(one.gained + one.lost > 0 for one in changes)
+        states.append(state())
+        assert states[-1] != states[-2]
+    for earlier in states[-2::-1]:
+        assert opened.undo() and state() == earlier
+    assert opened.undo(), "the masks"
+    assert list(opened) == [] and not opened.undo()
+    for later in states:
+        assert opened.redo() and state() == later
+    assert not opened.redo()
+    # What is saved has all steps.
+    with open_clip(FRAMES, saved=opened.save()) as again:
+        assert (labels_of(again), again.objects, again.frames) == states[-1][:3]
+        assert again.undo() and labels_of(again) == states[-2][0]
 
 
-LATER: Any = {
-    "corrections": ([Correction(3, square_mask(1.5, 9, 255)), Prompt(1, 9, click=(48, 36))], lambda clip, said: clip.correct(*said)),
-    "prompts": ([Prompt(2, 9, (20, 14, 46, 46), clicks=[(40, 40, 1)])], lambda clip, said: clip.correct(*said)),
-    "locked": ([1], Clip.lock),
-    "named": ([1], Clip.name),
-    "accepted": ([1, Accepted(4, square_mask(2, 1, 0))], Clip.accept),
-}
+def test_changes_are_what_objects_have_gained_and_lost() -> None:
+    opened = segmented(FRAMES)
+    before = [one.labels for one in opened]
+    changes = opened.annotate(Mask(2, 9, square_mask(1, 1, 0) == 1))
+    counts: Dict[Tuple[int, int], Tuple[int, int]] = {}
+    for index, (was, now) in enumerate(zip(before, (one.labels for one in opened))):
+        for number in (0, 1, 9):
+            gained, lost = int(((now == number) & (was != number)).sum()), int(((now != number) & (was == number)).sum())
+            if gained + lost:
+                counts[index, number] = gained, lost
+    assert {(one.frame, one.object): (one.gained, one.lost) for one in changes} == counts != {}
 
 
-@pytest.mark.parametrize("name", LATER)
-def test_what_is_said_later_holds_as_what_is_said_at_the_beginning(name: str) -> None:
-    """Its results are compared with those of Node in test_same_as_node.py."""
-    said, say = LATER[name]
-    wide = np.full((72, 96), 255, np.uint8)
-    wide[10:60, 15:40] = 8
-    at_once, later = segment_clip(FRAMES, **FAST, **{name: said}), segment_clip(FRAMES, **FAST)
-    say(later, said)
-    assert later.state() == at_once.state()
-    changed = later.correct(Correction(2, wide))
-    assert 2 in changed and at_once.correct(Correction(2, wide)) == changed
-    assert later.changes() == at_once.changes() != []
-    assert {one.frame for one in later.changes()} == {*changed}
-    now = [one.labels.tobytes() for one in later]
-    assert now == [one.labels.tobytes() for one in at_once]
-    assert 8 in [track.id for track in later.tracks().objects]
-
-    stages: List[str] = []
-    restored = segment_clip(FRAMES, state=later.state(), progress=lambda stage, *_: stages.append(stage))
-    assert [one.labels.tobytes() for one in restored] == now
-    assert {*stages} == {"labels"}, "no pair is solved again"
+def test_masks_are_arrays_of_labels_or_bools() -> None:
+    inside = square_mask(1, 1, 0) == 1
+    for given, same in (
+        (Strokes(2, 9, inside), Strokes(2, 9, np.where(inside, 1, 255).astype(np.uint8))),
+        (Mask(2, 9, inside), Mask(2, 9, inside.astype(np.uint8))),
+    ):
+        one, other = segmented(FRAMES), segmented(FRAMES)
+        assert one.annotate(given) == other.annotate(same) != []
+        assert labels_of(one) == labels_of(other) != WHOLE
 
 
-def corner(label: int) -> Pixels:
-    """The top left corner of a frame, which is ground."""
-    said = np.full((72, 96), 255, np.uint8)
-    said[2:14, 2:18] = label
-    return said
+def test_strokes_lie_over_earlier_ones_and_a_mask_replaces_them() -> None:
+    upper, lower = np.zeros((72, 96), bool), np.zeros((72, 96), bool)
+    upper[2:14, 2:18] = lower[50:62, 2:18] = True
+    twice, once = segmented(FRAMES), segmented(FRAMES)
+    twice.annotate(Strokes(2, 9, upper))
+    twice.annotate(Strokes(2, 9, lower))
+    once.annotate(Strokes(2, 9, upper | lower))
+    assert (twice.labels(2).labels == once.labels(2).labels).all()
+    twice.annotate(Mask(2, 9, lower))
+    assert ((twice.labels(2).labels == 9) == lower).all()
+
+
+@pytest.mark.parametrize("form", [Strokes, Mask, Labels])
+def test_what_is_drawn_exactly_changes_no_other_pixel(form: Any) -> None:
+    opened = segmented(FRAMES)
+    before = [one.labels for one in opened]
+    drawn = corner(9 if form is Labels else 1)
+    number = () if form is Labels else (9,)
+    changes = opened.annotate(form(2, *number, drawn, propagate="exact"))
+    assert {one.frame for one in changes} == {2}
+    before[2] = np.where(drawn != 255, np.uint8(9), before[2])
+    assert [one.labels.tobytes() for one in opened] == [one.tobytes() for one in before]
+    assert opened.frames[2].annotated
 
 
 def test_of_a_locked_object_nothing_new_is_said() -> None:
-    said = Correction(3, square_mask(1.5, 1, 0))
-    segmented = segment_clip(FRAMES, **FAST, corrections=[said])
-    segmented.lock([1])
-    state = segmented.state()
+    opened = segmented(FRAMES)
+    opened.annotate(Mask(3, 1, square_mask(1.5, 1, 0)))
+    opened.lock([1])
+    labels, saved = labels_of(opened), opened.save()
+    said: List[Any] = [
+        [Strokes(2, 1, square_mask(1, 1, 255))],
+        [Labels(2, square_mask(1, 1, 0))],
+        [Strokes(0, 9, corner(1)), Prompt(2, 1, click=(45, 36))],
+    ]
+    wrong: List[Callable[[], Any]] = [*(lambda given=given: opened.annotate(*given) for given in said), lambda: opened.delete(1)]
+    for call in wrong:
+        with pytest.raises(VeroneseError, match="object 1 is locked") as caught:
+            call()
+        assert caught.value.code == "object-locked"
+        assert labels_of(opened) == labels and len(opened.save()) == len(saved), "nothing is changed then"
+    everything = np.zeros((72, 96), np.uint8)
+    opened.annotate(Mask(3, 9, everything + 1, propagate="none"))
+    assert ((opened.labels(3).labels == 1) == (square_mask(1.5, 1, 0) == 1)).all()
+    opened.lock([1], on=False)
+    opened.delete(1)
+    assert 1 not in [track.id for track in opened.tracks().objects]
 
-    def says(*given: Any) -> Any:
-        return lambda: segmented.correct(*given)
 
-    for wrong in (
-        says(Correction(2, square_mask(1, 1, 0))),
-        says(Correction(2, corner(0), object=1)),
-        says(Correction(0, corner(9)), Prompt(2, 1, click=(45, 36))),
-        lambda: segmented.delete(1),
-    ):
+def test_objects_are_described_merged_deleted_and_split() -> None:
+    opened = segmented(FRAMES)
+    assert opened.objects == [ClipEntry(1, "", "", None, False, False, 1)] and opened.next_object == 2
+    opened.describe(1, "car", "vehicle", (255, 128, 0))
+    assert opened.objects[0] == ClipEntry(1, "car", "vehicle", (255, 128, 0), False, False, 1)
+    opened.describe(1, class_name="bus")
+    assert (opened.objects[0].name, opened.objects[0].class_name, opened.objects[0].colour) == ("", "bus", None)
+    two = corner(1)
+    two[60:70, 80:94] = 1
+    opened.annotate(Mask(2, 9, two == 1))
+    assert opened.next_object == 2
+    opened.split(9, 2)
+    assert opened.next_object == 3
+    shown = opened.labels(2).labels
+    assert ((shown == 9) == (corner(1) == 1)).all() and (shown[60:70, 80:94] == 2).all()
+    opened.merge(9, 2)
+    assert (opened.labels(2).labels == 2).sum() == 0
+    assert {one.number: one.became for one in opened.objects} == {1: 1, 2: 9, 9: 9}
+    opened.delete(9)
+    assert {one.number: one.became for one in opened.objects} == {1: 1, 2: 0, 9: 0}
+    for call in (lambda: opened.annotate(Strokes(0, 9, corner(1))), lambda: opened.split(1, 0), lambda: opened.merge(1)):
         with pytest.raises(VeroneseError) as caught:
-            wrong()
-        assert caught.value.code == "object-locked" and "object 1 is locked" in str(caught.value)
-        assert segmented.state() == state, "nothing is changed then"
-    assert segmented.correct(said) == [], "it is what was said before"
-    segmented.lock([])
-    assert segmented.delete(1)
-
-    # A lock holds from the annotations that it is given with.
-    stroke = Correction(2, corner(0), object=1)
-    assert labels_of(FRAMES, corrections=[stroke], locked=[1]) == labels_of(FRAMES, corrections=[stroke])
+            call()
+        assert caught.value.code == "invalid-option"
 
 
-def test_objects_are_merged_and_deleted() -> None:
-    segmented = segment_clip(FRAMES, **FAST, masks=[Mask(0, square_mask(0, 7, 0))])
-    list(segmented)
-    assert segmented.merge(12, 7) == [], "no object has the first number"
-    assert segmented.delete(7)
-    assert [track.id for track in segmented.tracks().objects] != [7]
-    with pytest.raises(VeroneseError):
-        segmented.delete(0)
+def test_ranges_are_segmented_one_after_another() -> None:
+    opened = open_clip(FRAMES)
+    opened.segment(0, 2, **FAST)
+    assert [one.index for one in opened] == [0, 1, 2]
+    opened.segment(3, **FAST)
+    assert [one.index for one in opened] == list(range(COUNT))
+    assert [track.id for track in opened.tracks().objects] == [1], "it keeps its number"
+    opened.annotate(Strokes(4, 9, square_mask(2, 1, 255)))
+    assert 9 in [thing.id for thing in opened.labels(0).objects], "annotations spread across"
+    opened.segment(0, 2, **FAST)
+    assert 9 in [thing.id for thing in opened.labels(4).objects]
+    while opened.frames[5].has_masks:
+        assert opened.undo()
+    assert [status.has_masks for status in opened.frames] == [True] * 3 + [False] * 3
 
 
-def test_frames_before_a_failure_come_first() -> None:
+def test_frames_before_a_failure_get_masks() -> None:
     class Mine(Exception):
         pass
 
     class Failing(Readable):
+        fails = True
+
         def __getitem__(self, index: int) -> Pixels:
-            if index == 4:
+            if index == 4 and self.fails:
                 raise Mine
             return FRAMES[index]
 
@@ -206,123 +273,143 @@ def test_frames_before_a_failure_come_first() -> None:
         yield from FRAMES[:4]
         raise Mine
 
-    for source, error in [(Failing(), Mine), (failing(), Mine), ([*FRAMES[:4], "nowhere.png"], VeroneseError)]:
-        given: List[int] = []
+    sources: List[Tuple[Any, Any]] = [(Failing(), Mine), ([*FRAMES[:4], "nowhere.png"], VeroneseError)]
+    for source, error in sources:
+        opened = open_clip(source)
         with pytest.raises(error):
-            for one in segment_clip(source, **FAST):  # type: ignore[arg-type]
-                given.append(one.index)
-        assert given == [0, 1, 2, 3]
+            opened.segment(**FAST)
+        assert [one.index for one in opened] == [0, 1, 2, 3]
+    source = Failing()
+    opened = open_clip(source)
+    with pytest.raises(Mine):
+        opened.segment(3, **FAST)
+    assert list(opened) == [] and not opened.undo(), "one frame is none"
+    source.fails = False
+    opened.segment(**FAST)
+    assert labels_of(opened) == WHOLE
+    given: List[int] = []
+    with pytest.raises(Mine):
+        for one in segment_stream(failing(), **FAST):
+            given.append(one.index)
+    assert given == [0, 1, 2, 3]
     with pytest.raises(VeroneseError) as caught:
-        list(segment_clip([*FRAMES[:2], frame(0, size=(96, 64))], **FAST))
+        segmented([*FRAMES[:2], frame(0, size=(96, 64))])
     assert caught.value.code == "frame-size-mismatch" and "frame 2" in str(caught.value)
 
 
-def test_what_a_listener_raises_ends_the_clip() -> None:
+def test_a_frame_that_has_changed_is_named() -> None:
+    opened = segmented(FRAMES)
+    for call in (lambda clip: clip.labels(3), lambda clip: clip.annotate(Strokes(3, 9, corner(1))), list):
+        with pytest.raises(VeroneseError, match="frame [1-3] is not the one that was segmented") as caught:
+            call(open_clip(clip(COUNT, square=(-1, 0)), saved=opened.save()))
+        assert caught.value.code == "invalid-input"
+
+
+def test_a_listener_that_raises_ends_a_call() -> None:
     def listener(stage: str, index: int, of: Any) -> None:
         if index == 2:
             raise KeyError(stage)
 
-    segmented = segment_clip(FRAMES, **FAST, progress=listener)
+    opened = open_clip(FRAMES)
+    with pytest.raises(KeyError, match="pairs"):
+        opened.segment(**FAST, progress=listener)
+    assert list(opened) == [] and not opened.undo()
+    opened.segment(**FAST)
+    assert labels_of(opened) == WHOLE
+    stream = segment_stream(iter(FRAMES), progress=listener)
     with pytest.raises(KeyError):
-        next(segmented)
-    assert next(segmented, None) is None
+        next(stream)
+    assert next(stream, None) is None
 
 
-@pytest.mark.parametrize("said", [[Correction(3, square_mask(1.5, 9, 255))], [Correction(1, square_mask(0.5, 8, 255)), Prompt(4, 9, click=(5, 5))]])
+@pytest.mark.parametrize("said", [[Strokes(3, 9, square_mask(1.5, 1, 255))], [Labels(1, square_mask(0.5, 8, 255)), Prompt(4, 9, click=(5, 5))]])
 def test_what_is_interrupted_changes_nothing(said: List[Any]) -> None:
     steps: List[int] = []
 
     def listener(stage: str, index: int, of: Any) -> None:
-        if stage == "corrections":
-            steps.append(index)
-            if len(steps) == 3:
-                raise KeyboardInterrupt
+        steps.append(index)
+        if len(steps) == 3:
+            raise KeyboardInterrupt
 
-    segmented = segment_clip(FRAMES, **FAST, progress=listener)
-    list(segmented)
-    before = segmented.state()
+    opened = segmented(FRAMES)
+    saved = opened.save()
     with pytest.raises(KeyboardInterrupt):
-        segmented.correct(*said)
-    assert segmented.state() == before
-    assert segmented.changes() == []
-    segmented.correct(*said)
-    assert segmented.state() != before
+        opened.annotate(*said, progress=listener)
+    assert opened.save() == saved and labels_of(opened) == WHOLE
+    changes = opened.annotate(*said)
+    assert changes == segmented(FRAMES).annotate(*said) and labels_of(opened) != WHOLE
 
 
 FULL = np.zeros((72, 96), np.uint8)
 
 
 @pytest.mark.parametrize(
-    "options",
+    "said",
     [
-        {"look_ahead": 9},
-        {"look_ahead": -1},
-        {"look_ahead": "some"},
-        {"masks": [Mask(COUNT, FULL)]},
-        {"masks": [Mask(0, FULL), Mask(0, FULL)]},
-        {"masks": [Mask(0, FULL.astype(np.int64))]},
-        {"masks": [Mask(0, FULL[1:])]},
-        {"masks": [FULL]},
-        {"masks": 3},
-        {"corrections": [Correction(0, FULL, propagate="up")]},  # type: ignore[arg-type]
-        {"corrections": [Correction(0, FULL), Correction(0, FULL)]},
-        {"corrections": [Correction(0, FULL, object=1), Correction(0, FULL, object=1)]},
-        {"corrections": [Correction(0, FULL, object=0)]},
-        {"corrections": [Correction(0, FULL + 2, object=1)]},
-        {"corrections": [Prompt(0, 1, box=(0, 0, 5, 5), click=(7, 1))]},
-        {"corrections": [Prompt(0, 1, clicks=[(1, 1, -1)])]},
-        {"corrections": [Prompt(0, 1, clicks=[(1, 1, 0)])]},  # type: ignore[list-item]
-        {"corrections": [Prompt(0, 1, clicks=[(1, 1)])]},  # type: ignore[list-item]
-        {"corrections": [Prompt(0, 1, box=(0, 0, 0, 5))]},
-        {"corrections": [Prompt(0, 255, click=(1, 1))]},
-        {"corrections": [Prompt(0, 1, click=(96, 1))]},
-        {"prompts": [Prompt(0, 1, clicks=[(1, 1, 1), (1, 72, -1)])]},
-        {"prompts": [Prompt(0, 1, box=(90, 0, 7, 5))]},
-        {"prompts": [Correction(0, FULL)]},
-        {"corrections": [Prompt(0, 1, click=(1, 1)), Prompt(0, 1, click=(2, 2))]},
-        {"locked": [0]},
-        {"locked": [255]},
-        {"named": [0]},
-        {"accepted": [COUNT]},
-        {"accepted": [1, 1]},
-        {"accepted": [Accepted(0, FULL[1:])]},
-        {"accepted": 3},
-        {"state": b"something else"},
+        FULL,
+        Mask(COUNT, 1, FULL),
+        Mask(-1, 1, FULL),
+        Mask(0, 0, FULL),
+        Mask(0, 255, FULL),
+        Mask(0, 1, FULL + 2),
+        Mask(0, 1, FULL[1:]),
+        Mask(0, 1, FULL.astype(np.int64)),  # type: ignore[arg-type]
+        Strokes(0, 1, FULL, propagate="up"),  # type: ignore[arg-type]
+        Labels(0, FULL == 1),
+        Labels(0, FULL[1:]),
+        Prompt(0, 1, box=(0, 0, 5, 5), click=(7, 1)),
+        Prompt(0, 1, clicks=[(1, 1, -1)]),
+        Prompt(0, 1, clicks=[(1, 1, 0)]),  # type: ignore[list-item]
+        Prompt(0, 1, clicks=[(1, 1)]),  # type: ignore[list-item]
+        Prompt(0, 1, box=(0, 0, 0, 5)),
+        Prompt(0, 1, box=(90, 0, 7, 5)),
+        Prompt(0, 255, click=(1, 1)),
+        Prompt(0, 1, click=(96, 1)),
+        Prompt(0, 1, click=(1, 1), propagate="exact"),
     ],
 )
-def test_wrong_options_are_refused_before_a_pair_is_solved(options: Any) -> None:
-    steps: List[Any] = []
+def test_wrong_annotations_are_refused(said: Any) -> None:
+    opened = segmented(FRAMES)
     with pytest.raises(VeroneseError) as caught:
-        next(segment_clip(FRAMES, **FAST, progress=lambda *step: steps.append(step), **options))
+        opened.annotate(Strokes(2, 9, corner(1)), said)
     assert caught.value.code == "invalid-option"
-    assert not steps
+    assert labels_of(opened) == WHOLE
 
 
-def test_a_state_is_of_its_frames() -> None:
-    state = segment_clip(FRAMES, **FAST).state()
-    for frames in (FRAMES[1:], clip(COUNT, square=(-1, 0))):
+def test_wrong_arguments_are_refused() -> None:
+    opened, empty = segmented(FRAMES), open_clip(FRAMES)
+    wrong: List[Callable[[], Any]] = [
+        lambda: opened.segment(2, 2),
+        lambda: opened.segment(0, COUNT),
+        lambda: opened.segment(motions=0),
+        lambda: opened.segment(quality="good"),  # type: ignore[arg-type]
+        lambda: opened.labels(COUNT),
+        lambda: opened.labels(-1),
+        lambda: empty.labels(0),
+        lambda: empty.annotate(Mask(0, 1, FULL)),
+        lambda: opened.accept([COUNT]),
+        lambda: opened.accept(3),  # type: ignore[arg-type]
+        lambda: opened.clear(0, 0),
+        lambda: opened.lock([0]),
+        lambda: opened.describe(1, colour=(0, 0, 256)),
+        lambda: opened.delete(255),
+        lambda: open_clip(FRAMES, saved=b"something else"),
+        lambda: open_clip(FRAMES, saved=opened.save()[:-1]),
+        lambda: open_clip(FRAMES[1:], saved=opened.save()),
+        lambda: segment_stream(FRAMES, look_ahead=9),
+        lambda: segment_stream(FRAMES, look_ahead=-1),
+        lambda: segment_stream(FRAMES, look_ahead="all"),  # type: ignore[arg-type]
+    ]
+    for call in wrong:
         with pytest.raises(VeroneseError) as caught:
-            list(segment_clip(frames, state=state))
-        assert caught.value.code == "invalid-option" and "state" in str(caught.value)
-
-
-def test_options_for_frames_that_come_once_are_refused() -> None:
-    options: Any
-    said: Any = [{name: []} for name in ("masks", "corrections", "prompts", "locked", "named", "accepted")]
-    for options in (*said, {"state": b""}, {"look_ahead": "all"}):
-        with pytest.raises(VeroneseError, match="read again"):
-            segment_clip(iter(FRAMES), **options)
+            call()
+        assert caught.value.code == "invalid-option", caught.value
     frames: Any
-    for frames in (3, len):
+    for frames in (3, len, iter(FRAMES)):
         with pytest.raises(VeroneseError) as caught:
-            segment_clip(frames)
+            open_clip(frames)
         assert caught.value.code == "invalid-input"
-
-
-def test_frames_that_are_not_there_are_refused() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
-    with pytest.raises(VeroneseError, match="no frame 6"):
-        segmented.frame(COUNT)
+    assert labels_of(opened) == WHOLE
 
 
 TASKS = Path("/proc/self/task")
@@ -331,53 +418,59 @@ TASKS = Path("/proc/self/task")
 @pytest.mark.skipif(not TASKS.exists(), reason="threads that are not Python's are not to be seen here")
 def test_a_clip_that_is_closed_or_dropped_ends_its_thread() -> None:
     def threads() -> int:
-        return len(list(TASKS.iterdir()))
+        return sum((task / "comm").read_text().strip() == "veronese" for task in TASKS.iterdir())
 
-    before = threads()
-    with segment_clip(FRAMES, **FAST) as segmented:
-        next(segmented)
-    assert next(segmented, None) is None
-    with pytest.raises(VeroneseError):
-        segmented.state()
-    dropped: List[Clip] = [segment_clip(FRAMES, **FAST) for _ in range(5)]
-    assert threads() > before
+    def wait_for_none() -> None:
+        gc.collect()
+        until = time.monotonic() + 60
+        while threads() > 0 and time.monotonic() < until:
+            time.sleep(0.01)
+        assert threads() == 0
+
+    wait_for_none()
+    with segmented(FRAMES) as opened, segment_stream(FRAMES, **FAST) as stream:
+        next(stream)
+    assert next(stream, None) is None and repr(opened) == "Clip(closed)" and len(opened) == COUNT
+    for call in (opened.save, opened.segment, lambda: opened.objects, lambda: list(opened)):
+        with pytest.raises(VeroneseError, match="the clip is closed"):
+            call()
+    dropped: List[Clip] = [open_clip(FRAMES) for _ in range(5)]
+    assert threads() > 0
     dropped.clear()
+    wait_for_none()
 
-    class Viewer:
+    class Viewer(Readable):
         """Refers to its clip, which refers to it."""
 
         def __init__(self) -> None:
-            self.clip = segment_clip(FRAMES, **FAST, progress=self.listen)
+            self.clip = open_clip(self)
+            self.stream = segment_stream(FRAMES, progress=self.listen)
 
         def listen(self, *step: object) -> None:
             pass
 
     viewers = [Viewer() for _ in range(5)]
-    assert threads() > before
+    assert threads() > 0
     viewers.clear()
-    gc.collect()
-    until = time.monotonic() + 60
-    while threads() > before and time.monotonic() < until:
-        time.sleep(0.01)
-    assert threads() <= before
+    wait_for_none()
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork here")
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def test_a_clip_stays_in_its_process() -> None:
-    segmented = segment_clip(FRAMES, **FAST)
+    opened = segmented(FRAMES)
     child = os.fork()
     if child == 0:
         code = ""
         try:
-            next(segmented)
+            opened.labels(0)
         except VeroneseError as error:
             code = error.code
         os._exit(0 if code == "worker-failed" else 1)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-    assert next(segmented).index == 0
+    assert opened.labels(0).index == 0
 
 
 def test_frames_of_a_clip_are_typed() -> None:
-    one: ClipFrame = next(segment_clip(FRAMES, **FAST))
+    one: ClipFrame = next(iter(segmented(FRAMES)))
     assert one.labels.flags.writeable and one.labels.flags.c_contiguous

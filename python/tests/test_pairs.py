@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import veronese
 from scenes import Pixels, frame, write_image
-from veronese import Correction, Mask, VeroneseError, segment_clip, segment_pair
+from veronese import Labels, Mask, Strokes, VeroneseError, open_clip, segment_pair, segment_stream
 
 FIRST, SECOND = frame(0), frame(1)
 
@@ -148,12 +148,14 @@ def test_a_misspelt_option_is_refused() -> None:
 def test_what_is_printed_is_short_and_a_notebook_shows_the_labels() -> None:
     found = segment_pair(FIRST, SECOND, quality="fast")
     assert repr(found) == "Segmentation(96×72, 2 motions)"
-    clip = segment_clip([FIRST, SECOND], quality="fast")
-    seen = next(clip)
+    clip = open_clip([FIRST, SECOND])
+    clip.segment(quality="fast")
+    seen = clip.labels(0)
     assert repr(seen) == "ClipFrame(0, 96×72, objects=[1])"
-    assert repr(clip) == "Clip(2 frames)" and repr(segment_clip(iter([FIRST]))) == "Clip(a stream)"
-    assert repr(clip.tracks()) == "ClipTracks([ClipTrack(1, frames 0 to 0)])"
-    assert repr([Mask(0, found.labels), Correction(1, found.labels, object=3)]) == "[Mask(0, 96×72), Correction(1, 96×72, object=3)]"
+    assert repr(clip) == "Clip(2 frames)" and repr(segment_stream([FIRST])) == "ClipStream()"
+    assert repr(clip.tracks()) == "ClipTracks([ClipTrack(1, frames 0 to 1)])"
+    said = [Strokes(1, 3, found.labels), Mask(0, 2, found.labels == 1), Labels(0, found.labels, own=True)]
+    assert repr(said) == "[Strokes(1, 3, 96×72), Mask(0, 2, 96×72), Labels(0, 96×72, own=True)]"
     for one in (found, seen):
         assert one._repr_png_() == one.png()
         np.testing.assert_array_equal(read_indexed(one.png()), one.labels)
@@ -184,16 +186,17 @@ def test_errors_and_results_cross_processes() -> None:
 
 
 def test_a_clip_of_two_frames_takes_strokes() -> None:
-    clip = segment_clip([FIRST, SECOND])
+    clip = open_clip([FIRST, SECOND])
+    clip.segment()
     found = [frame.labels for frame in clip]
     stroke = np.full_like(found[0], 255)
     stroke[:36] = 0
-    assert clip.correct(Correction(0, stroke, object=1)) == [0, 1]
-    changed = [clip.frame(index).labels for index in (0, 1)]
+    assert {one.frame for one in clip.annotate(Strokes(0, 1, stroke))} == {0, 1}
+    changed = [frame.labels for frame in clip]
     assert (found[0][:36] == 1).any() and not (changed[0][:36] == 1).any()
     assert all((now == 1).sum() < (before == 1).sum() for now, before in zip(changed, found))
-    clip.correct(Correction(0, np.full_like(stroke, 255), object=1))
-    assert all((clip.frame(index).labels == found[index]).all() for index in (0, 1))
+    clip.clear(0, 1)
+    assert all((frame.labels == found[frame.index]).all() for frame in clip)
 
 
 def test_the_version_is_that_of_the_wheel() -> None:

@@ -1,4 +1,4 @@
-"""The same bits as the npm package: labels, motions, tracks and states."""
+"""The same bits as the npm package: labels, motions, tracks and changes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ import pytest
 import veronese
 from numpy.typing import NDArray
 from scenes import Pixels, clip, frame, square_mask
-from veronese import Accepted, ClipTracks, Correction, Mask, Prompt, Segmentation, fit_points, segment_clip, segment_pair
+from veronese import ClipTracks, Labels, Mask, Prompt, Segmentation, Strokes, fit_points, open_clip, segment_pair, segment_stream
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "www" / "public" / "samples"
@@ -25,8 +25,8 @@ NODE = shutil.which("node") or ""
 pytestmark = pytest.mark.skipif(not NODE, reason="there is no node to compare with")
 
 NAMES = {"mark_unknown": "markUnknown", "look_ahead": "lookAhead"}
-# Annotations of frames, which Node has in another form.
-SAID = ("masks", "corrections", "prompts", "accepted")
+# What is said of a clip once it is segmented; Node has annotations in another form.
+SAID = ("annotations", "accepted", "locked", "named")
 
 
 def sha256(content: Any) -> str:
@@ -74,28 +74,28 @@ class Asked:
         rgba[..., :3] = given
         return {"path": self.write(rgba.tobytes()), "width": width, "height": height}
 
-    def said(self, option: str, given: Any) -> Any:
-        if isinstance(given, int):
-            return given
-        said: Dict[str, Any] = {"frame": given.frame}
-        if getattr(given, "propagate", None) is not None:
-            said["propagate"] = given.propagate
-        if not isinstance(given, Prompt):
-            said["labels"] = self.write(given.labels.tobytes())
-            if getattr(given, "object", None) is not None:
-                said["object"] = given.object
-        elif option == "prompts":
+    def annotation(self, given: Any) -> Tuple[str, Any]:
+        """The option of Node for an annotation, and what it has there."""
+        said: Dict[str, Any] = {"frame": given.frame, "propagate": given.propagate}
+        if isinstance(given, Prompt):
             said.update({"object": given.object, "clicks": [*([(*given.click, 1)] if given.click else []), *given.clicks]})
-            said.update({"box": given.box} if given.box else {})
-        else:
-            said["label"] = given.object
-            said.update({"box": given.box} if given.box else {"click": given.click})
+            return "prompts", {**said, **({"box": given.box} if given.box else {})}
+        if isinstance(given, Labels):
+            return "masks" if given.own else "corrections", {**said, "labels": self.write(given.labels.tobytes())}
+        labels = np.where(given.mask == 1, given.object, given.mask).astype(np.uint8)
+        return "corrections", {**said, "object": given.object, "labels": self.write(labels.tobytes())}
+
+    def said(self, given: Dict[str, Any]) -> Dict[str, Any]:
+        said: Dict[str, Any] = {"accepted": given["accepted"]} if "accepted" in given else {}
+        for option, annotation in map(self.annotation, given.get("annotations", ())):
+            said.setdefault(option, []).append(annotation)
         return said
 
     def of_node(self) -> Any:
         def options(given: Dict[str, Any]) -> Dict[str, Any]:
             named = {"edits": {"names": {number: "thing" for number in given["named"]}}} if "named" in given else {}
-            return {**{NAMES.get(name, name): value for name, value in given.items() if name not in (*SAID, "named")}, **named}
+            locked = {"locked": given["locked"]} if "locked" in given else {}
+            return {**{NAMES.get(name, name): value for name, value in given.items() if name not in SAID}, **named, **locked}
 
         asked = {
             "pairs": [{"frames": [self.frame(one) for one in pair], "options": options(given)} for *pair, given in self.pairs],
@@ -104,7 +104,7 @@ class Asked:
                     "frames": [self.frame(one) for one in frames],
                     "stream": stream,
                     "options": options(given),
-                    "said": {name: [self.said(name, one) for one in given[name]] for name in SAID if name in given},
+                    "said": self.said(given),
                 }
                 for frames, stream, given in self.clips
             ],
@@ -138,11 +138,18 @@ def of_tracks(tracks: ClipTracks) -> str:
 
 
 def of_clip(frames: List[Any], stream: bool, options: Dict[str, Any]) -> Dict[str, Any]:
-    segmented = segment_clip(iter(frames) if stream else frames, **options)
-    labels = [sha256(one.labels.tobytes()) for one in segmented]
-    state = None if stream else sha256(segmented.state())
-    changes = [] if stream else [[one.frame, one.object, one.gained, one.lost] for one in segmented.changes()]
-    return {"labels": labels, "tracks": of_tracks(segmented.tracks()), "state": state, "changes": changes}
+    if stream:
+        segmented = segment_stream(iter(frames), **options)
+        return {"labels": [sha256(one.labels.tobytes()) for one in segmented], "tracks": of_tracks(segmented.tracks()), "changes": []}
+    clip = open_clip(frames, mark_unknown=options.get("mark_unknown", False))
+    clip.segment(quality=options.get("quality", "best"))
+    for number in options.get("named", ()):
+        clip.describe(number, "thing")
+    clip.lock(options.get("locked", ()))
+    clip.accept(options.get("accepted", ()))
+    changes = clip.annotate(*options["annotations"]) if "annotations" in options else []
+    labels = [sha256(one.labels.tobytes()) for one in clip]
+    return {"labels": labels, "tracks": of_tracks(clip.tracks()), "changes": [[one.frame, one.object, one.gained, one.lost] for one in changes]}
 
 
 def test_ten_pairs(tmp_path: Path) -> None:
@@ -176,29 +183,27 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
     partly = square_mask(1.5, 9, 255)
     partly[:, :40] = 255
     said: Dict[str, Any] = {
-        "masks": [Mask(1, square_mask(0.5, 7, 0)), Mask(4, square_mask(2, 7, 255), propagate="backward")],
-        "corrections": [
+        "annotations": [
+            Labels(1, square_mask(0.5, 7, 0), own=True),
+            Labels(4, square_mask(2, 7, 255), own=True, propagate="backward"),
+            Labels(3, partly),
+            Labels(4, square_mask(2, 255, 0), propagate="forward"),
             Prompt(5, 3, box=(60, 5, 30, 20)),
-            Correction(3, partly),
-            Correction(4, square_mask(2, 255, 0), propagate="forward"),
             Prompt(3, 2, click=(5, 5)),
-        ],
+        ]
     }
+    others: List[Any] = [
+        Labels(3, partly),
+        Mask(3, 1, square_mask(1.5, 1, 255)),
+        Strokes(1, 5, square_mask(0.5, 0, 255), propagate="forward"),
+        Prompt(2, 6, (60, 5, 30, 20), clicks=[(70, 10, 1), (62, 24, -1)]),
+        Prompt(4, 6, click=(75, 12), propagate="backward"),
+    ]
     asked.clips = [
         (generated, False, {}),
         (generated, False, {"quality": "fast", **said}),
         (generated, False, {"quality": "fast", **said, "locked": [1]}),
-        (
-            generated,
-            False,
-            {
-                "quality": "fast",
-                "named": [1],
-                "accepted": [Accepted(0, square_mask(0, 1, 0)), 5],
-                "corrections": [Correction(3, partly), Correction(3, square_mask(1.5, 1, 255), object=1)],
-                "prompts": [Prompt(2, 6, (60, 5, 30, 20), clicks=[(70, 10, 1), (62, 24, -1)]), Prompt(4, 6, click=(75, 12), propagate="backward")],
-            },
-        ),
+        (generated, False, {"quality": "fast", "named": [1], "accepted": [0, 5], "annotations": others}),
         (generated, True, {"quality": "fast", "look_ahead": 2, "mark_unknown": True}),
         (moving(10, (120, 90)), True, {"quality": "fast"}),
         (real, False, {"quality": "fast", "mark_unknown": True}),

@@ -10,8 +10,8 @@ from queue import SimpleQueue
 from typing import Any, Callable, List, Tuple
 
 import pytest
-from scenes import clip, frame
-from veronese import segment_clip, segment_pair
+from scenes import clip, frame, labels_of, segmented
+from veronese import Clip, Prompt, open_clip, segment_pair, segment_stream
 
 SIZE = (640, 480)
 FIRST, SECOND = frame(0, size=SIZE, square=(3, 2)), frame(1, size=SIZE, square=(3, 2))
@@ -84,16 +84,47 @@ def test_keyboard_interrupt_ends_a_pair_at_once() -> None:
     assert segment_pair(frame(0), frame(1)).count == 2
 
 
-def test_keyboard_interrupt_ends_a_clip() -> None:
-    frames = clip(30, size=(160, 120))
-    segmented: List[Any] = []
+FRAMES = clip(30, size=(160, 120))
+
+
+def test_keyboard_interrupt_ends_a_stream() -> None:
+    streams: List[Any] = []
 
     def work(listener: Callable[..., None]) -> None:
-        segmented.append(segment_clip(frames, progress=listener))
-        list(segmented[0])
+        streams.append(segment_stream(FRAMES, progress=listener))
+        list(streams[0])
 
-    assert len(interrupted(work)) < len(frames)
-    assert next(segmented[0], None) is None
+    assert len(interrupted(work)) < len(FRAMES)
+    assert next(streams[0], None) is None
+
+
+def test_keyboard_interrupt_ends_a_segmentation() -> None:
+    opened, straight = open_clip(FRAMES[:8]), segmented(FRAMES[:8])
+    assert len(interrupted(lambda listener: opened.segment(progress=listener))) < 8
+    assert list(opened) == [] and not opened.undo()
+    opened.segment(quality="fast")
+    assert labels_of(opened) == labels_of(straight)
+
+
+def test_keyboard_interrupt_takes_an_annotation_back() -> None:
+    opened = segmented(FRAMES)
+    before = labels_of(opened)
+    prompt = Prompt(15, 9, box=(100, 10, 50, 50))
+    assert len(interrupted(lambda listener: opened.annotate(prompt, progress=listener))) < len(FRAMES)
+    assert labels_of(opened) == before and [thing.number for thing in opened.objects] == [1]
+    opened.annotate(prompt)
+    assert labels_of(opened) != before
+
+
+def test_two_clips_in_two_threads_give_the_same() -> None:
+    def work(index: int) -> List[bytes]:
+        opened: Clip = segmented(FRAMES[:6])
+        opened.annotate(Prompt(2, 9, box=(100, 10, 50, 50)))
+        return labels_of(opened)
+
+    with ThreadPoolExecutor(2) as pool:
+        one, other = pool.map(work, range(2))
+    assert one == other == work(0)
 
 
 def test_calls_in_threads_give_the_same() -> None:

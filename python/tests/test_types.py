@@ -27,14 +27,14 @@ def test_the_stubs_are_those_of_the_module(tmp_path: Path) -> None:
 
 
 WRONG = """
-from veronese import Correction, segment_clip, segment_pair
+from veronese import open_clip, segment_pair
 import numpy as np
 
 frame = np.zeros((48, 64, 3), np.uint8)
 segment_pair(frame, frame, quality="good")
 segment_pair(frame, frame, motions="two")
 segment_pair(frame, frame, seed=1)
-segment_clip([frame], corrections=[frame])
+open_clip([frame]).annotate(frame)
 fractions = np.zeros((48, 64, 3), np.float32)
 segment_pair(frame, fractions)
 reveal_type(segment_pair(frame, frame).motions[0].matrix)

@@ -481,6 +481,12 @@ impl Clip {
         [undo, redo, self.waiting.len() + usize::from(self.running.is_some()) + self.ranges.len()]
     }
 
+    /// The last step that has taken effect, which [`undo`](Self::undo) takes back when no command waits or is under way.
+    pub fn last_step(&self) -> Option<StepId> {
+        let [undo, _] = self.history.steps();
+        (undo > 0).then(|| StepId(self.state().step))
+    }
+
     /// Cancels a step that has not taken effect. Solved pairs are kept. Returns whether there was such a step.
     pub fn cancel(&mut self, StepId(step): StepId) -> bool {
         self.drop_step(step)

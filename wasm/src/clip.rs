@@ -271,6 +271,7 @@ fn annotations_of(value: &JsValue) -> Annotations {
     };
     let numbers = bytes_in(value, "numbers").unwrap_or_default();
     Annotations {
+        cleared: Vec::new(),
         masks: painted_in(value, "masks"),
         corrections: painted_in(value, "corrections"),
         prompts: each(value, "prompts").into_iter().flatten().map(|entry| prompt(&entry)).collect(),

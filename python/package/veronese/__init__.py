@@ -13,24 +13,26 @@ a :class:`VeroneseError` with a stable ``code``, the same as on the command line
 from __future__ import annotations
 
 import os
-from typing import Callable, Iterable, Literal, Optional, Sequence, Union
+from typing import Callable, Iterable, Literal, Optional, Protocol, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _veronese
 from ._types import (
-    Accepted,
     BackgroundMotion,
     Candidate,
     ClipChange,
+    ClipEntry,
     ClipFrame,
+    ClipFrameStatus,
     ClipObject,
+    ClipProgress,
     ClipTrack,
     ClipTracks,
-    Correction,
     FittedMotion,
     Junction,
+    Labels,
     Mask,
     MotionFit,
     PaperStages,
@@ -41,26 +43,30 @@ from ._types import (
     SegmentedMotion,
     Segmentation,
     Sighting,
+    Strokes,
     SupportsArray,
     VeroneseError,
 )
-from ._veronese import Clip, __version__
+from ._veronese import Clip, ClipStream, __version__
 
 __all__ = [
-    "Accepted",
     "BackgroundMotion",
     "Candidate",
     "Clip",
     "ClipChange",
+    "ClipEntry",
     "ClipFrame",
+    "ClipFrameStatus",
     "ClipObject",
     "ClipProgress",
+    "ClipStream",
     "ClipTrack",
     "ClipTracks",
-    "Correction",
     "FittedMotion",
     "Frame",
+    "Frames",
     "Junction",
+    "Labels",
     "Mask",
     "MotionFit",
     "PaperStages",
@@ -71,22 +77,28 @@ __all__ = [
     "Segmentation",
     "SegmentedMotion",
     "Sighting",
+    "Strokes",
     "VeroneseError",
     "__version__",
     "fit_points",
-    "segment_clip",
+    "open_clip",
     "segment_pair",
+    "segment_stream",
 ]
 
 Frame = Union[NDArray[np.uint8], SupportsArray, Picture, bytes, bytearray, memoryview, str, "os.PathLike[str]"]
 """An array of pixels or an object that NumPy makes one of, a picture of Pillow, or the bytes or the path of an image file."""
 
+
+class Frames(Protocol):
+    """Frames that can be read again: a list, an array of them, or a class of your own."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> Frame: ...
+
+
 Progress = Callable[[str, int, int], object]
 """Called when a stage begins, with its name, its index and the number of stages. An exception that it raises ends the call."""
-
-ClipProgress = Callable[[str, int, Optional[int]], object]
-"""Called when work on a frame begins, with the stage (``"pairs"``, ``"corrections"`` or ``"labels"``), the frame's index and the number of
-frames, ``None`` where it is not known. An exception that it raises ends the clip, or undoes the annotations that are being applied."""
 
 
 def segment_pair(
@@ -104,7 +116,7 @@ def segment_pair(
 
     Labels are those of the pixels of ``first``. They number the motions from 0 by decreasing number of pixels.
 
-    To correct masks, segment the two frames as a clip (:func:`segment_clip`), which takes corrections.
+    To correct masks, open the two frames as a clip (:func:`open_clip`).
 
     :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
     :param quality: ``"best"`` for accuracy, ``"fast"`` for live use.
@@ -117,55 +129,47 @@ def segment_pair(
     return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, subject, progress)
 
 
-def segment_clip(
+def open_clip(
+    frames: Union[Frames, str, "os.PathLike[str]"],
+    saved: Optional[bytes] = None,
+    journal: Union[str, "os.PathLike[str]", None] = None,
+    mark_unknown: bool = False,
+) -> Clip:
+    """Opens a clip: frames that can be read again, which are segmented, corrected and read until it is closed.
+
+    Frames are a list, an array of shape ``(frames, height, width, 3)``, anything with ``len`` and an index, or the path of a folder of images. They
+    have one size, are read whenever they are needed, and must be the same each time.
+
+    :param saved: the result of :meth:`Clip.save` for the same frames.
+    :param journal: the path of a file that has every step before a call returns. If it exists, the clip goes on from it: after the end of the
+        program or the machine at any time, no finished call is lost. An annotation under way is finished, and the pairs that
+        :meth:`Clip.segment` has solved are kept. One clip at a time has a journal open.
+    :param mark_unknown: gives label 255 to pixels whose log-odds do not decide between object and background.
+    """
+    return _veronese.open_clip(frames, saved, journal, mark_unknown)
+
+
+def segment_stream(
     frames: Union[Iterable[Frame], "os.PathLike[str]"],
     *,
+    look_ahead: int = 8,
     motions: Union[int, Literal["auto"]] = "auto",
     quality: Literal["best", "fast"] = "best",
     mark_unknown: bool = False,
     subject: bool = False,
-    look_ahead: Union[int, Literal["all"], None] = None,
-    masks: Optional[Sequence[Mask]] = None,
-    corrections: Optional[Sequence[Union[Correction, Prompt]]] = None,
-    prompts: Optional[Sequence[Prompt]] = None,
-    locked: Optional[Sequence[int]] = None,
-    named: Optional[Sequence[int]] = None,
-    accepted: Optional[Sequence[Union[int, Accepted]]] = None,
-    state: Optional[bytes] = None,
     progress: Optional[ClipProgress] = None,
-) -> Clip:
-    """Segments a clip: objects that move get a number, which they keep from their first frame to their last. Label 0 is the background.
+) -> ClipStream:
+    """Segments a clip whose frames come once, as from a camera: a frame is taken when the loop waits for one.
 
-    A sequence of frames (a list, an array of shape ``(frames, height, width, 3)``, anything with ``len`` and an index) and the path of a
-    folder are whole clips: each frame is read for its pairs, nearly all the work, then for its labels, and must be the same each time.
-    Other iterables, such as a generator, are streams: a frame is taken when the loop waits for one.
+    Objects that move get a number, which they keep from their first frame to their last. Label 0 is the background. If the source raises or a
+    frame is unusable, the frames before it come first, then the error.
 
-    All frames must have one size. If the source raises or a frame is unusable, the frames before it come first, then the error.
-
-    Objects that were painted, given as masks, prompted, named, accepted or locked change only by annotations of themselves. An object that
-    was found automatically changes by the pixels that annotated objects take from it or give back.
-
+    :param look_ahead: the number of later frames that each frame waits for, 0 to 8.
     :param motions: the number of motions in each pair of consecutive frames.
     :param mark_unknown: gives label 255 to pixels whose log-odds do not decide between object and background.
     :param subject: treats the main subject as the only object, as for a cut-out, and everything else as background.
-    :param look_ahead: the number of later frames that each frame waits for, 0 to 8, or, for a whole clip, ``"all"``: as many as matter. Default: 8
-        for a stream, ``"all"`` for a whole clip. A number makes a stream of a sequence, unless one of the options below is given.
-    :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. An object that was found
-        under one of their numbers gets the lowest free one.
-    :param corrections: labels that are certain in some frames, with the numbers of an earlier run. Where a correction is not 255, it replaces
-        the mask of its frame. All are applied together, in any order; prompts may be among them.
-    :param prompts: clicks and boxes that point to objects in some frames. They are applied after ``masks`` and ``corrections``.
-    :param locked: numbers of objects whose pixels no annotation changes, except annotations of themselves in the same call. A new annotation
-        of an object that a ``state`` has locked raises ``object-locked``. This option replaces the locks of a ``state``; so do the next two.
-    :param named: numbers of objects that change only by annotations of themselves.
-    :param accepted: indices of frames whose labels are right, or :class:`Accepted` with their labels. Labels in such a frame change only by
-        annotations of the frame itself, and its objects are followed from it as from a correction. Without labels, those after the masks and
-        the ``state``, before corrections, are accepted.
-    :param state: the result of :meth:`Clip.state` for the same frames: no pair is solved again. ``motions``, ``quality``, ``subject`` and
-        ``look_ahead`` are then those of the state.
     """
-    annotations = (masks, corrections, prompts, locked, named, accepted)
-    return _veronese.segment_clip(frames, motions, quality, mark_unknown, subject, look_ahead, *annotations, state, progress)
+    return _veronese.segment_stream(frames, look_ahead, motions, quality, mark_unknown, subject, progress)
 
 
 def fit_points(

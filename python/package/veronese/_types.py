@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, List, Literal, Optional, Protocol, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Literal, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._png import indexed_png
 
+if TYPE_CHECKING:
+    from ._veronese import Clip
+
 Matrix = NDArray[np.float64]
 """``[a11, a12, a13, a21, a22, a23]``, shape ``(6,)``: the pixel (x, y) of the first frame is displaced by u = a11·x + a12·y + a13,
 v = a21·x + a22·y + a23 pixels in the second. (0, 0) is the centre of the top-left pixel, x right, y down."""
 
-Labels = NDArray[np.uint8]
+LabelImage = NDArray[np.uint8]
 """One label per pixel, shape ``(height, width)``."""
 
 Box = Tuple[int, int, int, int]
@@ -22,6 +25,14 @@ Box = Tuple[int, int, int, int]
 
 Click = Tuple[int, int, Literal[1, -1]]
 """Column and row of a pixel, and 1 if it belongs to an object, -1 if it does not."""
+
+Colour = Tuple[int, int, int]
+"""Red, green and blue, 0 to 255."""
+
+ClipProgress = Callable[[str, int, Optional[int]], object]
+"""Called when work on a frame begins, with the stage (``"pairs"`` or ``"annotations"``), the frame's index and the number of frames, ``None``
+where it is not known. An exception that it raises ends the call, which changes nothing then."""
+
 
 class SupportsArray(Protocol):
     """An object that NumPy makes an array of, such as a tensor."""
@@ -37,8 +48,9 @@ class Picture(Protocol):
     def convert(self, mode: str, /) -> Any: ...
 
 
-Propagation = Literal["both", "forward", "backward", "none"]
-"""The frames to which the annotations of a frame spread: those before and after it, those on one side, or none."""
+Propagation = Literal["both", "forward", "backward", "none", "exact"]
+"""The frames to which an annotation of a frame spreads: those before and after it, those on one side, or none. ``"exact"``: none, and no
+other pixel of its frame changes; the labels are drawn over all others but those of locked objects."""
 
 
 class VeroneseError(Exception):
@@ -102,7 +114,7 @@ class Segmentation:
     """Number of motions."""
     motions: List[SegmentedMotion]
     """By decreasing number of pixels: ``motions[i].label == i``."""
-    labels: Labels
+    labels: LabelImage
     """One label per pixel of the first frame, an index of ``motions``; 255 is unlabelled."""
     junctions: List[Junction]
     """Neighbouring motions, by labels. Borders of a few pixels are left out."""
@@ -216,7 +228,7 @@ class ClipFrame:
     """One frame of a clip, segmented."""
 
     index: int
-    labels: Labels
+    labels: LabelImage
     """0 for the background, 255 for a pixel that is marked as unknown, otherwise the number of an object."""
     objects: List[ClipObject]
     """The visible objects by number."""
@@ -272,7 +284,7 @@ class BackgroundMotion:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ClipTracks:
-    """The result of :meth:`Clip.tracks`."""
+    """The result of :meth:`Clip.tracks` and :meth:`ClipStream.tracks`."""
 
     objects: List[ClipTrack]
     """By number, which is the order of appearance."""
@@ -286,42 +298,52 @@ class ClipTracks:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Mask:
-    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 for unlabelled pixels."""
-
+class _ObjectMask:
     frame: int
-    labels: Labels
-    propagate: Optional[Propagation] = None
-    """Default: ``"both"``."""
+    object: int
+    """The number of the object, 1 to 254; one that no object has makes a new object."""
+    mask: Union[LabelImage, NDArray[np.bool_]]
+    propagate: Propagation = "both"
 
     def __repr__(self) -> str:
-        return f"Mask({self.frame}, {_size(self.labels)})"
+        return f"{type(self).__name__}({self.frame}, {self.object}, {_size(self.mask)})"
+
+
+class Strokes(_ObjectMask):
+    """Strokes of an object in a frame, over its earlier strokes there.
+
+    ``mask`` has 1 where the object is, 0 where it is not and 255 where that is left open. Of an array of bools, True is the object and False is
+    open.
+    """
+
+
+class Mask(_ObjectMask):
+    """The mask of an object in a frame, in place of its earlier strokes there.
+
+    ``mask`` has 1 where the object is, 0 where it is not and 255 where that is left open. Of an array of bools, True is the object and False is
+    not: a picture of 0 and 255 is ``mask=picture == 255``.
+    """
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Correction:
-    """Labels of one frame of a clip that are certain.
-
-    Pixels with the label 255 are not annotated. Without ``object`` the labels are a label map: it annotates the objects whose numbers it
-    contains (a number that no object has makes a new object), and 0 marks pixels that belong to none of these. A map of 0 and 255 alone is
-    an eraser: it removes all objects from its zeros. A correction replaces the earlier one of the same object in its frame, or the earlier
-    label map; one of 255 alone removes it.
-    """
+class Labels:
+    """A label map of a frame, over earlier ones there: the number of an object, old or new, 0 where none of these objects is, and 255 where that
+    is left open. A map of 0 and 255 alone is an eraser: it removes all objects from its zeros."""
 
     frame: int
-    labels: Labels
-    propagate: Optional[Propagation] = None
-    """Default: as the label map or mask of this frame that is given with it, otherwise ``"both"``."""
-    object: Optional[int] = None
-    """The only annotated object, 1 to 254: the labels are its number, 0 outside it, and 255."""
+    labels: LabelImage
+    own: bool = False
+    """Whether the numbers are your own, as those of another program: an object that was found under one of them gets the lowest free number.
+    Otherwise they are the numbers of the clip's objects."""
+    propagate: Propagation = "both"
 
     def __repr__(self) -> str:
-        return f"Correction({self.frame}, {_size(self.labels)}{f', object={self.object}' if self.object else ''})"
+        return f"Labels({self.frame}, {_size(self.labels)}{', own=True' if self.own else ''})"
 
 
 @dataclass(frozen=True)
 class Prompt:
-    """Points to an object in one frame of a clip, whether it was found or not. Its mask in this frame is made at once and propagated.
+    """Points to an object in a frame, whether it was found or not. Its mask there is made at once.
 
     Clicks and a box together describe one object; a box or a click inside the object is needed. A prompt replaces an earlier one of its object
     and frame; one without clicks and box removes it. It does not annotate other objects.
@@ -335,24 +357,13 @@ class Prompt:
     click: Optional[Tuple[int, int]] = None
     """Column and row of a pixel of the object, short for a click ``(x, y, 1)``."""
     clicks: Sequence[Click] = ()
-    propagate: Optional[Propagation] = None
-    """Default: as the label map or mask of this frame that is given with it, otherwise ``"both"``."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Accepted:
-    """A frame of a clip for which these labels of all pixels are right."""
-
-    frame: int
-    labels: Labels
-
-    def __repr__(self) -> str:
-        return f"Accepted({self.frame}, {_size(self.labels)})"
+    propagate: Propagation = "both"
+    """Not ``"exact"``."""
 
 
 @dataclass(frozen=True)
 class ClipChange:
-    """Numbers of pixels that an object has gained and lost in a frame by annotations."""
+    """Numbers of pixels that an object has gained and lost in a frame by a step."""
 
     frame: int
     object: int
@@ -363,8 +374,42 @@ class ClipChange:
     """Number of pixels that it had before and does not have now."""
 
 
-def _size(labels: Labels) -> str:
-    return "×".join(map(str, reversed(np.shape(labels))))
+@dataclass(frozen=True)
+class ClipEntry:
+    """An object of a clip."""
+
+    number: int
+    """1 to 254, the same in all frames. It is never given to another object."""
+    name: str
+    """Empty for an object without a name, as is the class."""
+    class_name: str
+    colour: Optional[Colour]
+    locked: bool
+    annotated: bool
+    """Whether it was annotated in any frame."""
+    became: int
+    """The number under which it goes on: its own, that of the object it was merged into, or 0 if it was deleted."""
+
+
+@dataclass(frozen=True)
+class ClipFrameStatus:
+    """What is known of a frame of a clip."""
+
+    has_masks: bool
+    """Whether it was segmented."""
+    accepted: bool
+    annotated: bool
+
+
+def labelled_frames(clip: Clip) -> Iterator[ClipFrame]:
+    """The frames of a clip that have masks, in order."""
+    for index, status in enumerate(clip.frames):
+        if status.has_masks:
+            yield clip.labels(index)
+
+
+def _size(image: NDArray[Any]) -> str:
+    return "×".join(map(str, reversed(np.shape(image))))
 
 
 def _counted(count: int, thing: str) -> str:

@@ -1,10 +1,25 @@
-from typing import Any, Iterator, List, Optional, Sequence, Union, final
+import os
+from typing import Any, Iterator, List, Literal, Optional, Sequence, Union, final
 
 from numpy.typing import ArrayLike
 
-from ._types import Accepted, ClipChange, ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation
+from ._types import (
+    ClipChange,
+    ClipEntry,
+    ClipFrame,
+    ClipFrameStatus,
+    ClipProgress,
+    ClipTracks,
+    Colour,
+    Labels,
+    Mask,
+    MotionFit,
+    Prompt,
+    Segmentation,
+    Strokes,
+)
 
-__all__ = ["Clip", "__version__", "fit_points", "segment_clip", "segment_pair"]
+__all__ = ["Clip", "ClipStream", "__version__", "fit_points", "open_clip", "segment_pair", "segment_stream"]
 
 __version__: str
 
@@ -26,58 +41,111 @@ def fit_points(
     seed: object,
     progress: Optional[Any],
 ) -> MotionFit: ...
-def segment_clip(
+def open_clip(
     frames: object,
+    saved: Optional[bytes],
+    journal: Union[str, "os.PathLike[str]", None],
+    mark_unknown: bool,
+) -> Clip: ...
+def segment_stream(
+    frames: object,
+    look_ahead: object,
     motions: object,
     quality: object,
     mark_unknown: bool,
     subject: bool,
-    look_ahead: object,
-    masks: object,
-    corrections: object,
-    prompts: object,
-    locked: object,
-    named: object,
-    accepted: object,
-    state: Optional[bytes],
     progress: Optional[Any],
-) -> Clip: ...
+) -> ClipStream: ...
 @final
 class Clip:
-    """The frames of a clip, in order, as they are finished.
+    """A clip, from its opening to its closing: :func:`open_clip`.
 
-    It frees its memory when it is closed, collected or raises. Any frame of a finished whole clip can be asked for again and corrected;
-    no pair is solved again.
+    It is segmented, its masks are corrected in steps that can be undone, and read as often as they are wanted. Whatever raises or is
+    interrupted changes nothing.
     """
+
+    def segment(
+        self,
+        first: int = 0,
+        last: Optional[int] = None,
+        motions: Union[int, Literal["auto"]] = "auto",
+        quality: Literal["best", "fast"] = "best",
+        subject: bool = False,
+        progress: Optional[ClipProgress] = None,
+    ) -> None:
+        """Segments the frames from ``first`` to ``last``, by default all of them, for the first time or again: objects that move get a number,
+        1 to 254, which they keep from their first frame to their last. Label 0 is the background.
+
+        Objects that are found again keep their numbers, and annotations are applied again. If it is interrupted, the pairs of frames that
+        were solved are kept, and the same call goes on from them. A frame that is unusable ends the range: those before it get masks, then its
+        error is raised.
+
+        :param motions: the number of motions in each pair of consecutive frames, 1 to 10; ``"auto"`` estimates it.
+        :param quality: ``"best"`` for accuracy, ``"fast"`` for quick results.
+        :param subject: treats the main subject as the only object, as for a cut-out, and everything else as background.
+        """
+    def annotate(
+        self, *annotations: Union[Strokes, Mask, Labels, Prompt], progress: Optional[ClipProgress] = None
+    ) -> List[ClipChange]:
+        """Annotates frames, all in one step: label maps and strokes take effect first, then prompts. Returns what objects have gained and lost.
+
+        Annotations spread to other frames. An object that was annotated, accepted or named changes only by annotations of itself; one that was
+        found also changes by the pixels that annotated objects take from it or give back. No pair is solved again.
+        """
+    def clear(self, frame: int, object: Optional[int] = None) -> List[ClipChange]:
+        """Takes back the annotations of a frame: of an object, or all."""
+    def accept(self, frames: Sequence[int], on: bool = True) -> List[ClipChange]:
+        """Accepts frames as correct, or no longer. Annotations of other frames do not change an accepted frame; one of itself ends the
+        acceptance."""
+    def lock(self, objects: Sequence[int], on: bool = True) -> None:
+        """Locks objects, or unlocks them. Nothing changes the pixels of a locked object; annotating it raises ``object-locked``."""
+    def describe(
+        self, number: int, name: str = "", class_name: str = "", colour: Optional[Colour] = None
+    ) -> None:
+        """Gives an object a name, a class and a colour, in place of all three before. An object with a name changes only by annotations of
+        itself."""
+    def merge(self, *objects: int) -> None:
+        """Merges objects under the number of the first."""
+    def delete(self, *objects: int) -> None:
+        """Turns objects into background."""
+    def split(self, object: int, frame: int) -> List[ClipChange]:
+        """Makes a new object, with the number :attr:`next_object`, of all connected pieces of an object but the largest in a frame. Other
+        frames follow."""
+    def undo(self) -> bool:
+        """Takes back the last step: a call that segments, annotates, or changes anything else. Returns whether there was one."""
+    def redo(self) -> bool:
+        """Does again the step that was taken back last. Returns whether there was one."""
+    def labels(self, frame: int) -> ClipFrame:
+        """The labels and objects of a frame as they are now. The frame is read unless they are known."""
+    @property
+    def objects(self) -> List[ClipEntry]:
+        """All objects that there have been, by number."""
+    @property
+    def frames(self) -> List[ClipFrameStatus]:
+        """What is known of each frame."""
+    @property
+    def next_object(self) -> Optional[int]:
+        """The lowest number that no object has had; ``None`` if none is left."""
+    def tracks(self) -> ClipTracks:
+        """The tracks of all objects in all frames that have masks."""
+    def save(self) -> bytes:
+        """The clip with its steps, for ``open_clip(frames, saved=…)``: some kilobytes per frame."""
+    def close(self) -> None:
+        """Frees the memory of the clip. Its journal can be opened again when this returns."""
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[ClipFrame]: ...
+    def __enter__(self) -> Clip: ...
+    def __exit__(self, *_exception: object) -> None: ...
+@final
+class ClipStream:
+    """The frames of a clip that come once, in order, as they are finished: :func:`segment_stream`. It frees its memory when it is closed,
+    collected or raises."""
 
     def __iter__(self) -> Iterator[ClipFrame]: ...
     def __next__(self) -> ClipFrame: ...
-    def frame(self, index: int) -> ClipFrame:
-        """A frame of a whole clip with its current labels."""
-    def correct(self, *annotations: Union[Correction, Prompt]) -> List[int]:
-        """Annotates frames of a whole clip by label maps, strokes and prompts. Returns the indices of the frames that change.
-
-        Other annotated objects do not change, see :func:`segment_clip`. Numbers are those before any :meth:`merge` or :meth:`delete`.
-        A call that is interrupted changes nothing.
-        """
-    def lock(self, objects: Sequence[int]) -> None:
-        """Locks these objects: no annotation changes their pixels. All others are unlocked."""
-    def name(self, objects: Sequence[int]) -> None:
-        """Names these objects: like annotated objects, they change only by annotations of themselves."""
-    def accept(self, frames: Sequence[Union[int, Accepted]]) -> List[int]:
-        """Accepts these frames, as they are or with labels, and no others. Returns the indices of the frames that change."""
-    def merge(self, *objects: int) -> List[int]:
-        """Merges objects under the number of the first. Returns the indices of the frames that change. It cannot be undone."""
-    def delete(self, *objects: int) -> List[int]:
-        """Turns objects into background. Returns the indices of the frames that change. It cannot be undone."""
-    def changes(self) -> List[ClipChange]:
-        """The pixels that objects have gained and lost by the last annotations, by frame, then by object: those of the options of the clip, or of
-        the last call of :meth:`correct`, :meth:`accept`, :meth:`lock` or :meth:`name`. :meth:`merge` and :meth:`delete` are not counted."""
-    def state(self) -> bytes:
-        """A whole clip with its annotations, for the option ``state``: some kilobytes per frame."""
     def tracks(self) -> ClipTracks:
-        """The tracks of the objects in the frames returned so far, with current labels: frames that have changed are read again."""
+        """The tracks of the objects in the frames returned so far."""
     def close(self) -> None:
-        """Frees the memory of the clip."""
-    def __enter__(self) -> Clip: ...
+        """Frees the memory of the stream."""
+    def __enter__(self) -> ClipStream: ...
     def __exit__(self, *_exception: object) -> None: ...

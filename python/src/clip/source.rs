@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator};
+use veronese::Frame;
 
 use crate::errors::Failure;
 use crate::frames::{Given, given};
@@ -66,19 +67,19 @@ impl Source {
     }
 
     /// A frame; of an iterator it is the next one. `None` at the end.
-    pub(crate) fn read(&self, py: Python<'_>, index: usize) -> PyResult<Option<Given>> {
-        if self.length().is_some_and(|length| index >= length) {
-            return Ok(None);
-        }
+    pub(crate) fn frame(&self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
+        let name = format!("frame {index}");
         let frame = match self {
-            Source::Files(paths) => return Ok(paths.get(index).cloned().map(Given::File)),
-            Source::Sequence(frames, _) => frames.bind(py).get_item(index)?,
-            Source::Iterator(frames) => match frames.bind(py).clone().next() {
-                Some(frame) => frame?,
-                None => return Ok(None),
-            },
+            Source::Files(paths) => paths.get(index).cloned().map(Given::File),
+            Source::Sequence(_, length) if index >= *length => None,
+            Source::Sequence(frames, _) => Some(given(&name, &frames.bind(py).get_item(index)?)?),
+            Source::Iterator(frames) => {
+                let next = frames.bind(py).clone().next().transpose()?;
+                next.map(|frame| given(&name, &frame)).transpose()?
+            }
         };
-        Ok(Some(given(&format!("frame {index}"), &frame)?))
+        let Some(frame) = frame else { return Ok(None) };
+        Ok(Some(py.detach(|| frame.frame()).map_err(|failure| failure.about(&name))?))
     }
 }
 
