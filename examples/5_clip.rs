@@ -3,47 +3,40 @@
 
 use scenes::{ClipSceneOptions, generate_clip};
 use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions};
-use veronese::{Frame, Result, SegmentOptions};
-
-/// Gives the clip the frames that it wants. Returns the number of pixels of each object in each frame.
-fn masks(clip: &mut Clip, frames: &[Frame]) -> Result<Vec<Vec<usize>>> {
-    let mut masks = Vec::new();
-    for index in 0..frames.len() {
-        clip.look_at(index);
-        while let Some(wanted) = clip.wanted() {
-            clip.take(wanted.frame, &frames[wanted.frame], None)?;
-        }
-        masks.extend(clip.labels(index).map(|frame| frame.objects.iter().map(|object| object.pixels).collect()));
-    }
-    Ok(masks)
-}
+use veronese::{Quality, Result, SegmentOptions};
 
 /// Public: the tests run it, too.
 pub fn main() -> Result<()> {
-    let options = ClipSceneOptions { frames: 5, objects: 2, ..ClipSceneOptions::default() };
+    let options = ClipSceneOptions { width: 160, height: 120, frames: 30, objects: 2, ..ClipSceneOptions::default() };
     let scene = generate_clip(&options)?;
-    let frames = &(0..options.frames).map(|t| scene.frame(t)).collect::<Result<Vec<_>>>()?;
 
-    // The journal is a file, a database or, as here, memory. What is in it survives everything.
-    let mut journal = Vec::new();
-    let mut clip = Clip::new(frames.len(), OpenOptions::default());
-    clip.apply(Command::Segment { frames: 0..frames.len(), options: SegmentOptions::default() })?;
-    println!("found:     {:?}", masks(&mut clip, frames)?);
+    // The objects of frame 20, by number, with their numbers of pixels. The clip asks for the frames that it needs.
+    let objects = |clip: &mut Clip| -> Result<Vec<(u8, usize)>> {
+        clip.look_at(20);
+        clip.run(|index| scene.frame(index))?;
+        let frame = clip.labels(20).unwrap_or_default();
+        Ok(frame.objects.iter().map(|object| (object.id, object.pixels)).collect())
+    };
 
-    // A stroke in frame 2: these pixels are a new object's. The frames before and after follow.
-    let width = frames[0].width();
-    let is_in = |p: usize| (30..50).contains(&(p % width)) && (30..50).contains(&(p / width));
-    let labels = (0..width * frames[0].height()).map(|p| if is_in(p) { 1 } else { 255 }).collect();
-    clip.apply(Command::Annotate(vec![Annotation::new(2, Content::Strokes { object: 9, labels })]))?;
-    println!("corrected: {:?}", masks(&mut clip, frames)?);
+    let mut clip = Clip::new(options.frames, OpenOptions::default());
+    let fast = SegmentOptions::default().with_quality(Quality::Fast);
+    clip.apply(Command::Segment { frames: 0..options.frames, options: fast })?;
+    println!("found: {:?}", objects(&mut clip)?);
+
+    // A stroke in frame 15: these pixels are a new object's. The frames before and after follow.
+    let is_in = |p: usize| (60..80).contains(&(p % 160)) && (20..40).contains(&(p / 160));
+    let labels = (0..160 * 120).map(|p| if is_in(p) { 1 } else { 255 }).collect();
+    clip.apply(Command::Annotate(vec![Annotation::new(15, Content::Strokes { object: 9, labels })]))?;
+    println!("corrected: {:?}", objects(&mut clip)?);
 
     clip.undo();
-    println!("undone:    {:?}", masks(&mut clip, frames)?);
+    println!("undone: {:?}", objects(&mut clip)?);
     clip.redo();
-    journal.extend(clip.take_events().records);
 
+    // The journal is a file, a database or, as here, memory. What is in it survives everything.
+    let journal = clip.take_events().records;
     let mut again = Clip::read(&journal, OpenOptions::default())?.clip;
-    println!("again:     {:?}", masks(&mut again, frames)?);
-    println!("{} bytes of journal, {} steps", journal.len(), again.steps()[0]);
+    println!("read again: {:?}", objects(&mut again)?);
+    println!("{} bytes of journal for {} steps", journal.len(), again.steps()[0]);
     Ok(())
 }

@@ -85,30 +85,23 @@
 //! # fn main() -> veronese::Result<()> {
 //! # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 //! # let frames = [scene.first(), scene.second()];
+//! let read = |index: usize| Ok::<_, veronese::Error>(frames[index].clone());
 //! let mut clip = Clip::new(frames.len(), OpenOptions::default());
-//! let labels_of = |clip: &mut Clip, index| -> veronese::Result<_> {
-//!     clip.look_at(index);
-//!     while let Some(wanted) = clip.wanted() {
-//!         clip.take(wanted.frame, frames[wanted.frame], None)?;
-//!     }
-//!     Ok(clip.labels(index).expect("this frame was looked at"))
-//! };
 //! clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
-//! let found = [labels_of(&mut clip, 0)?, labels_of(&mut clip, 1)?];
+//! clip.look_at(1);
+//! clip.run(read)?; // it asks for the frames that it needs
+//! let before = clip.labels(1).expect("this frame is looked at");
 //!
-//! let object = &found[0].objects[0];
-//! let [_, y, _, height] = object.bbox;
-//! let is_upper = |p: usize| p / 160 < y + height / 2;
+//! let object = &before.objects[0];
+//! let is_upper = |p: usize| p / 160 < object.bbox[1] + object.bbox[3] / 2;
 //! let labels = (0..160 * 120).map(|p| if is_upper(p) { 0 } else { 255 }).collect(); // 0: not the object; 255: not annotated
 //! clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: object.id, labels })]))?;
-//! for (index, before) in found.iter().enumerate() {
-//!     assert!(labels_of(&mut clip, index)?.objects[0].pixels < before.objects[0].pixels); // in both frames
-//! }
+//! clip.run(read)?; // the other frame, which is still looked at, changes as well
+//! assert!(clip.labels(1).expect("it is known").objects[0].pixels < object.pixels);
 //!
-//! let again = Clip::read(&clip.save(), OpenOptions::default())?.clip; // tomorrow
-//! assert_eq!(again.labels(1).map(|frame| frame.labels), clip.labels(1).map(|frame| frame.labels));
-//! clip.undo();
-//! assert_eq!(labels_of(&mut clip, 1)?.labels, found[1].labels);
+//! let mut again = Clip::read(&clip.save(), OpenOptions::default())?.clip; // tomorrow
+//! assert_eq!(again.frames(), clip.frames());
+//! assert!(again.undo());
 //! # Ok(())
 //! # }
 //! ```

@@ -19,6 +19,8 @@ macro_rules! println {
     };
 }
 
+#[path = "../examples/5_clip.rs"]
+mod clip;
 #[path = "../examples/3_number_of_motions.rs"]
 mod number_of_motions;
 #[path = "../examples/4_pair_of_frames.rs"]
@@ -83,4 +85,15 @@ fn a_pair_of_frames_is_segmented() {
     assert_eq!(lines.next(), Some("3 motions"), "{text}");
     assert_eq!(lines.filter(|line| line.starts_with("motion ")).count(), 3, "{text}");
     assert!(number_before(text.lines().last().unwrap(), " % of the pixels agree") > 97.0, "{text}");
+}
+
+#[test]
+fn a_clip_is_corrected_undone_and_read_again() {
+    let text = output(|| clip::main().unwrap());
+    let objects: Vec<&str> =
+        text.lines().filter_map(|line| line.split_once(": ")).map(|(_, objects)| objects).collect();
+    let [found, corrected, undone, again] = objects[..] else { panic!("{text}") };
+    assert!(!found.contains("(9,") && corrected.contains("(9,"), "{text}");
+    assert_eq!((found, corrected), (undone, again), "{text}");
+    assert!(text.ends_with(" bytes of journal for 2 steps\n"), "{text}");
 }

@@ -94,6 +94,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         clip.take(frame, &pixels, None)?;
         known(&mut clip, frame, &pixels)?;
         seen.push(1e3 * start.elapsed().as_secs_f64());
+        clip.look_at(None);
         let [mut records, mut frames] = [0; 2];
         while let Some(wanted) = clip.wanted() {
             let pixels = read(wanted.frame)?;

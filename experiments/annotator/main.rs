@@ -122,7 +122,8 @@ fn run(options: &Options) -> Result<(), Failure> {
             options.on_all(&cases, |case| objects::measure(case, options)).map(drop)
         }
         "clip" => {
-            let rows = options.real()?.iter().map(|case| clip::measure(case, options)).collect::<Result<Vec<_>, _>>()?;
+            let rows =
+                options.real()?.iter().map(|case| clip::measure(case, options)).collect::<Result<Vec<_>, _>>()?;
             let lines: Vec<String> = rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
             Ok(fs::write(options.out.join("clip.jsonl"), lines.join("\n") + "\n")?)
         }

@@ -14,7 +14,7 @@ use crate::motion::AffineMotion;
 
 /// One frame of a clip, segmented.
 #[non_exhaustive]
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ClipFrame {
     /// Position in the clip, from 0.

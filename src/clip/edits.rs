@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::annotation::{Accepted, ObjectSet};
 use super::changes::Changes;
 use super::frame_annotation::FrameAnnotation;
-use super::objects::Objects;
+use super::objects::{Description, Objects};
 use super::segmented_clip::SegmentedClip;
 use crate::answer::UNLABELLED;
 use crate::frame::Frame;
@@ -40,8 +40,10 @@ impl SegmentedClip {
                 }
                 objects.locked.swap(old, usize::from(now[old]));
                 objects.named.swap(old, usize::from(now[old]));
-                if let Some(description) = objects.descriptions.remove(&k).filter(|_| now[old] > 0) {
-                    objects.descriptions.insert(now[old], description);
+                let description = objects.description(k);
+                objects.describe(k, Description::default());
+                if now[old] > 0 {
+                    objects.describe(now[old], description);
                 }
             }
         }

@@ -136,6 +136,18 @@ impl ClipJob {
         self.changes.frames()
     }
 
+    /// The same job after earlier ones: it goes on with their changes.
+    pub(super) fn after(self, earlier: Changes) -> ClipJob {
+        let mut changes = earlier;
+        self.changes.frames().iter().for_each(|&frame| changes.add(frame));
+        ClipJob { changes, ..self }
+    }
+
+    /// What has changed, for the next job.
+    pub(super) fn into_changes(self) -> Changes {
+        self.changes
+    }
+
     /// Numbers of pixels that objects have gained and lost so far, by frame, then by object. Changes by [`Annotations::numbers`] are not
     /// counted.
     pub fn changes(&self) -> Vec<Changed> {

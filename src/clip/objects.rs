@@ -1,7 +1,5 @@
 //! The objects of a clip: their numbers, locks, names and descriptions.
 
-use std::collections::BTreeMap;
-
 use super::annotation::ObjectSet;
 use super::saved::saved;
 
@@ -33,7 +31,8 @@ pub(super) struct Objects {
     pub(super) used: ObjectSet,
     /// Number of objects for which no number was left; they count as background.
     pub(super) dropped: usize,
-    pub(super) descriptions: BTreeMap<u8, Description>,
+    /// By number.
+    pub(super) descriptions: Vec<(u8, Description)>,
 }
 
 saved!(Objects { numbers, locked, named, given, used, dropped, descriptions });
@@ -42,7 +41,21 @@ impl Objects {
     pub(super) fn new(dropped: usize) -> Objects {
         let [locked, named, given, used] = [[false; 256]; 4];
         let numbers = std::array::from_fn(|k| k as u8);
-        Objects { numbers, locked, named, given, used, dropped, descriptions: BTreeMap::new() }
+        Objects { numbers, locked, named, given, used, dropped, descriptions: Vec::new() }
+    }
+
+    /// What a person says of an object.
+    pub(super) fn description(&self, object: u8) -> Description {
+        self.descriptions.iter().find(|(of, _)| *of == object).map(|(_, of)| of.clone()).unwrap_or_default()
+    }
+
+    /// Sets what a person says of an object.
+    pub(super) fn describe(&mut self, object: u8, description: Description) {
+        self.descriptions.retain(|(of, _)| *of != object);
+        if description != Description::default() {
+            let at = self.descriptions.partition_point(|(of, _)| *of < object);
+            self.descriptions.insert(at, (object, description));
+        }
     }
 
     /// The number of an object in the results; 0 if it was deleted.

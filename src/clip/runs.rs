@@ -51,6 +51,11 @@ impl Runs {
         Runs::of(&self.values().iter().map(|&v| value(v)).collect::<Vec<u8>>())
     }
 
+    /// Length of the code, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        self.0.len()
+    }
+
     /// Whether these are runs of `pixels` values.
     #[inline(never)]
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {

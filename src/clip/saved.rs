@@ -1,7 +1,6 @@
 //! Values of a clip as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
 //! then a hash of all that. Numbers are little-endian.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
@@ -197,21 +196,6 @@ impl Saved for String {
     fn read(bytes: &mut &[u8]) -> Option<String> {
         let length = usize::read(bytes)?;
         String::from_utf8(bytes.split_off(..length)?.to_vec()).ok()
-    }
-}
-
-/// The number of entries, then the entries.
-impl<K: Saved + Ord, V: Saved> Saved for BTreeMap<K, V> {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        self.len().write(bytes);
-        self.iter().for_each(|(key, value)| {
-            key.write(bytes);
-            value.write(bytes);
-        });
-    }
-
-    fn read(bytes: &mut &[u8]) -> Option<BTreeMap<K, V>> {
-        Some(Vec::<(K, V)>::read(bytes)?.into_iter().collect())
     }
 }
 

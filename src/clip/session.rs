@@ -3,43 +3,44 @@
 //! - A command takes effect on a copy of the state (`session/steps.rs`), frame by frame; the copy becomes the state as a whole or not at all.
 //! - A range of frames is segmented beside that (`session/ranges.rs`), and takes its place between two commands.
 //! - The states after each step share all parts in which they do not differ (`session/history.rs`).
-//! - The journal has every command before it takes effect, and what it has changed (`session/log.rs`).
-//! - Labels are remembered by what they follow from (`session/shown.rs`).
+//! - The journal has every command before it takes effect, and what it has changed (`session/journal.rs`, `session/log.rs`).
+//! - Labels are remembered by what they follow from (`session/view.rs`, `session/shown.rs`).
 
+mod combined;
 mod history;
+mod journal;
 mod log;
+mod phases;
 mod ranges;
+mod repeated;
 mod shown;
 mod steps;
+mod view;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use super::annotation::is_object;
-use super::changes::Changed;
 use super::command::Command;
-use super::description::ClipFrame;
 use super::frame_state::FrameState;
-use super::objects::{Description, Objects};
+use super::objects::Objects;
 use super::saved::Saved;
 use super::segmented_clip::SegmentedClip;
 use super::segmenter::FramePairs;
-use super::tracks::{ClipTracks, Tracks};
-use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 
 use history::{Difference, History, Remembered, State};
-use log::{Kind, Log, Reader};
+use journal::{Written, range_record, result};
+use log::{Kind, Log};
 use ranges::RangeJob;
-use shown::Shown;
 use steps::Running;
+
+pub use journal::{Events, Recovered, Settled};
+pub use view::{FrameStatus, Object};
 
 /// Largest number of commands that wait.
 const MOST_WAITING: usize = 256;
-
-/// A log that has grown by so many bytes, and to twice its size, since it was compacted is compacted again.
-const GROWTH: usize = 1 << 20;
 
 /// Options of a [`Clip`].
 #[non_exhaustive]
@@ -97,70 +98,6 @@ pub struct Wanted {
     pub step: Option<StepId>,
 }
 
-/// What is known of a frame of a [`Clip`].
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrameStatus {
-    /// Whether it was segmented.
-    pub has_masks: bool,
-    /// Whether a person has accepted it.
-    pub accepted: bool,
-    /// Whether a person has annotated it.
-    pub annotated: bool,
-    /// A hash of everything that its labels follow from: equal revisions have equal labels. 0 before it is segmented.
-    pub revision: u64,
-}
-
-/// An object of a [`Clip`].
-#[non_exhaustive]
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Object {
-    /// Its number, 1…254.
-    pub number: u8,
-    /// Its name, class and colour.
-    pub description: Description,
-    /// Whether it is locked.
-    pub locked: bool,
-    /// Whether a person has annotated it in any frame.
-    pub annotated: bool,
-    /// The number under which it goes on: its own, that of the object it was merged into, or 0 if it was deleted.
-    pub became: u8,
-}
-
-/// What has happened in a [`Clip`] since the events were taken last.
-#[non_exhaustive]
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Events {
-    /// Records for the journal. They have to be kept before anything else is told to anyone: what is kept can be read again.
-    pub records: Vec<u8>,
-    /// Whether the records take the place of the journal so far; otherwise they are appended to it.
-    pub replaces: bool,
-    /// Indices of the frames whose labels have changed, in ascending order.
-    pub frames: Vec<usize>,
-    /// Steps that have taken effect or failed, in order.
-    pub settled: Vec<Settled>,
-}
-
-/// A step that has taken effect or failed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settled {
-    /// The step.
-    pub step: StepId,
-    /// What objects have gained and lost, or why nothing has changed.
-    pub changes: Result<Vec<Changed>>,
-}
-
-/// A [`Clip`] that was read from a journal.
-#[derive(Debug)]
-pub struct Recovered {
-    /// The clip.
-    pub clip: Clip,
-    /// Number of bytes that were read. What follows was not written completely, or is damaged, and has to be cut off before more is appended.
-    pub used: usize,
-    /// Whether what follows is damaged: steps that had been kept are lost.
-    pub is_damaged: bool,
-}
-
 /// A command that waits, with the frames that it needs.
 #[derive(Clone, Debug)]
 struct Waiting {
@@ -171,7 +108,8 @@ struct Waiting {
 /// A clip of frames that can be read again: it is segmented, corrected, and read, from its opening to its closing.
 ///
 /// A clip does not hold its frames, and does nothing by itself. [`apply`](Self::apply) takes a command; then the clip asks for the frames that
-/// it [wants](Self::wanted), one after another. Labels of a frame are known once it was [looked at](Self::look_at).
+/// it [wants](Self::wanted), one after another: [`run`](Self::run) gives it all of them, and [`take`](Self::take) one. Labels of a frame are
+/// known when the frame is [looked at](Self::look_at).
 ///
 /// ```
 /// use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions};
@@ -184,12 +122,11 @@ struct Waiting {
 /// clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
 /// let strokes = (0..160 * 120).map(|p| if p % 160 < 8 { 1 } else { 255 }).collect();
 /// clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: 7, labels: strokes })]))?;
+/// clip.look_at(1);
 /// while let Some(wanted) = clip.wanted() {
 ///     clip.take(wanted.frame, &frames[wanted.frame], None)?;
 /// }
-/// clip.look_at(1);
-/// clip.take(1, &frames[1], None)?;
-/// let after = clip.labels(1).expect("it was looked at");
+/// let after = clip.labels(1).expect("it is looked at");
 /// assert!(after.objects.iter().any(|object| object.id == 7));
 /// clip.undo();
 /// assert!(clip.objects().iter().all(|object| object.number != 7));
@@ -249,111 +186,6 @@ impl Clip {
         }
     }
 
-    /// A clip from its journal, or from what [`save`](Self::save) gave. Steps whose result the journal does not have wait, and take effect
-    /// again. Reading ends at the first record that is cut off or damaged.
-    ///
-    /// # Errors
-    /// [`Error::InvalidOption`] for bytes that are no journal of a clip.
-    pub fn read(bytes: &[u8], options: OpenOptions) -> Result<Recovered> {
-        let reason = "it is no journal of a clip, or of another version".into();
-        let other = || Error::InvalidOption { name: "saved", reason };
-        let Some(mut reader) = Reader::new(bytes) else { return Err(other()) };
-        let Some((Kind::Open, mut content)) = reader.next() else { return Err(other()) };
-        let Some(frames) = usize::read(&mut content).filter(|&frames| frames <= MOST_FRAMES) else {
-            return Err(other());
-        };
-        let mut clip = Clip::of(frames, options, Log::new());
-        let mut is_damaged = false;
-        loop {
-            let before = reader.hash();
-            let Some((kind, content)) = reader.next() else { break };
-            if clip.replay(kind, content).is_none() {
-                reader.refuse(content, before);
-                is_damaged = true;
-                break;
-            }
-        }
-        clip.log = Log::after(&reader);
-        clip.history.forget(options.undo);
-        clip.advance();
-        clip.changed.clear();
-        Ok(Recovered { clip, used: reader.used, is_damaged: is_damaged || reader.is_damaged() })
-    }
-
-    /// Does again what a record says; `None` if that is not valid.
-    fn replay(&mut self, kind: Kind, content: &[u8]) -> Option<()> {
-        let mut rest = content;
-        let bytes = &mut rest;
-        match kind {
-            Kind::Open => return None,
-            Kind::Pairs => {
-                let (frame, pairs) = Saved::read(bytes)?;
-                self.pairs.insert(frame, pairs);
-            }
-            Kind::Command => {
-                let step: usize = Saved::read(bytes)?;
-                let command = Command::read(bytes)?;
-                self.note_step(step)?;
-                self.history.after(step as u32).is_none().then_some(())?;
-                self.wait(step as u32, command).ok()?;
-                let is_new = self.given.insert(step as u32, vec![(kind, Written(content.to_vec()))]).is_none();
-                is_new.then_some(())?;
-            }
-            Kind::Result => {
-                let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
-                let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
-                let parent = if is_first { 0 } else { parent as u32 };
-                (is_first || self.history.after(step as u32).is_none()).then_some(())?;
-                let before = self.history.after(parent)?;
-                let remembered = before.remembered.clone();
-                let segmented: Vec<usize> = difference.segmented().collect();
-                let clip = difference.applied(&before.clip)?;
-                let describes = Some(describes).filter(|&object| object > 0);
-                let state = State::new(step as u32, clip, remembered, describes, content.len());
-                self.forget_waiting(step as u32);
-                segmented.iter().for_each(|frame| drop(self.pairs.remove(frame)));
-                self.note_step(step)?;
-                match is_first {
-                    true => self.history = History::first(state),
-                    false => self.history.push(parent, state),
-                }
-            }
-            Kind::Current => {
-                let step: usize = Saved::read(bytes)?;
-                self.history.go_to(step as u32).then_some(())?;
-            }
-            Kind::Dropped => {
-                let step: usize = Saved::read(bytes)?;
-                self.forget_waiting(step as u32);
-            }
-            Kind::Range => {
-                let ([step, end], is_complete) = Saved::read(bytes)?;
-                let range = self.ranges.iter_mut().find(|range| range.step as usize == step)?;
-                match is_complete {
-                    true => range.is_complete = true,
-                    false => drop(range.finish(Some(end))),
-                }
-                self.given.get_mut(&(step as u32))?.push((kind, Written(content.to_vec())));
-            }
-            Kind::Shown => {
-                let (frame, shown): (usize, Shown) = Saved::read(bytes)?;
-                let state = self.history.current_mut();
-                state.clip.frames.get(frame)?.found.as_ref()?;
-                let [width, height] = state.clip.size;
-                shown.is_valid(width * height).then_some(())?;
-                state.remembered.insert(frame, Arc::new(shown));
-            }
-        }
-        bytes.is_empty().then_some(())
-    }
-
-    /// The next step follows one that was read.
-    fn note_step(&mut self, step: usize) -> Option<()> {
-        let step = u32::try_from(step).ok().filter(|&step| step < u32::MAX / 2)?;
-        self.next = self.next.max(step + 1);
-        Some(())
-    }
-
     /// Number of frames.
     pub fn len(&self) -> usize {
         self.state().clip.len()
@@ -393,12 +225,6 @@ impl Clip {
         self.note(step, Kind::Command, Written(content));
         self.advance();
         Ok(StepId(step))
-    }
-
-    /// Writes a record of a step that has not taken effect.
-    fn note(&mut self, step: u32, kind: Kind, content: Written) {
-        self.log.append(kind, &content);
-        self.given.entry(step).or_default().push((kind, content));
     }
 
     /// Checks what does not depend on the commands before.
@@ -534,6 +360,17 @@ impl Clip {
         Some(Wanted { frame, stage: Stage::Pairs, step: Some(StepId(range.step)) })
     }
 
+    /// Gives the clip all frames that it [wants](Self::wanted), as `read` reads them.
+    ///
+    /// # Errors
+    /// Those of `read` and of [`take`](Self::take). The clip then still wants that frame.
+    pub fn run<E: From<Error>>(&mut self, mut read: impl FnMut(usize) -> Result<Frame, E>) -> Result<(), E> {
+        while let Some(Wanted { frame, .. }) = self.wanted() {
+            self.take(frame, &read(frame)?, None)?;
+        }
+        Ok(())
+    }
+
     /// Takes a frame. One that is not [wanted](Self::wanted) changes nothing. `solved` are the pairs of the frame with the previous one, if
     /// [`solve_pair`](super::solve_pair) has solved them with the options of the range; others are not used.
     ///
@@ -563,142 +400,6 @@ impl Clip {
         }
         self.advance();
         Ok(())
-    }
-
-    /// Computes the labels of a frame.
-    fn describe(&mut self, index: usize, frame: &Frame) -> Result<()> {
-        let mark_unknown = self.options.mark_unknown;
-        let clip = self.clip_of(index);
-        let shown = Shown::of(&clip.described(index, frame, mark_unknown)?, clip.key(index, mark_unknown));
-        let is_running = self.is_changing(index);
-        let remembered = if is_running { &mut self.remembered } else { &mut self.history.current_mut().remembered };
-        remembered.insert(index, Arc::new(shown));
-        self.looked_at = None;
-        Ok(())
-    }
-
-    /// Asks for the labels of a frame before all other work, unless they are known or the frame is not segmented.
-    pub fn look_at(&mut self, index: usize) {
-        self.looked_at = Some(index).filter(|&index| self.is_unknown(index));
-    }
-
-    /// Whether a frame has masks, but its labels are not known.
-    fn is_unknown(&self, index: usize) -> bool {
-        let frame = self.state().clip.frames.get(index);
-        frame.is_some_and(|frame| frame.found.is_some()) && self.shown(index).is_none()
-    }
-
-    /// The labels and objects of a frame as they are now; `None` if they are not known, see [`look_at`](Self::look_at).
-    pub fn labels(&self, index: usize) -> Option<ClipFrame> {
-        self.shown(index).map(|shown| shown.frame(index))
-    }
-
-    fn shown(&self, index: usize) -> Option<&Shown> {
-        let known = if self.is_changing(index) { &self.remembered } else { &self.state().remembered };
-        let shown = known.get(&index)?;
-        (shown.key == self.clip_of(index).key(index, self.options.mark_unknown)).then_some(shown)
-    }
-
-    /// A draft of the newest frame of the range under way, from its own pairs alone, with numbers that may differ from those of the masks.
-    /// `None` if it was returned already.
-    pub fn preview(&mut self) -> Option<ClipFrame> {
-        self.ranges.front_mut()?.preview()
-    }
-
-    /// What is known of each frame.
-    pub fn frames(&self) -> Vec<FrameStatus> {
-        let clip = &self.state().clip;
-        let status = |(index, frame): (usize, &FrameState)| FrameStatus {
-            has_masks: frame.found.is_some(),
-            accepted: frame.accepted,
-            annotated: frame.annotation.is_some() || frame.exact.is_some(),
-            revision: clip.key(index, self.options.mark_unknown),
-        };
-        clip.frames.iter().enumerate().map(status).collect()
-    }
-
-    /// All objects that there have been, by number.
-    pub fn objects(&self) -> Vec<Object> {
-        let clip = &self.state().clip;
-        let Objects { locked, used, descriptions, .. } = &*clip.objects;
-        let annotated = clip.annotated();
-        let object = |number: u8| Object {
-            number,
-            description: descriptions.get(&number).cloned().unwrap_or_default(),
-            locked: locked[usize::from(number)],
-            annotated: annotated[usize::from(number)],
-            became: clip.objects.number(number),
-        };
-        (1..UNLABELLED).filter(|&number| used[usize::from(number)]).map(object).collect()
-    }
-
-    /// The lowest number that no object has had; `None` if none is left.
-    pub fn next_object(&self) -> Option<u8> {
-        self.state().clip.next_object()
-    }
-
-    /// The tracks of all objects in the frames whose labels are known.
-    pub fn tracks(&self) -> ClipTracks {
-        let mut tracks = Tracks::default();
-        for (index, shown) in (0..self.len()).filter_map(|index| Some((index, self.shown(index)?))) {
-            tracks.add(index, shown.objects(), shown.background());
-        }
-        tracks.value(self.state().clip.dropped())
-    }
-
-    /// What has happened since the last call.
-    pub fn take_events(&mut self) -> Events {
-        let is_idle = self.running.is_none() && self.waiting.is_empty() && self.ranges.is_empty();
-        if is_idle && self.log.length > 2 * self.log.compacted + GROWTH {
-            let compacted = self.compacted();
-            self.log.replace(compacted);
-        }
-        let (records, replaces) = self.log.take();
-        let frames = std::mem::take(&mut self.changed).into_iter().collect();
-        Events { records, replaces, frames, settled: std::mem::take(&mut self.settled) }
-    }
-
-    /// The bytes of this clip, for [`read`](Self::read): its states, what waits, and all labels that are known.
-    pub fn save(&self) -> Vec<u8> {
-        self.compacted().take().0
-    }
-
-    fn compacted(&self) -> Log {
-        let mut log = Log::new();
-        log.append(Kind::Open, &self.len());
-        let empty = Clip::of(self.len(), self.options, Log::new()).history.current().clip.clone();
-        let mut before = (0, &empty);
-        for (k, state) in self.history.states().iter().enumerate() {
-            let difference = Difference::between(before.1, &mut state.clip.clone());
-            log.append(Kind::Result, &result(state.step, before.0, &difference, state.describes, k == 0));
-            before = (state.step, &state.clip);
-        }
-        let current = self.state();
-        log.append(Kind::Current, &(current.step as usize));
-        let is_valid = |index: &usize| self.is_known(*index, current);
-        for (index, shown) in current.remembered.iter().filter(|(index, _)| is_valid(index)) {
-            log.append(Kind::Shown, &(*index, shown.clone()));
-        }
-        self.pairs.iter().for_each(|(index, pairs)| log.append(Kind::Pairs, &(*index, pairs.clone())));
-        self.given.values().flatten().for_each(|(kind, content)| log.append(*kind, content));
-        log
-    }
-
-    fn is_known(&self, index: usize, state: &State) -> bool {
-        let key = || state.clip.key(index, self.options.mark_unknown);
-        state.remembered.get(&index).is_some_and(|shown| shown.key == key())
-    }
-
-    /// The clip with the masks of a frame: as the command under way has left it, if it has changed this frame.
-    fn clip_of(&self, index: usize) -> &SegmentedClip {
-        match &self.running {
-            Some(running) if running.has_changed(index) => &running.clip,
-            _ => &self.state().clip,
-        }
-    }
-
-    fn is_changing(&self, index: usize) -> bool {
-        self.running.as_ref().is_some_and(|running| running.has_changed(index))
     }
 
     fn state(&self) -> &State {
@@ -737,13 +438,6 @@ impl Clip {
                 return;
             }
         }
-    }
-
-    /// The command of a step that has not taken effect.
-    fn command(&self, step: u32) -> Option<Command> {
-        let (_, Written(content)) = self.given.get(&step)?.first()?;
-        let (_, command): (usize, Command) = Saved::read(&mut &content[..])?;
-        Some(command)
     }
 
     fn has_complete_range(&self) -> bool {
@@ -811,37 +505,4 @@ impl Clip {
         let differs = |&index: &usize| before.key(index, false) != now.key(index, false);
         self.changed.extend((0..now.len()).filter(differs));
     }
-}
-
-/// Largest number of frames of a clip that is read.
-const MOST_FRAMES: usize = 1 << 20;
-
-/// A content of a record that is written already.
-#[derive(Clone, Debug)]
-struct Written(Vec<u8>);
-
-impl Saved for Written {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.0);
-    }
-
-    fn read(bytes: &mut &[u8]) -> Option<Written> {
-        Some(Written(std::mem::take(bytes).to_vec()))
-    }
-}
-
-/// The content of a record of where a range ends, and whether all its frames have been in.
-fn range_record(step: u32, end: usize, is_complete: bool) -> Written {
-    let mut bytes = Vec::new();
-    ([step as usize, end], is_complete).write(&mut bytes);
-    Written(bytes)
-}
-
-/// The content of a record of what a step has changed.
-fn result(step: u32, parent: u32, difference: &Difference, describes: Option<u8>, is_first: bool) -> Written {
-    let mut bytes = Vec::new();
-    [step as usize, parent as usize].write(&mut bytes);
-    difference.write(&mut bytes);
-    (describes.unwrap_or(0), is_first).write(&mut bytes);
-    Written(bytes)
 }

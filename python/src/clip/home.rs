@@ -18,9 +18,6 @@ pub(crate) struct Home {
     settled: Vec<Settled>,
 }
 
-/// No frame: a clip that looks at it looks at none.
-const NOWHERE: usize = usize::MAX;
-
 impl Home {
     /// A clip of so many frames: a new one, or what was saved or is in the journal. Returns it with a sentence about what could not be read.
     pub(crate) fn open(
@@ -123,7 +120,7 @@ impl Home {
     pub(crate) fn needs(&mut self, index: usize) -> bool {
         self.clip.look_at(index);
         let needs = self.clip.wanted().is_some_and(|wanted| wanted.stage == Stage::Labels);
-        self.clip.look_at(NOWHERE);
+        self.clip.look_at(None);
         needs
     }
 
@@ -145,7 +142,7 @@ impl Home {
     pub(crate) fn labels_of(&mut self, index: usize, frame: &Frame) -> Result<ClipFrame, Failure> {
         self.clip.look_at(index);
         let taken = self.take(index, frame);
-        self.clip.look_at(NOWHERE);
+        self.clip.look_at(None);
         taken?;
         self.clip.labels(index).ok_or_else(|| Failure::internal(format!("the labels of frame {index} are not there")))
     }

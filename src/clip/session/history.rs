@@ -84,13 +84,19 @@ impl History {
         self.current = at + 1;
     }
 
-    /// Forgets the oldest states whose differences take more than so many bytes.
+    /// Bytes of all states, without what they share.
+    pub(super) fn bytes(&self) -> usize {
+        self.states.iter().map(|state| state.bytes).sum()
+    }
+
+    /// Forgets the oldest states if the differences of all take more than so many bytes.
     pub(super) fn forget(&mut self, budget: usize) {
-        let mut bytes: usize = self.states.iter().skip(1).map(|state| state.bytes).sum();
+        let bytes = |k: usize| self.states[k].bytes + self.states[k].labels_unlike(&self.states[k - 1]);
+        let mut bytes: Vec<usize> = (1..self.states.len()).map(bytes).collect();
         let mut count = 0;
-        while count < self.current && bytes > budget {
+        while count < self.current && bytes.iter().sum::<usize>() > budget {
+            bytes[count] = 0;
             count += 1;
-            bytes -= self.states[count].bytes;
         }
         self.states.drain(..count);
         self.current -= count;
@@ -111,6 +117,13 @@ impl History {
 }
 
 impl State {
+    /// Bytes of the labels that another state remembers and this one does not.
+    fn labels_unlike(&self, before: &State) -> usize {
+        let is_same =
+            |index: &usize, shown: &Arc<Shown>| self.remembered.get(index).is_some_and(|own| Arc::ptr_eq(own, shown));
+        before.remembered.iter().filter(|(index, shown)| !is_same(index, shown)).map(|(_, shown)| shown.bytes()).sum()
+    }
+
     pub(super) fn new(
         step: u32,
         clip: SegmentedClip,

@@ -62,10 +62,16 @@ impl Log {
         Log { records: HEAD.to_vec(), last: 0, length: HEAD.len(), compacted: 0, replaces: true }
     }
 
-    /// A log that goes on after the records that were read.
-    pub(super) fn after(reader: &Reader<'_>) -> Log {
-        let length = reader.used;
-        Log { records: Vec::new(), last: reader.last, length, compacted: 0, replaces: false }
+    /// A new log of about so many bytes.
+    pub(super) fn with_capacity(bytes: usize) -> Log {
+        let mut log = Log::new();
+        log.records.reserve(bytes);
+        log
+    }
+
+    /// A log that goes on after the records that were read, of which about so many bytes are still needed.
+    pub(super) fn after(reader: &Reader<'_>, compacted: usize) -> Log {
+        Log { records: Vec::new(), last: reader.last, length: reader.used, compacted, replaces: false }
     }
 
     pub(super) fn append(&mut self, kind: Kind, content: &impl Saved) {

@@ -41,6 +41,11 @@ impl Shown {
         self.background
     }
 
+    /// About how much memory it takes.
+    pub(super) fn bytes(&self) -> usize {
+        self.labels.bytes() + size_of_val(&self.objects[..])
+    }
+
     /// Whether the labels fill so many pixels.
     pub(super) fn is_valid(&self, pixels: usize) -> bool {
         self.labels.is_valid(pixels)

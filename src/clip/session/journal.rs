@@ -1,0 +1,251 @@
+//! The journal of a clip: what is written, when it is compacted, and how a clip is read from it.
+
+use std::sync::Arc;
+
+use super::history::{Difference, History, State};
+use super::log::{Kind, Log, Reader};
+use super::shown::Shown;
+use super::{Clip, OpenOptions, StepId};
+use crate::clip::changes::Changed;
+use crate::clip::command::Command;
+use crate::clip::saved::Saved;
+use crate::error::{Error, Result};
+
+/// A log that has grown by so many bytes, and to twice its size, since it was compacted is compacted again.
+const GROWTH: usize = 1 << 20;
+
+/// Largest number of frames of a clip that is read.
+const MOST_FRAMES: usize = 1 << 20;
+
+/// What has happened in a [`Clip`] since the events were taken last.
+#[non_exhaustive]
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Events {
+    /// Records for the journal. They have to be kept before anything else is told to anyone: what is kept can be read again.
+    pub records: Vec<u8>,
+    /// Whether the records take the place of the journal so far; otherwise they are appended to it.
+    pub replaces: bool,
+    /// Indices of the frames whose labels have changed, in ascending order.
+    pub frames: Vec<usize>,
+    /// Steps that have taken effect or failed, in order.
+    pub settled: Vec<Settled>,
+}
+
+/// A step that has taken effect or failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// The step.
+    pub step: StepId,
+    /// What objects have gained and lost, or why nothing has changed.
+    pub changes: Result<Vec<Changed>>,
+}
+
+/// A [`Clip`] that was read from a journal.
+#[derive(Debug)]
+pub struct Recovered {
+    /// The clip.
+    pub clip: Clip,
+    /// Number of bytes that were read. What follows was not written completely, or is damaged, and has to be cut off before more is appended.
+    pub used: usize,
+    /// Whether what follows is damaged: steps that had been kept are lost.
+    pub is_damaged: bool,
+}
+
+/// A content of a record that is written already.
+#[derive(Clone, Debug)]
+pub(super) struct Written(pub(super) Vec<u8>);
+
+impl Saved for Written {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.0);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Written> {
+        Some(Written(std::mem::take(bytes).to_vec()))
+    }
+}
+
+/// The content of a record of where a range ends, and whether all its frames have been in.
+pub(super) fn range_record(step: u32, end: usize, is_complete: bool) -> Written {
+    let mut bytes = Vec::new();
+    ([step as usize, end], is_complete).write(&mut bytes);
+    Written(bytes)
+}
+
+/// The content of a record of what a step has changed.
+pub(super) fn result(
+    step: u32,
+    parent: u32,
+    difference: &Difference,
+    describes: Option<u8>,
+    is_first: bool,
+) -> Written {
+    let mut bytes = Vec::new();
+    [step as usize, parent as usize].write(&mut bytes);
+    difference.write(&mut bytes);
+    (describes.unwrap_or(0), is_first).write(&mut bytes);
+    Written(bytes)
+}
+
+impl Clip {
+    /// A clip from its journal, or from what [`save`](Self::save) gave. Steps whose result the journal does not have wait, and take effect
+    /// again. Reading ends at the first record that is cut off or damaged.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for bytes that are no journal of a clip.
+    pub fn read(bytes: &[u8], options: OpenOptions) -> Result<Recovered> {
+        let reason = "it is no journal of a clip, or of another version".into();
+        let other = || Error::InvalidOption { name: "saved", reason };
+        let Some(mut reader) = Reader::new(bytes) else { return Err(other()) };
+        let Some((Kind::Open, mut content)) = reader.next() else { return Err(other()) };
+        let Some(frames) = usize::read(&mut content).filter(|&frames| frames <= MOST_FRAMES) else {
+            return Err(other());
+        };
+        let mut clip = Clip::of(frames, options, Log::new());
+        let mut is_damaged = false;
+        loop {
+            let before = reader.hash();
+            let Some((kind, content)) = reader.next() else { break };
+            if clip.replay(kind, content).is_none() {
+                reader.refuse(content, before);
+                is_damaged = true;
+                break;
+            }
+        }
+        clip.history.forget(options.undo);
+        clip.log = Log::after(&reader, clip.history.bytes());
+        clip.advance();
+        clip.changed.clear();
+        Ok(Recovered { clip, used: reader.used, is_damaged: is_damaged || reader.is_damaged() })
+    }
+
+    /// Does again what a record says; `None` if that is not valid.
+    fn replay(&mut self, kind: Kind, content: &[u8]) -> Option<()> {
+        let mut rest = content;
+        let bytes = &mut rest;
+        match kind {
+            Kind::Open => return None,
+            Kind::Pairs => {
+                let (frame, pairs) = Saved::read(bytes)?;
+                self.pairs.insert(frame, pairs);
+            }
+            Kind::Command => {
+                let step: usize = Saved::read(bytes)?;
+                let command = Command::read(bytes)?;
+                self.note_step(step)?;
+                self.history.after(step as u32).is_none().then_some(())?;
+                self.wait(step as u32, command).ok()?;
+                let is_new = self.given.insert(step as u32, vec![(kind, Written(content.to_vec()))]).is_none();
+                is_new.then_some(())?;
+            }
+            Kind::Result => {
+                let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
+                let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
+                let parent = if is_first { 0 } else { parent as u32 };
+                (is_first || self.history.after(step as u32).is_none()).then_some(())?;
+                let before = self.history.after(parent)?;
+                let remembered = before.remembered.clone();
+                let segmented: Vec<usize> = difference.segmented().collect();
+                let clip = difference.applied(&before.clip)?;
+                let describes = Some(describes).filter(|&object| object > 0);
+                let state = State::new(step as u32, clip, remembered, describes, content.len());
+                self.forget_waiting(step as u32);
+                segmented.iter().for_each(|frame| drop(self.pairs.remove(frame)));
+                self.note_step(step)?;
+                match is_first {
+                    true => self.history = History::first(state),
+                    false => self.history.push(parent, state),
+                }
+            }
+            Kind::Current => {
+                let step: usize = Saved::read(bytes)?;
+                self.history.go_to(step as u32).then_some(())?;
+            }
+            Kind::Dropped => {
+                let step: usize = Saved::read(bytes)?;
+                self.forget_waiting(step as u32);
+            }
+            Kind::Range => {
+                let ([step, end], is_complete) = Saved::read(bytes)?;
+                let range = self.ranges.iter_mut().find(|range| range.step as usize == step)?;
+                match is_complete {
+                    true => range.is_complete = true,
+                    false => drop(range.finish(Some(end))),
+                }
+                self.given.get_mut(&(step as u32))?.push((kind, Written(content.to_vec())));
+            }
+            Kind::Shown => {
+                let (frame, shown): (usize, Shown) = Saved::read(bytes)?;
+                let state = self.history.current_mut();
+                state.clip.frames.get(frame)?.found.as_ref()?;
+                let [width, height] = state.clip.size;
+                shown.is_valid(width * height).then_some(())?;
+                state.remembered.insert(frame, Arc::new(shown));
+            }
+        }
+        bytes.is_empty().then_some(())
+    }
+
+    /// The next step follows one that was read.
+    fn note_step(&mut self, step: usize) -> Option<()> {
+        let step = u32::try_from(step).ok().filter(|&step| step < u32::MAX / 2)?;
+        self.next = self.next.max(step + 1);
+        Some(())
+    }
+
+    /// What has happened since the last call.
+    pub fn take_events(&mut self) -> Events {
+        let is_idle = self.running.is_none() && self.waiting.is_empty() && self.ranges.is_empty();
+        if is_idle && self.log.length > 2 * self.log.compacted + GROWTH {
+            let compacted = self.compacted();
+            self.log.replace(compacted);
+        }
+        let (records, replaces) = self.log.take();
+        let frames = std::mem::take(&mut self.changed).into_iter().collect();
+        Events { records, replaces, frames, settled: std::mem::take(&mut self.settled) }
+    }
+
+    /// The bytes of this clip, for [`read`](Self::read): its states, what waits, and all labels that are known.
+    pub fn save(&self) -> Vec<u8> {
+        self.compacted().take().0
+    }
+
+    fn compacted(&self) -> Log {
+        let mut log = Log::with_capacity(self.history.bytes());
+        log.append(Kind::Open, &self.len());
+        let empty = Clip::of(self.len(), self.options, Log::new()).history.current().clip.clone();
+        let mut before = (0, &empty);
+        for (k, state) in self.history.states().iter().enumerate() {
+            let difference = Difference::between(before.1, &mut state.clip.clone());
+            log.append(Kind::Result, &result(state.step, before.0, &difference, state.describes, k == 0));
+            before = (state.step, &state.clip);
+        }
+        let current = self.state();
+        log.append(Kind::Current, &(current.step as usize));
+        let is_valid = |index: &usize| self.is_known(*index, current);
+        for (index, shown) in current.remembered.iter().filter(|(index, _)| is_valid(index)) {
+            log.append(Kind::Shown, &(*index, shown.clone()));
+        }
+        self.pairs.iter().for_each(|(index, pairs)| log.append(Kind::Pairs, &(*index, pairs.clone())));
+        self.given.values().flatten().for_each(|(kind, content)| log.append(*kind, content));
+        log
+    }
+
+    fn is_known(&self, index: usize, state: &State) -> bool {
+        let key = || state.clip.key(index, self.options.mark_unknown);
+        state.remembered.get(&index).is_some_and(|shown| shown.key == key())
+    }
+
+    /// Writes a record of a step that has not taken effect.
+    pub(super) fn note(&mut self, step: u32, kind: Kind, content: Written) {
+        self.log.append(kind, &content);
+        self.given.entry(step).or_default().push((kind, content));
+    }
+
+    /// The command of a step that has not taken effect.
+    pub(super) fn command(&self, step: u32) -> Option<Command> {
+        let (_, Written(content)) = self.given.get(&step)?.first()?;
+        let (_, command): (usize, Command) = Saved::read(&mut &content[..])?;
+        Some(command)
+    }
+}

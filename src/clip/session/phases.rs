@@ -1,0 +1,207 @@
+//! The phases of each command, and what needs no frame, at once.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::sync::Arc;
+
+use super::combined::{combined, over, uncover, uncover_under};
+use super::steps::{Phase, invalid};
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::{Accepted, Annotations, Painted, Spread, is_object};
+use crate::clip::command::{Annotation, Command, Declaration};
+use crate::clip::description::ClipFrame;
+use crate::clip::frame_state::FrameState;
+use crate::clip::objects::{Description, Objects};
+use crate::clip::segmented_clip::SegmentedClip;
+use crate::components::{Connectivity, components};
+use crate::error::{Error, Result};
+use crate::order::descending;
+
+/// The phases of a command. What needs no frame takes effect at once.
+pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDeque<Phase>> {
+    let annotations = match command {
+        Command::Segment { .. } => return Ok(VecDeque::new()),
+        Command::Annotate(annotations) => return annotate(clip, annotations),
+        Command::ReplaceAnnotations(all) => return replace(clip, all),
+        Command::Clear { frame, object } => {
+            let object = object.map(|object| current_number(clip, object)).transpose()?;
+            if let Some(object) = locked_above(clip, frame, object) {
+                return Err(Error::ObjectLocked { object });
+            }
+            uncover(clip, frame, object);
+            Annotations { cleared: vec![(frame, object)], accepted: reopened(clip, &[frame]), ..Annotations::default() }
+        }
+        Command::Accept { frames, on } => {
+            let stays = |index: &usize| clip.frames[*index].accepted && (on || !frames.contains(index));
+            let mut accepted: Vec<usize> = (0..clip.len()).filter(stays).collect();
+            let is_new = |index: &&usize| on && !clip.frames[**index].accepted;
+            accepted.extend(frames.iter().filter(is_new).collect::<BTreeSet<_>>());
+            Annotations { accepted: Some(accepted_as_shown(accepted)), ..Annotations::default() }
+        }
+        Command::Lock { objects, on } => {
+            let objects = known_objects(clip, &objects)?;
+            let is_locked = |object: u8| clip.objects.locked[usize::from(object)];
+            let stays = |object: &u8| if objects.contains(object) { on } else { is_locked(*object) };
+            Annotations { locked: Some((1..UNLABELLED).filter(stays).collect()), ..Annotations::default() }
+        }
+        Command::Describe { object, description, .. } => {
+            let [object] = known_objects(clip, &[object])?[..] else { return Ok(VecDeque::new()) };
+            describe(clip, object, description);
+            return Ok(VecDeque::new());
+        }
+        Command::Merge(objects) => {
+            let objects = known_objects(clip, &objects)?;
+            Annotations { numbers: merged(&objects), ..Annotations::default() }
+        }
+        Command::Delete(objects) => {
+            let objects = known_objects(clip, &objects)?;
+            Annotations { numbers: deleted(&objects), ..Annotations::default() }
+        }
+        Command::Split { object, frame } => {
+            let [object] = known_objects(clip, &[object])?[..] else { return Ok(VecDeque::new()) };
+            if clip.objects.locked[usize::from(object)] {
+                return Err(Error::ObjectLocked { object });
+            }
+            return Ok(VecDeque::from([Phase::Split { object, frame }]));
+        }
+    };
+    Ok(VecDeque::from([Phase::Annotate(annotations)]))
+}
+
+fn merged(objects: &[u8]) -> Vec<[u8; 2]> {
+    let into = objects.first().copied().unwrap_or(0);
+    objects.iter().filter(|&&object| object != into).map(|&object| [object, into]).collect()
+}
+
+fn deleted(objects: &[u8]) -> Vec<[u8; 2]> {
+    objects.iter().map(|&object| [object, 0]).collect()
+}
+
+pub(super) fn accepted_as_shown(frames: Vec<usize>) -> Vec<Accepted> {
+    frames.into_iter().map(|frame| Accepted { frame, labels: None }).collect()
+}
+
+/// The number under which an object goes on if it was merged.
+pub(super) fn current_number(clip: &SegmentedClip, object: u8) -> Result<u8> {
+    if !is_object(object) {
+        return invalid("object", format!("{object} is no number of an object: these are 1 to 254"));
+    }
+    match clip.objects.number(object) {
+        0 => invalid("object", format!("object {object} was deleted, and its number is not given again")),
+        number => Ok(number),
+    }
+}
+
+/// The current numbers of objects, each once. All have to be there.
+fn known_objects(clip: &SegmentedClip, objects: &[u8]) -> Result<Vec<u8>> {
+    let mut known = Vec::new();
+    for &object in objects {
+        let number = current_number(clip, object)?;
+        if !clip.objects.used[usize::from(number)] {
+            return invalid("object", format!("there is no object {object}"));
+        }
+        if !known.contains(&number) {
+            known.push(number);
+        }
+    }
+    Ok(known)
+}
+
+fn describe(clip: &mut SegmentedClip, object: u8, description: Description) {
+    let objects = clip.objects_mut();
+    let is_named = !description.name.is_empty();
+    objects.describe(object, description);
+    // An object is named with those that were merged into it.
+    for k in (0..objects.named.len()).filter(|&k| k == usize::from(object) || objects.numbers[k] == object) {
+        objects.named[k] = is_named;
+    }
+}
+
+/// The accepted frames without some that are annotated; `None` if none of these is accepted.
+fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> {
+    if !annotated.iter().any(|&index| clip.frames[index].accepted) {
+        return None;
+    }
+    let stays = |index: &usize| clip.frames[*index].accepted && !annotated.contains(index);
+    Some(accepted_as_shown((0..clip.len()).filter(stays).collect()))
+}
+
+/// A locked object that was drawn exactly in a frame, among all or only the given one.
+fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Option<u8> {
+    let mut labels = clip.frames[frame].exact.as_ref()?.each().map(|(label, _)| label);
+    let is_locked = |label: &u8| clip.objects.locked[usize::from(*label)];
+    let number = |label: u8| clip.objects.number(label);
+    labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
+}
+/// The phases of annotations.
+fn annotate(clip: &mut SegmentedClip, all: Vec<Annotation>) -> Result<VecDeque<Phase>> {
+    let frames: Vec<usize> = all.iter().map(|annotation| annotation.frame).collect();
+    let (annotations, draws) = combined(clip, all)?;
+    for Painted { frame, object, labels, .. } in &annotations.corrections {
+        uncover_under(clip, *frame, *object, labels);
+    }
+    let annotations = Annotations { accepted: reopened(clip, &frames), ..annotations };
+    Ok(std::iter::once(Phase::Annotate(annotations)).chain(draws).collect())
+}
+/// The phases that replace all that a person has said.
+fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>> {
+    let Declaration { annotations, locked, described, merged: groups, deleted: gone, accepted } = all;
+    let objects = Objects::new(clip.objects.dropped);
+    let before = std::mem::replace(&mut clip.objects, Arc::new(objects));
+    let mut seen: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    for (index, frame) in clip.frames.iter_mut().enumerate() {
+        let FrameState { layer, accepted: was_accepted, .. } = &*frame;
+        if let Some(layer) = layer.as_ref().filter(|_| *was_accepted && accepted.contains(&index)) {
+            seen.insert(index, layer.labels.map(|label| before.number(label)).values());
+        }
+        *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
+    }
+    let (annotations, draws) = combined(clip, annotations)?;
+    for (object, description) in described {
+        let object = current_number(clip, object)?;
+        describe(clip, object, description);
+    }
+    let mut numbers: Vec<[u8; 2]> = groups.iter().flat_map(|group| merged(group)).collect();
+    numbers.extend(deleted(&gone));
+    let accepted = accepted.into_iter().map(|frame| {
+        let given = annotations.masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
+        let labels = seen.remove(&frame).map(|seen| match given {
+            Some(given) => over(Some(seen), given),
+            None => seen,
+        });
+        Accepted { frame, labels }
+    });
+    let accepted = accepted.collect();
+    let annotations = Annotations { accepted: Some(accepted), locked: Some(locked), numbers, ..annotations };
+    Ok(std::iter::once(Phase::Annotate(annotations)).chain(draws).collect())
+}
+
+/// The annotations that make a new object of all pieces of an object but the largest.
+pub(super) fn split(clip: &SegmentedClip, shown: &ClipFrame, object: u8) -> Result<Annotations> {
+    let (frame, width) = (shown.index, clip.size[0]);
+    let inside: Vec<u8> = shown.labels.iter().map(|&label| u8::from(label == object)).collect();
+    let parts = components(&inside, width, Connectivity::Eight);
+    let order = descending(parts.list.iter().map(|part| if part.label > 0 { part.size as f64 } else { 0.0 }));
+    let largest = order.first().copied().unwrap_or(0);
+    let is_other = |p: usize| inside[p] > 0 && parts.of[p] as usize != largest;
+    if !(0..inside.len()).any(is_other) {
+        return invalid("object", format!("object {object} is in one piece in frame {frame}"));
+    }
+    let Some(new) = clip.next_object() else {
+        return invalid("object", "no number is left for another object".into());
+    };
+    let labels =
+        |label: u8, elsewhere: u8| (0..inside.len()).map(|p| if is_other(p) { label } else { elsewhere }).collect();
+    let mut corrections = Vec::new();
+    // An object that a person has not spoken of gives way by itself.
+    if clip.protected()[usize::from(object)] || clip.frames.iter().any(|frame| frame.anchors(object)) {
+        let own = clip.frames[frame].annotation.as_ref().and_then(|of| of.painted_of(object));
+        corrections.push(Painted {
+            frame,
+            object: Some(object),
+            labels: over(own, labels(0, UNLABELLED)),
+            spread: Spread::Both,
+        });
+    }
+    corrections.push(Painted { frame, object: Some(new), labels: labels(new, 0), spread: Spread::Both });
+    Ok(Annotations { corrections, accepted: reopened(clip, &[frame]), ..Annotations::default() })
+}
