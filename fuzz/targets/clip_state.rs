@@ -4,7 +4,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use veronese::clip::{Annotation, Clip, Click, Command, Content, OpenOptions, Spread};
+use veronese::clip::{Annotation, Click, Clip, Command, Content, OpenOptions, Spread};
 use veronese_fuzz::{Edit, check_opened, edited, known, known_options, run};
 
 fuzz_target!(|edits: Vec<Edit>| {
@@ -26,7 +26,10 @@ fuzz_target!(|edits: Vec<Edit>| {
     let one = |content| Annotation::new(index, content);
     let commands = [
         Command::Annotate(vec![one(Content::Strokes { object: 7, labels: labels.clone() })]),
-        Command::Annotate(vec![Annotation { spread: Spread::Exact, ..one(Content::Mask { object: 1, labels: labels.clone() }) }]),
+        Command::Annotate(vec![Annotation {
+            spread: Spread::Exact,
+            ..one(Content::Mask { object: 1, labels: labels.clone() })
+        }]),
         Command::Annotate(vec![one(Content::Given(labels)), one(Content::Prompt { object: 1, clicks, within: None })]),
         Command::Accept { frames: vec![2], on: true },
         Command::Merge(vec![7, 1]),

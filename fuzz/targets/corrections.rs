@@ -3,9 +3,7 @@
 
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use libfuzzer_sys::fuzz_target;
-use veronese::clip::{
-    Annotation, Click, Clip, Command, Content, Declaration, Description, OpenOptions, Spread,
-};
+use veronese::clip::{Annotation, Click, Clip, Command, Content, Declaration, Description, OpenOptions, Spread};
 use veronese::{Error, Frame};
 use veronese_fuzz::{Choices, check_opened, known, run};
 
@@ -113,8 +111,9 @@ fn annotations(parts: &[Part<'_>]) -> Vec<Annotation> {
             Kind::Map(labels) => Content::Labels(labels.pixels()),
             Kind::Given(labels) => Content::Given(labels.pixels()),
             Kind::Prompt { clicks, within } => {
-                let click = |(at, inside): &([u8; 2], bool)| {
-                    Click { at: at.map(|place| usize::from(place % 36)), inside: *inside }
+                let click = |(at, inside): &([u8; 2], bool)| Click {
+                    at: at.map(|place| usize::from(place % 36)),
+                    inside: *inside,
                 };
                 let within = within.map(|sides| sides.map(|side| usize::from(side % 36)));
                 Content::Prompt { object, clicks: clicks.iter().take(MOST).map(click).collect(), within }

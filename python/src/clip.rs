@@ -4,8 +4,8 @@
 //! thread that keeps the clip.
 
 mod annotations;
-mod home;
 mod journal;
+mod journaled;
 mod source;
 pub(crate) mod stream;
 
@@ -21,7 +21,7 @@ use crate::errors::Failure;
 use crate::options::{self, index, invalid, object};
 use crate::results;
 use crate::worker::Worker;
-use home::Home;
+use journaled::JournaledClip;
 use source::Source;
 
 /// An argument that may be left out.
@@ -45,8 +45,8 @@ pub(crate) fn open_clip(
     };
     let is_kept = journal.is_some();
     let options = OpenOptions::default().with_mark_unknown(mark_unknown);
-    let (home, warning) = py.detach(|| Home::open(length, saved.as_deref(), journal, options))?;
-    let mut clip = Clip { worker: Some(Worker::start(home)?), source, length, is_kept };
+    let (kept, warning) = py.detach(|| JournaledClip::open(length, saved.as_deref(), journal, options))?;
+    let mut clip = Clip { worker: Some(Worker::start(kept)?), source, length, is_kept };
     if let Some(warning) = warning {
         let warnings = py.import("warnings")?;
         warnings.call_method1("warn", (warning, py.get_type::<PyUserWarning>(), 2))?;
@@ -62,7 +62,7 @@ pub(crate) fn open_clip(
 #[pyclass(module = "veronese")]
 pub(crate) struct Clip {
     /// `None` when the clip is closed.
-    worker: Option<Worker<Home>>,
+    worker: Option<Worker<JournaledClip>>,
     source: Source,
     /// Number of frames.
     length: usize,
@@ -126,7 +126,7 @@ impl Clip {
         annotations: &Bound<'_, PyTuple>,
         progress: Optional<'_, '_>,
     ) -> Changes<'py> {
-        let size = self.call(py, |home| Ok(home.clip.size()))?;
+        let size = self.call(py, |kept| Ok(kept.clip.size()))?;
         self.change(py, Command::Annotate(annotations::annotations(annotations, size)?), progress)
     }
 
@@ -187,51 +187,51 @@ impl Clip {
 
     /// Takes back the last step. Returns whether there was one.
     fn undo(&mut self, py: Python<'_>) -> PyResult<bool> {
-        self.call(py, |home| home.with(|clip| clip.undo()))
+        self.call(py, |kept| kept.with(|clip| clip.undo()))
     }
 
     /// Does again the step that was taken back last. Returns whether there was one.
     fn redo(&mut self, py: Python<'_>) -> PyResult<bool> {
-        self.call(py, |home| home.with(|clip| clip.redo()))
+        self.call(py, |kept| kept.with(|clip| clip.redo()))
     }
 
     /// The labels and objects of a frame.
     fn labels<'py>(&mut self, py: Python<'py>, frame: &Bound<'_, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let frame = index("frame", frame)?;
-        let labels = match self.call(py, move |home| home.labels(frame))? {
+        let labels = match self.call(py, move |kept| kept.labels(frame))? {
             Some(labels) => labels,
-            None => self.read(py, frame, Home::labels_of)?,
+            None => self.read(py, frame, JournaledClip::labels_of)?,
         };
-        let size = self.call(py, |home| Ok(home.clip.size()))?;
+        let size = self.call(py, |kept| Ok(kept.clip.size()))?;
         results::clip_frame(py, labels, size)
     }
 
     /// All objects that there have been.
     #[getter]
     fn objects<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        results::clip_entries(py, &self.call(py, |home| Ok(home.clip.objects()))?)
+        results::clip_entries(py, &self.call(py, |kept| Ok(kept.clip.objects()))?)
     }
 
     /// What is known of each frame.
     #[getter]
     fn frames<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        results::frame_statuses(py, &self.call(py, |home| Ok(home.clip.frames()))?)
+        results::frame_statuses(py, &self.call(py, |kept| Ok(kept.clip.frames()))?)
     }
 
     /// The lowest number that no object has had.
     #[getter]
     fn next_object(&self, py: Python<'_>) -> PyResult<Option<u8>> {
-        self.call(py, |home| Ok(home.clip.next_object()))
+        self.call(py, |kept| Ok(kept.clip.next_object()))
     }
 
     /// The tracks of all objects in all frames that have masks.
     fn tracks<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         for index in 0..self.length {
-            if self.call(py, move |home| Ok(home.needs(index)))? {
-                self.read(py, index, Home::labels_of)?;
+            if self.call(py, move |kept| Ok(kept.needs(index)))? {
+                self.read(py, index, JournaledClip::labels_of)?;
             }
         }
-        let tracks = self.call(py, |home| Ok(home.clip.tracks()))?;
+        let tracks = self.call(py, |kept| Ok(kept.clip.tracks()))?;
         let objects = tracks.objects.iter().map(|track| {
             let seen = track.frames.iter().map(|(frame, object)| (*frame, object));
             (track.id, seen.collect())
@@ -241,15 +241,15 @@ impl Clip {
 
     /// The clip as bytes.
     fn save<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let saved = self.call(py, |home| Ok(home.clip.save()))?;
+        let saved = self.call(py, |kept| Ok(kept.clip.save()))?;
         Ok(PyBytes::new(py, &saved))
     }
 
     /// Frees what the clip holds. Its journal can be opened again when this returns.
     fn close(&mut self, py: Python<'_>) -> PyResult<()> {
         let Some(worker) = self.worker.take().filter(|_| self.is_kept) else { return Ok(()) };
-        let closed = worker.call(py, |home| {
-            home.journal = None;
+        let closed = worker.call(py, |kept| {
+            kept.journal = None;
             Ok(())
         });
         // A worker that is lost has no journal; an interruption is passed on.
@@ -279,7 +279,7 @@ impl Clip {
     fn call<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Home) -> Result<R, Failure> + Send + 'static,
+        work: impl FnOnce(&mut JournaledClip) -> Result<R, Failure> + Send + 'static,
     ) -> PyResult<R> {
         match &self.worker {
             Some(worker) => worker.call(py, work),
@@ -292,11 +292,11 @@ impl Clip {
         &self,
         py: Python<'_>,
         index: usize,
-        work: impl FnOnce(&mut Home, usize, &veronese::Frame) -> Result<R, Failure> + Send + 'static,
+        work: impl FnOnce(&mut JournaledClip, usize, &veronese::Frame) -> Result<R, Failure> + Send + 'static,
     ) -> PyResult<R> {
         let gone = || Failure::input(format!("frame {index} is not there any more"));
         let frame = self.source.frame(py, index)?.ok_or_else(gone)?;
-        self.call(py, move |home| work(home, index, &frame))
+        self.call(py, move |kept| work(kept, index, &frame))
     }
 
     /// Runs a command. Returns what it has changed.
@@ -306,13 +306,13 @@ impl Clip {
 
     /// Runs a command until it has taken effect. If that ends early, it is taken back.
     fn run(&mut self, py: Python<'_>, command: Command, progress: Optional<'_, '_>) -> PyResult<Vec<Changed>> {
-        let done = self.call(py, move |home| home.apply(command)).and_then(|()| {
+        let done = self.call(py, move |kept| kept.apply(command)).and_then(|()| {
             let failure = self.work(py, progress)?;
-            let outcome = self.call(py, Home::outcome);
+            let outcome = self.call(py, JournaledClip::outcome);
             failure.map_or(outcome, Err)
         });
         if let (Err(_), Some(worker)) = (&done, &self.worker) {
-            worker.post(Home::take_back);
+            worker.post(JournaledClip::take_back);
         }
         done
     }
@@ -321,14 +321,14 @@ impl Clip {
     /// error is returned.
     fn work(&mut self, py: Python<'_>, progress: Optional<'_, '_>) -> PyResult<Option<PyErr>> {
         let mut failure = None;
-        while let Some(Wanted { frame, stage, .. }) = self.call(py, Home::wanted)? {
+        while let Some(Wanted { frame, stage, .. }) = self.call(py, JournaledClip::wanted)? {
             py.check_signals()?;
             let is_pairs = stage == Stage::Pairs;
             report(progress, if is_pairs { "pairs" } else { "annotations" }, frame, Some(self.length))?;
-            match self.read(py, frame, Home::take) {
+            match self.read(py, frame, JournaledClip::take) {
                 Err(error) if is_pairs && error.is_instance_of::<PyException>(py) => {
                     failure = Some(error);
-                    self.call(py, |home| home.with(|clip| clip.finish()))?;
+                    self.call(py, |kept| kept.with(|clip| clip.finish()))?;
                 }
                 taken => taken?,
             }

@@ -107,6 +107,13 @@ pub struct Accepted {
     pub labels: Option<Vec<u8>>,
 }
 
+impl Accepted {
+    /// Frames with the labels that they have.
+    pub(super) fn as_shown(frames: Vec<usize>) -> Vec<Accepted> {
+        frames.into_iter().map(|frame| Accepted { frame, labels: None }).collect()
+    }
+}
+
 /// Annotations that are given together, for [`SegmentedClip::annotate`](super::SegmentedClip::annotate).
 #[derive(Clone, Debug, Default)]
 pub struct Annotations {

@@ -1,7 +1,8 @@
 //! The objects of a clip: their numbers, locks, names and descriptions.
 
-use super::annotation::ObjectSet;
+use super::annotation::{ObjectSet, is_object};
 use super::saved::saved;
+use crate::error::{Error, Result};
 
 /// What a person says about an object in words and colour. An empty text is none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,6 +43,19 @@ impl Objects {
         let [locked, named, given, used] = [[false; 256]; 4];
         let numbers = std::array::from_fn(|k| k as u8);
         Objects { numbers, locked, named, given, used, dropped, descriptions: Vec::new() }
+    }
+
+    /// The number under which an object goes on, its own unless it was merged.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for a number out of range, and for an object that was deleted.
+    pub(super) fn current(&self, object: u8) -> Result<u8> {
+        let reason = match self.number(object) {
+            _ if !is_object(object) => format!("{object} is no number of an object: these are 1 to 254"),
+            0 => format!("object {object} was deleted, and its number is not given again"),
+            number => return Ok(number),
+        };
+        Err(Error::InvalidOption { name: "object", reason })
     }
 
     /// What a person says of an object.

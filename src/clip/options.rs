@@ -29,7 +29,7 @@ pub fn vary(model: ClipModel) {
     VARIED.set(model);
 }
 
-/// The scalings to the working size with each quality, of a whole clip and of a stream.
+/// The working size with each quality, of a whole clip and of a stream.
 pub(super) fn working_sizes(size: [usize; 2]) -> [Scaling; 4] {
     let options =
         |quality, look_ahead| ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead };

@@ -7,9 +7,11 @@
 //! - Labels are remembered by what they follow from (`session/view.rs`, `session/shown.rs`).
 
 mod combined;
+mod events;
 mod history;
 mod journal;
 mod log;
+mod phase;
 mod phases;
 mod ranges;
 mod repeated;
@@ -31,12 +33,12 @@ use crate::error::{Error, Result};
 use crate::frame::Frame;
 
 use history::{Difference, History, Remembered, State};
-use journal::{Written, range_record, result};
-use log::{Kind, Log};
+use log::{Kind, Log, Written, range_record, result};
 use ranges::RangeJob;
 use steps::Running;
 
-pub use journal::{Events, Recovered, Settled};
+pub use events::{Events, Settled, Stage, StepId, Wanted};
+pub use journal::Recovered;
 pub use view::{FrameStatus, Object};
 
 /// Largest number of commands that wait.
@@ -70,32 +72,6 @@ impl OpenOptions {
     pub const fn with_undo(self, undo: usize) -> OpenOptions {
         OpenOptions { undo, ..self }
     }
-}
-
-/// A step: a command that was given to a [`Clip`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct StepId(u32);
-
-/// What a frame is wanted for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Its pairs with the frames beside it, nearly all the work of segmenting a range.
-    Pairs,
-    /// Annotations that are applied and spread.
-    Annotations,
-    /// Its labels.
-    Labels,
-}
-
-/// A frame that a [`Clip`] needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    /// Index of the frame.
-    pub frame: usize,
-    /// What it is wanted for.
-    pub stage: Stage,
-    /// The step that needs it; `None` for [`Stage::Labels`].
-    pub step: Option<StepId>,
 }
 
 /// A command that waits, with the frames that it needs.

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use super::phases::current_number;
-use super::steps::{Phase, invalid, some_labels};
+use super::phase::{Phase, invalid, some_labels};
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Annotations, Painted, Prompt, Spread, is_object};
 use crate::clip::command::{Annotation, Content};
@@ -91,7 +90,7 @@ pub(super) fn combined(clip: &SegmentedClip, all: Vec<Annotation>) -> Result<(An
                 annotations.masks.push(Painted { frame, object: None, labels, spread });
             }
             Content::Prompt { object, clicks, within } => {
-                let object = current_number(clip, object)?;
+                let object = clip.objects.current(object)?;
                 annotations.prompts.retain(|of: &Prompt| (of.frame, of.object) != (frame, object));
                 annotations.prompts.push(Prompt { frame, object, clicks, within, spread });
             }
@@ -116,7 +115,7 @@ fn spread_of(clip: &SegmentedClip, painted: &[Painted], frame: usize, object: u8
 
 /// The current number of an object, and labels of it with this number in place of 1.
 fn own_labels(clip: &SegmentedClip, object: u8, labels: &[u8]) -> Result<(u8, Vec<u8>)> {
-    let object = current_number(clip, object)?;
+    let object = clip.objects.current(object)?;
     Ok((object, labels.iter().map(|&label| if label == 1 { object } else { label }).collect()))
 }
 
@@ -125,7 +124,7 @@ fn current_labels(clip: &SegmentedClip, labels: &[u8]) -> Result<Vec<u8>> {
     let mut numbers: BTreeMap<u8, u8> = [0, UNLABELLED].map(|label| (label, label)).into();
     for &label in labels {
         if let Entry::Vacant(number) = numbers.entry(label) {
-            number.insert(current_number(clip, label)?);
+            number.insert(clip.objects.current(label)?);
         }
     }
     Ok(labels.iter().map(|label| numbers[label]).collect())

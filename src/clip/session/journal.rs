@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use super::events::Events;
 use super::history::{Difference, History, State};
-use super::log::{Kind, Log, Reader};
+use super::log::{Kind, Log, Reader, Written, result};
 use super::shown::Shown;
-use super::{Clip, OpenOptions, StepId};
-use crate::clip::changes::Changed;
+use super::{Clip, OpenOptions};
 use crate::clip::command::Command;
 use crate::clip::saved::Saved;
 use crate::error::{Error, Result};
@@ -17,29 +17,6 @@ const GROWTH: usize = 1 << 20;
 /// Largest number of frames of a clip that is read.
 const MOST_FRAMES: usize = 1 << 20;
 
-/// What has happened in a [`Clip`] since the events were taken last.
-#[non_exhaustive]
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Events {
-    /// Records for the journal. They have to be kept before anything else is told to anyone: what is kept can be read again.
-    pub records: Vec<u8>,
-    /// Whether the records take the place of the journal so far; otherwise they are appended to it.
-    pub replaces: bool,
-    /// Indices of the frames whose labels have changed, in ascending order.
-    pub frames: Vec<usize>,
-    /// Steps that have taken effect or failed, in order.
-    pub settled: Vec<Settled>,
-}
-
-/// A step that has taken effect or failed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settled {
-    /// The step.
-    pub step: StepId,
-    /// What objects have gained and lost, or why nothing has changed.
-    pub changes: Result<Vec<Changed>>,
-}
-
 /// A [`Clip`] that was read from a journal.
 #[derive(Debug)]
 pub struct Recovered {
@@ -49,42 +26,6 @@ pub struct Recovered {
     pub used: usize,
     /// Whether what follows is damaged: steps that had been kept are lost.
     pub is_damaged: bool,
-}
-
-/// A content of a record that is written already.
-#[derive(Clone, Debug)]
-pub(super) struct Written(pub(super) Vec<u8>);
-
-impl Saved for Written {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.0);
-    }
-
-    fn read(bytes: &mut &[u8]) -> Option<Written> {
-        Some(Written(std::mem::take(bytes).to_vec()))
-    }
-}
-
-/// The content of a record of where a range ends, and whether all its frames have been in.
-pub(super) fn range_record(step: u32, end: usize, is_complete: bool) -> Written {
-    let mut bytes = Vec::new();
-    ([step as usize, end], is_complete).write(&mut bytes);
-    Written(bytes)
-}
-
-/// The content of a record of what a step has changed.
-pub(super) fn result(
-    step: u32,
-    parent: u32,
-    difference: &Difference,
-    describes: Option<u8>,
-    is_first: bool,
-) -> Written {
-    let mut bytes = Vec::new();
-    [step as usize, parent as usize].write(&mut bytes);
-    difference.write(&mut bytes);
-    (describes.unwrap_or(0), is_first).write(&mut bytes);
-    Written(bytes)
 }
 
 impl Clip {

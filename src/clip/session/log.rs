@@ -3,6 +3,7 @@
 //! A head of 16 bytes is followed by records. A record is its kind, the length of its content, a check of both, the content, and a hash of
 //! all that, seeded with the hash of the record before: a record that is missing, damaged or cut off ends the reading.
 
+use super::history::Difference;
 use crate::clip::saved::Saved;
 use crate::hash::hash;
 
@@ -167,6 +168,42 @@ fn length_of(record: &[u8]) -> Option<usize> {
     let found = record.first_chunk::<BEFORE>()?;
     let length = usize::read(&mut &found[1..5])?;
     (*found == head(found[0], length)).then_some(length)
+}
+
+/// A content of a record that is written already.
+#[derive(Clone, Debug)]
+pub(super) struct Written(pub(super) Vec<u8>);
+
+impl Saved for Written {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&self.0);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<Written> {
+        Some(Written(std::mem::take(bytes).to_vec()))
+    }
+}
+
+/// The content of a record of where a range ends, and whether all its frames have been in.
+pub(super) fn range_record(step: u32, end: usize, is_complete: bool) -> Written {
+    let mut bytes = Vec::new();
+    ([step as usize, end], is_complete).write(&mut bytes);
+    Written(bytes)
+}
+
+/// The content of a record of what a step has changed.
+pub(super) fn result(
+    step: u32,
+    parent: u32,
+    difference: &Difference,
+    describes: Option<u8>,
+    is_first: bool,
+) -> Written {
+    let mut bytes = Vec::new();
+    [step as usize, parent as usize].write(&mut bytes);
+    difference.write(&mut bytes);
+    (describes.unwrap_or(0), is_first).write(&mut bytes);
+    Written(bytes)
 }
 
 #[cfg(test)]

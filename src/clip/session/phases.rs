@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use super::combined::{combined, over, uncover, uncover_under};
-use super::steps::{Phase, invalid};
+use super::phase::{Phase, invalid};
 use crate::answer::UNLABELLED;
-use crate::clip::annotation::{Accepted, Annotations, Painted, Spread, is_object};
+use crate::clip::annotation::{Accepted, Annotations, Painted, Spread};
 use crate::clip::command::{Annotation, Command, Declaration};
 use crate::clip::description::ClipFrame;
 use crate::clip::frame_state::FrameState;
@@ -23,7 +23,7 @@ pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDe
         Command::Annotate(annotations) => return annotate(clip, annotations),
         Command::ReplaceAnnotations(all) => return replace(clip, all),
         Command::Clear { frame, object } => {
-            let object = object.map(|object| current_number(clip, object)).transpose()?;
+            let object = object.map(|object| clip.objects.current(object)).transpose()?;
             if let Some(object) = locked_above(clip, frame, object) {
                 return Err(Error::ObjectLocked { object });
             }
@@ -35,7 +35,7 @@ pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDe
             let mut accepted: Vec<usize> = (0..clip.len()).filter(stays).collect();
             let is_new = |index: &&usize| on && !clip.frames[**index].accepted;
             accepted.extend(frames.iter().filter(is_new).collect::<BTreeSet<_>>());
-            Annotations { accepted: Some(accepted_as_shown(accepted)), ..Annotations::default() }
+            Annotations { accepted: Some(Accepted::as_shown(accepted)), ..Annotations::default() }
         }
         Command::Lock { objects, on } => {
             let objects = known_objects(clip, &objects)?;
@@ -76,26 +76,11 @@ fn deleted(objects: &[u8]) -> Vec<[u8; 2]> {
     objects.iter().map(|&object| [object, 0]).collect()
 }
 
-pub(super) fn accepted_as_shown(frames: Vec<usize>) -> Vec<Accepted> {
-    frames.into_iter().map(|frame| Accepted { frame, labels: None }).collect()
-}
-
-/// The number under which an object goes on if it was merged.
-pub(super) fn current_number(clip: &SegmentedClip, object: u8) -> Result<u8> {
-    if !is_object(object) {
-        return invalid("object", format!("{object} is no number of an object: these are 1 to 254"));
-    }
-    match clip.objects.number(object) {
-        0 => invalid("object", format!("object {object} was deleted, and its number is not given again")),
-        number => Ok(number),
-    }
-}
-
 /// The current numbers of objects, each once. All have to be there.
 fn known_objects(clip: &SegmentedClip, objects: &[u8]) -> Result<Vec<u8>> {
     let mut known = Vec::new();
     for &object in objects {
-        let number = current_number(clip, object)?;
+        let number = clip.objects.current(object)?;
         if !clip.objects.used[usize::from(number)] {
             return invalid("object", format!("there is no object {object}"));
         }
@@ -122,7 +107,7 @@ fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> 
         return None;
     }
     let stays = |index: &usize| clip.frames[*index].accepted && !annotated.contains(index);
-    Some(accepted_as_shown((0..clip.len()).filter(stays).collect()))
+    Some(Accepted::as_shown((0..clip.len()).filter(stays).collect()))
 }
 
 /// A locked object that was drawn exactly in a frame, among all or only the given one.
@@ -157,7 +142,7 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     }
     let (annotations, draws) = combined(clip, annotations)?;
     for (object, description) in described {
-        let object = current_number(clip, object)?;
+        let object = clip.objects.current(object)?;
         describe(clip, object, description);
     }
     let mut numbers: Vec<[u8; 2]> = groups.iter().flat_map(|group| merged(group)).collect();

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use super::phases::accepted_as_shown;
+use super::phase::Phase;
 use super::ranges::resized;
-use super::steps::Phase;
 use crate::clip::annotation::{Accepted, Annotations, Click, Painted, Prompt};
 use crate::clip::frame_state::FrameState;
 use crate::clip::objects::Objects;
@@ -45,7 +44,7 @@ pub(super) fn repeated(before: &SegmentedClip, clip: &mut SegmentedClip, [first,
     (objects.locked, objects.named) = ([false; 256], [false; 256]);
     // Frames outside stay accepted.
     let others = (0..clip.len()).filter(|&index| clip.frames[index].accepted).collect();
-    let accepted = [accepted_as_shown(others), accepted].concat();
+    let accepted = [Accepted::as_shown(others), accepted].concat();
     vec![
         Phase::Annotate(Annotations { corrections, prompts, ..Annotations::default() }),
         Phase::Annotate(Annotations { accepted: Some(accepted), ..Annotations::default() }),

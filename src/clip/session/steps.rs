@@ -1,20 +1,18 @@
 //! A command that takes effect: on a copy of the state, in phases that ask for the frames that they need.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
+use super::phase::{Phase, some_labels};
 use super::phases::{phases, split};
 use super::ranges::RangeJob;
 use super::repeated::repeated;
 use crate::answer::UNLABELLED;
-use crate::clip::annotation::{Annotations, ObjectSet};
 use crate::clip::changes::{Changed, Changes};
 use crate::clip::command::Command;
 use crate::clip::description::ClipFrame;
 use crate::clip::job::ClipJob;
-use crate::clip::runs::Runs;
 use crate::clip::segmented_clip::SegmentedClip;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::frame::Frame;
 
 /// A command under way.
@@ -28,24 +26,6 @@ pub(super) struct Running {
     job: Option<ClipJob>,
     /// What earlier phases have changed.
     changes: Changes,
-}
-
-/// A part of a command.
-#[derive(Clone, Debug)]
-pub(super) enum Phase {
-    Annotate(Annotations),
-    /// Draws labels exactly; of one object if there is one.
-    Draw {
-        frame: usize,
-        object: Option<u8>,
-        labels: Vec<u8>,
-    },
-    Split {
-        object: u8,
-        frame: usize,
-    },
-    /// Restores locks and names that were lifted.
-    Restore(Box<[ObjectSet; 2]>),
 }
 
 impl Running {
@@ -157,13 +137,4 @@ impl Running {
         frame.exact = some_labels(&exact);
         self.changes.set(*index, shown, &now);
     }
-}
-
-/// Labels as runs; `None` if all are open.
-pub(super) fn some_labels(labels: &[u8]) -> Option<Arc<Runs>> {
-    labels.iter().any(|label| *label != UNLABELLED).then(|| Arc::new(Runs::of(labels)))
-}
-
-pub(super) fn invalid<T>(name: &'static str, reason: String) -> Result<T> {
-    Err(Error::InvalidOption { name, reason })
 }

@@ -10,7 +10,7 @@ use veronese::clip::{
 use crate::clip::journal::Journal;
 use crate::errors::Failure;
 
-pub(crate) struct Home {
+pub(crate) struct JournaledClip {
     pub(crate) clip: Clip,
     pub(crate) journal: Option<Journal>,
     /// The step of the call under way, and whether it segments.
@@ -18,14 +18,14 @@ pub(crate) struct Home {
     settled: Vec<Settled>,
 }
 
-impl Home {
+impl JournaledClip {
     /// A clip of so many frames: a new one, or what was saved or is in the journal. Returns it with a sentence about what could not be read.
     pub(crate) fn open(
         frames: usize,
         saved: Option<&[u8]>,
         journal: Option<PathBuf>,
         options: OpenOptions,
-    ) -> Result<(Home, Option<String>), Failure> {
+    ) -> Result<(JournaledClip, Option<String>), Failure> {
         let (mut journal, content) = journal.map(Journal::open).transpose()?.unzip();
         let content = content.filter(|content| !content.is_empty());
         let mut warning = None;
@@ -52,9 +52,9 @@ impl Home {
             }
             (None, None) => Clip::new(frames, options),
         };
-        let mut home = Home { clip, journal, step: None, settled: Vec::new() };
-        home.keep()?;
-        Ok((home, warning))
+        let mut kept = JournaledClip { clip, journal, step: None, settled: Vec::new() };
+        kept.keep()?;
+        Ok((kept, warning))
     }
 
     /// Does something with the clip, and keeps what that has done.

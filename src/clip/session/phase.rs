@@ -1,0 +1,35 @@
+//! A part of a command that takes effect.
+
+use std::sync::Arc;
+
+use crate::answer::UNLABELLED;
+use crate::clip::annotation::{Annotations, ObjectSet};
+use crate::clip::runs::Runs;
+use crate::error::{Error, Result};
+
+/// A part of a command.
+#[derive(Clone, Debug)]
+pub(super) enum Phase {
+    Annotate(Annotations),
+    /// Draws labels exactly; of one object if there is one.
+    Draw {
+        frame: usize,
+        object: Option<u8>,
+        labels: Vec<u8>,
+    },
+    Split {
+        object: u8,
+        frame: usize,
+    },
+    /// Restores locks and names that were lifted.
+    Restore(Box<[ObjectSet; 2]>),
+}
+
+/// Labels as runs; `None` if all are open.
+pub(super) fn some_labels(labels: &[u8]) -> Option<Arc<Runs>> {
+    labels.iter().any(|label| *label != UNLABELLED).then(|| Arc::new(Runs::of(labels)))
+}
+
+pub(super) fn invalid<T>(name: &'static str, reason: String) -> Result<T> {
+    Err(Error::InvalidOption { name, reason })
+}
