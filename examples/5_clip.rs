@@ -18,7 +18,7 @@ pub fn main() -> Result<()> {
         Ok(frame.objects.iter().map(|object| (object.id, object.pixels)).collect())
     };
 
-    let mut clip = Clip::new(options.frames, OpenOptions::default());
+    let mut clip = Clip::new(options.frames, OpenOptions::default())?;
     let fast = SegmentOptions::default().with_quality(Quality::Fast);
     clip.apply(Command::Segment { frames: 0..options.frames, options: fast })?;
     println!("found: {:?}", objects(&mut clip)?);

@@ -56,7 +56,7 @@ pub use objects::Description;
 pub use options::vary;
 pub use options::{ClipOptions, MAX_LOOK_AHEAD};
 pub use segmenter::{FramePairs, solve_pair};
-pub use session::{Clip, Events, FrameStatus, Object, OpenOptions, Recovered, Settled, Stage, StepId, Wanted};
+pub use session::{Clip, ClipStage, Events, FrameStatus, Object, OpenOptions, Recovered, Settled, StepId, Wanted};
 pub use stream::StreamSegmenter;
 pub use tracks::{ClipTrack, ClipTracks};
 

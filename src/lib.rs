@@ -86,7 +86,7 @@
 //! # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 //! # let frames = [scene.first(), scene.second()];
 //! let read = |index: usize| Ok::<_, veronese::Error>(frames[index].clone());
-//! let mut clip = Clip::new(frames.len(), OpenOptions::default());
+//! let mut clip = Clip::new(frames.len(), OpenOptions::default())?;
 //! clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
 //! clip.look_at(1);
 //! clip.run(read)?; // it asks for the frames that it needs

@@ -44,7 +44,7 @@ static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let pairs: Vec<FramePairs> =
         frames.windows(2).map(|pair| solve_pair(&pair[0], &pair[1], &fast()).unwrap()).collect();
     let clip = whole(&frames, options(Quality::Fast, None));
-    let mut opened = Clip::new(COUNT, OpenOptions::default());
+    let mut opened = Clip::new(COUNT, OpenOptions::default()).unwrap();
     opened.apply(segment(0..COUNT)).unwrap();
     while let Some(wanted) = opened.wanted() {
         let solved = wanted.frame.checked_sub(1).map(|before| &pairs[before]);
@@ -559,7 +559,7 @@ fn promises_hold_whatever_is_said_and_undone() {
 #[test]
 fn a_step_that_is_cancelled_at_any_frame_leaves_the_state_before() {
     let more = [
-        ("split", Command::Split { object: 9, frame: 2 }, Annotations::default()),
+        ("split", Command::Split { object: 9, frame: 2, new: 200 }, Annotations::default()),
         ("clear", Command::Clear { frame: 2, object: None }, Annotations::default()),
         (
             "all",

@@ -55,7 +55,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let (width, height) = (first.width(), first.height());
     drop(first);
     let before = memory("VmRSS")?;
-    let mut clip = Clip::new(FRAMES, OpenOptions::default());
+    let mut clip = Clip::new(FRAMES, OpenOptions::default())?;
     let pair = SegmentOptions::default().with_quality(options.quality);
     clip.apply(Command::Segment { frames: 0..FRAMES, options: pair })?;
     let path = options.out.join("journal");

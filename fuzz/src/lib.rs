@@ -99,7 +99,7 @@ pub fn known() -> &'static Known {
         let mut segmenter = ClipSegmenter::new(known_options()).expect("the options are valid");
         let pairs =
             frames.iter().map(|frame| segmenter.push(frame.clone()).expect("the frames have one size")).collect();
-        let mut clip = Clip::new(frames.len(), OpenOptions::default());
+        let mut clip = Clip::new(frames.len(), OpenOptions::default()).expect("the clip is short");
         let labels: Vec<u8> = (0..32 * 24).map(|p| if p % 32 < 9 { 1 } else { 255 }).collect();
         let content = Content::Strokes { object: 7, labels };
         let exact = Annotation { frame: 0, content: content.clone(), spread: Spread::Exact };

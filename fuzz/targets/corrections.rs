@@ -29,7 +29,7 @@ enum Word<'a> {
     Describe { object: u8, name: &'a str, coalesce: bool },
     Merge(&'a [u8]),
     Delete(&'a [u8]),
-    Split { object: u8, frame: u8 },
+    Split { object: u8, frame: u8, new: u8 },
     Replace { annotations: Vec<Part<'a>>, locked: &'a [u8], merged: &'a [u8], deleted: &'a [u8], accepted: Vec<u8> },
 }
 
@@ -140,7 +140,9 @@ fn command(word: &Word<'_>) -> Command {
         }
         Word::Merge(chosen) => Command::Merge(objects(chosen)),
         Word::Delete(chosen) => Command::Delete(objects(chosen)),
-        Word::Split { object, frame: chosen } => Command::Split { object: *object, frame: frame(*chosen) },
+        Word::Split { object, frame: chosen, new } => {
+            Command::Split { object: *object, frame: frame(*chosen), new: *new }
+        }
         Word::Replace { annotations: parts, locked, merged, deleted, accepted } => {
             Command::ReplaceAnnotations(Declaration {
                 annotations: annotations(parts),
@@ -192,7 +194,11 @@ fuzz_target!(|actions: Vec<Action<'_>>| {
             Action::Take(count) => take(&mut clip, &known.frames, *count),
             Action::Undo => _ = clip.undo(),
             Action::Redo => _ = clip.redo(),
-            Action::Finish => clip.finish(),
+            Action::Finish => {
+                if let Some(step) = clip.wanted().and_then(|wanted| wanted.step) {
+                    clip.finish(step);
+                }
+            }
             Action::Look(index) => clip.look_at(usize::from(index % 4)),
             Action::Save => clip = read(&clip.save()),
         }

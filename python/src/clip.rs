@@ -15,7 +15,7 @@ use pyo3::exceptions::{PyException, PyUserWarning};
 use pyo3::gc::{PyTraverseError, PyVisit};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
-use veronese::clip::{Changed, Command, Description, OpenOptions, Stage, Wanted};
+use veronese::clip::{Changed, ClipStage, Command, Description, OpenOptions, Wanted};
 
 use crate::errors::Failure;
 use crate::options::{self, index, invalid, object};
@@ -323,7 +323,7 @@ impl Clip {
         let mut failure = None;
         while let Some(Wanted { frame, stage, .. }) = self.call(py, JournaledClip::wanted)? {
             py.check_signals()?;
-            let is_pairs = stage == Stage::Pairs;
+            let is_pairs = stage == ClipStage::Pairs;
             report(progress, if is_pairs { "pairs" } else { "annotations" }, frame, Some(self.length))?;
             match self.read(py, frame, JournaledClip::take) {
                 Err(error) if is_pairs && error.is_instance_of::<PyException>(py) => {

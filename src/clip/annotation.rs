@@ -193,11 +193,8 @@ impl Prompt {
 
 impl Annotations {
     /// Checks labels, positions and object numbers for frames of the given size.
-    pub(super) fn check(&self, size @ [width, height]: [usize; 2]) -> Result<()> {
-        let fill = |name, labels: &[u8]| match labels.len() == width * height {
-            true => Ok(()),
-            false => invalid(name, format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len())),
-        };
+    pub(super) fn check(&self, size: [usize; 2]) -> Result<()> {
+        let fill = |name, labels: &[u8]| check_labels_of(name, labels, size);
         for (name, painted) in [("masks", &self.masks), ("corrections", &self.corrections)] {
             for Painted { object, labels, .. } in painted {
                 fill(name, labels)?;
@@ -229,6 +226,18 @@ impl Annotations {
         let accepted = self.accepted.iter().flatten().map(|accepted| accepted.frame);
         let cleared = self.cleared.iter().map(|(frame, _)| *frame);
         painted.chain(self.prompts.iter().map(|prompt| prompt.frame)).chain(accepted).chain(cleared)
+    }
+}
+
+/// Checks that labels fill a frame of a width and height.
+pub(super) fn check_labels(labels: &[u8], size: [usize; 2]) -> Result<()> {
+    check_labels_of("labels", labels, size)
+}
+
+fn check_labels_of(name: &'static str, labels: &[u8], [width, height]: [usize; 2]) -> Result<()> {
+    match labels.len() == width * height {
+        true => Ok(()),
+        false => invalid(name, format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len())),
     }
 }
 

@@ -6,6 +6,8 @@ use super::annotation::{Click, Spread};
 use super::objects::Description;
 use super::runs::Runs;
 use super::saved::{Saved, saved};
+use crate::error::{Error, Result};
+use crate::frame::MAX_SIDE;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 
 /// A change of a [`Clip`](super::Clip), and one step of undo.
@@ -37,7 +39,7 @@ pub enum Command {
         /// Whether they are accepted from now on.
         on: bool,
     },
-    /// Locks objects, or unlocks them. Nothing changes the pixels of a locked object.
+    /// Locks objects, or unlocks them. Nothing changes the pixels of a locked object but segmenting its frames again.
     Lock {
         /// Numbers of the objects.
         objects: Vec<u8>,
@@ -57,19 +59,20 @@ pub enum Command {
     Merge(Vec<u8>),
     /// Turns objects into background. Their numbers are not given again.
     Delete(Vec<u8>),
-    /// Makes a new object, with the [next number](super::Clip::next_object), of all connected pieces of an object but the largest in a frame.
-    /// Other frames follow.
+    /// Makes a new object of all connected pieces of an object but the largest in a frame. Other frames follow.
     Split {
         /// Number of the object.
         object: u8,
         /// Index of the frame.
         frame: usize,
+        /// Number of the new object, for instance the [next one](super::Clip::next_object).
+        new: u8,
     },
     /// Replaces everything that was annotated, described, merged, deleted and accepted.
     ReplaceAnnotations(Declaration),
 }
 
-/// Everything that a person says about a clip, for [`Command::ReplaceAnnotations`].
+/// All annotations, descriptions and edits of a clip, for [`Command::ReplaceAnnotations`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Declaration {
     /// The annotations of all frames.
@@ -86,7 +89,7 @@ pub struct Declaration {
     pub accepted: Vec<usize>,
 }
 
-/// What a person says of a frame.
+/// An annotation of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Annotation {
     /// Index of the frame.
@@ -156,6 +159,47 @@ impl Command {
     }
 }
 
+impl Command {
+    fn annotations(&self) -> &[Annotation] {
+        match self {
+            Command::Annotate(annotations) => annotations,
+            Command::ReplaceAnnotations(all) => &all.annotations,
+            _ => &[],
+        }
+    }
+
+    /// The objects that may be new.
+    pub(super) fn new_objects(&self) -> Vec<u8> {
+        let split = if let Command::Split { new, .. } = self { Some(*new) } else { None };
+        let objects = self.annotations().iter().flat_map(|annotation| match &annotation.content {
+            Content::Strokes { object, .. } | Content::Mask { object, .. } | Content::Prompt { object, .. } => {
+                vec![*object]
+            }
+            Content::Labels(labels) | Content::Given(labels) => labels.clone(),
+        });
+        objects.chain(split).collect()
+    }
+
+    /// Checks that labels and places are of frames that there can be.
+    pub(super) fn check_sizes(&self) -> Result<()> {
+        let fits = |annotation: &Annotation| match &annotation.content {
+            Content::Strokes { labels, .. } | Content::Mask { labels, .. } => labels.len() <= MAX_SIDE * MAX_SIDE,
+            Content::Labels(labels) | Content::Given(labels) => labels.len() <= MAX_SIDE * MAX_SIDE,
+            Content::Prompt { clicks, within, .. } => {
+                let mut places = clicks.iter().flat_map(|click| click.at).chain(within.iter().flatten().copied());
+                places.all(|place| place <= MAX_SIDE)
+            }
+        };
+        match self.annotations().iter().find(|annotation| !fits(annotation)) {
+            None => Ok(()),
+            Some(Annotation { frame, .. }) => {
+                let reason = format!("the annotation of frame {frame} is larger than {MAX_SIDE}×{MAX_SIDE} pixels");
+                Err(Error::InvalidOption { name: "annotations", reason })
+            }
+        }
+    }
+}
+
 saved!(Annotation { frame, content, spread });
 saved!(Declaration { annotations, locked, described, merged, deleted, accepted });
 
@@ -221,7 +265,9 @@ impl Saved for Command {
             }
             Command::Merge(objects) => (6u8.write(bytes), objects.write(bytes)).1,
             Command::Delete(objects) => (7u8.write(bytes), objects.write(bytes)).1,
-            Command::Split { object, frame } => (8u8.write(bytes), object.write(bytes), frame.write(bytes)).2,
+            Command::Split { object, frame, new } => {
+                (8u8.write(bytes), [*object, *new].write(bytes), frame.write(bytes)).2
+            }
             Command::ReplaceAnnotations(all) => (9u8.write(bytes), all.write(bytes)).1,
         }
     }
@@ -250,7 +296,10 @@ impl Saved for Command {
             },
             6 => Command::Merge(Vec::read(bytes)?),
             7 => Command::Delete(Vec::read(bytes)?),
-            8 => Command::Split { object: u8::read(bytes)?, frame: usize::read(bytes)? },
+            8 => {
+                let [object, new] = Saved::read(bytes)?;
+                Command::Split { object, new, frame: usize::read(bytes)? }
+            }
             9 => Command::ReplaceAnnotations(Declaration::read(bytes)?),
             _ => return None,
         })

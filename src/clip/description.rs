@@ -62,11 +62,11 @@ pub(crate) struct WorkingFrame<'a> {
 impl WorkingFrame<'_> {
     /// The result for the frame at the size of its luminance.
     pub(crate) fn described(&self, luminance: &Plane) -> ClipFrame {
-        self.marked(self.upsampled(luminance), luminance.width())
+        self.marked(self.upsampled(luminance), None, luminance.width())
     }
 
-    /// The result for full-size labels, of which the undecided ones are marked if that is asked for.
-    pub(crate) fn marked(&self, mut labels: Vec<u8>, width: usize) -> ClipFrame {
+    /// The result for full-size labels, of which the undecided ones are marked if that is asked for, except where labels were drawn exactly.
+    pub(crate) fn marked(&self, mut labels: Vec<u8>, exact: Option<&[u8]>, width: usize) -> ClipFrame {
         let scaling = Scaling::between([width, labels.len() / width], [self.log_odds.width(), self.log_odds.height()]);
         if self.mark_unknown {
             for (label, log_odds) in labels.iter_mut().zip(scaling.enlarged(self.log_odds.values())) {
@@ -74,6 +74,8 @@ impl WorkingFrame<'_> {
                     *label = UNLABELLED;
                 }
             }
+            let exact = exact.into_iter().flatten();
+            labels.iter_mut().zip(exact).filter(|(_, exact)| **exact != UNLABELLED).for_each(|(l, exact)| *l = *exact);
         }
         self.describe(labels, &scaling)
     }

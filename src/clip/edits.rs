@@ -15,7 +15,10 @@ impl SegmentedClip {
     /// becomes background and counts as [`dropped`](Self::dropped). Annotated objects keep their numbers. Returns the indices of the
     /// changed frames.
     pub(super) fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
-        let user_objects: ObjectSet = std::array::from_fn(|k| self.frames.iter().any(|frame| frame.anchors(k as u8)));
+        let mut user_objects: ObjectSet =
+            std::array::from_fn(|k| self.frames.iter().any(|frame| frame.anchors(k as u8)));
+        let exact = self.frames.iter().filter_map(|frame| frame.exact.as_ref()).flat_map(|exact| exact.each());
+        exact.for_each(|(label, _)| user_objects[usize::from(label)] = true);
         let mut is_found = [false; 256];
         for (label, _) in self.frames.iter().flat_map(|frame| frame.found_labels().each()) {
             is_found[usize::from(label)] = true;
@@ -54,7 +57,7 @@ impl SegmentedClip {
         let mut changed = Vec::new();
         for (index, frame) in self.frames.iter_mut().enumerate() {
             let labels = frame.found_labels().map(|label| now[usize::from(label)]);
-            if let Some(layer) = frame.layer.as_mut().filter(|_| frame.accepted) {
+            if let Some(layer) = &mut frame.layer {
                 let given = |label: u8| if user_objects[usize::from(label)] { label } else { now[usize::from(label)] };
                 let labels = layer.labels.map(given);
                 Arc::make_mut(layer).labels = labels;

@@ -4,7 +4,7 @@ use super::annotation::{ObjectSet, is_object};
 use super::saved::saved;
 use crate::error::{Error, Result};
 
-/// What a person says about an object in words and colour. An empty text is none.
+/// An object's name, class and colour. An empty text is none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Description {
     /// Its name. Objects with a name change only by annotations of themselves.
@@ -45,6 +45,11 @@ impl Objects {
         Objects { numbers, locked, named, given, used, dropped, descriptions: Vec::new() }
     }
 
+    /// Locks these objects, with those that were merged into them, and no others.
+    pub(super) fn lock(&mut self, objects: &[u8]) {
+        self.locked = std::array::from_fn(|k| objects.contains(&(k as u8)) || objects.contains(&self.numbers[k]));
+    }
+
     /// The number under which an object goes on, its own unless it was merged.
     ///
     /// # Errors
@@ -58,12 +63,12 @@ impl Objects {
         Err(Error::InvalidOption { name: "object", reason })
     }
 
-    /// What a person says of an object.
+    /// The name, class and colour of an object.
     pub(super) fn description(&self, object: u8) -> Description {
         self.descriptions.iter().find(|(of, _)| *of == object).map(|(_, of)| of.clone()).unwrap_or_default()
     }
 
-    /// Sets what a person says of an object.
+    /// Sets the name, class and colour of an object.
     pub(super) fn describe(&mut self, object: u8, description: Description) {
         self.descriptions.retain(|(of, _)| *of != object);
         if description != Description::default() {

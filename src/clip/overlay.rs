@@ -65,8 +65,11 @@ impl SegmentedClip {
             labels[at] = full[p];
         }
         let onward = onward.as_ref();
-        Ok(WorkingFrame { index, labels: &labels, log_odds: &log_odds, onward, mark_unknown }
-            .marked(full, frame.width()))
+        Ok(WorkingFrame { index, labels: &labels, log_odds: &log_odds, onward, mark_unknown }.marked(
+            full,
+            exact.as_deref(),
+            frame.width(),
+        ))
     }
 
     /// The labels of a frame found automatically, at full size.
@@ -85,10 +88,10 @@ impl SegmentedClip {
     /// hidden, and so is the rest of an object most of which lies under masks that were given.
     pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
         let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNLABELLED; found.len()]);
-        let mut sizes = [[0usize; 2]; 256];
+        let (mut sizes, given) = ([[0usize; 2]; 256], &self.objects.given);
         for (&found, &label) in found.iter().zip(&layer) {
             sizes[usize::from(found)][0] += 1;
-            sizes[usize::from(found)][1] += usize::from(self.objects.given[usize::from(label)]);
+            sizes[usize::from(found)][1] += usize::from(given[usize::from(label)]);
         }
         let protected = self.protected();
         let is_hidden = |label: u8| {

@@ -30,6 +30,12 @@ pub struct SegmentedClip {
 saved!(SegmentedClip { size, mark_unknown, objects, frames });
 
 impl SegmentedClip {
+    /// A clip of which no frame is segmented.
+    pub(super) fn empty(frames: usize) -> SegmentedClip {
+        let (objects, frames) = (Arc::new(Objects::new(0)), vec![FrameState::default(); frames]);
+        SegmentedClip { size: [0, 0], mark_unknown: false, objects, frames }
+    }
+
     /// Number of frames.
     pub fn len(&self) -> usize {
         self.frames.len()
@@ -96,11 +102,6 @@ impl SegmentedClip {
             let objects = self.objects_mut();
             new.into_iter().for_each(|k| objects.used[k] = true);
         }
-    }
-
-    /// The lowest number that no object has had; `None` if none is left.
-    pub(super) fn next_object(&self) -> Option<u8> {
-        (1..UNLABELLED).find(|&k| !self.objects.used[usize::from(k)])
     }
 
     /// First and last frame of the scene that contains a frame.

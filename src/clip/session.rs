@@ -20,12 +20,10 @@ mod steps;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::Arc;
 
 use super::annotation::is_object;
 use super::command::Command;
 use super::frame_state::FrameState;
-use super::objects::Objects;
 use super::saved::Saved;
 use super::segmented_clip::SegmentedClip;
 use super::segmenter::FramePairs;
@@ -37,9 +35,12 @@ use log::{Kind, Log, Written, range_record, result};
 use ranges::RangeJob;
 use steps::Running;
 
-pub use events::{Events, Settled, Stage, StepId, Wanted};
+pub use events::{ClipStage, Events, Settled, StepId, Wanted};
 pub use journal::Recovered;
 pub use view::{FrameStatus, Object};
+
+/// Largest number of frames of a clip.
+const MOST_FRAMES: usize = 1 << 20;
 
 /// Largest number of commands that wait.
 const MOST_WAITING: usize = 256;
@@ -94,7 +95,7 @@ struct Waiting {
 /// # fn main() -> veronese::Result<()> {
 /// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 /// # let frames = [scene.first().clone(), scene.second().clone()];
-/// let mut clip = Clip::new(frames.len(), OpenOptions::default());
+/// let mut clip = Clip::new(frames.len(), OpenOptions::default())?;
 /// clip.apply(Command::Segment { frames: 0..2, options: SegmentOptions::default() })?;
 /// let strokes = (0..160 * 120).map(|p| if p % 160 < 8 { 1 } else { 255 }).collect();
 /// clip.apply(Command::Annotate(vec![Annotation::new(0, Content::Strokes { object: 7, labels: strokes })]))?;
@@ -130,24 +131,29 @@ pub struct Clip {
     next: u32,
     log: Log,
     settled: Vec<Settled>,
+    cancelled: Vec<StepId>,
     changed: BTreeSet<usize>,
 }
 
 impl Clip {
     /// A clip of so many frames, without masks.
-    pub fn new(frames: usize, options: OpenOptions) -> Clip {
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for more than 2²⁰ frames.
+    pub fn new(frames: usize, options: OpenOptions) -> Result<Clip> {
+        if frames > MOST_FRAMES {
+            let reason = format!("a clip has at most {MOST_FRAMES}, not {frames}");
+            return Err(Error::InvalidOption { name: "frames", reason });
+        }
         let mut log = Log::new();
         log.append(Kind::Open, &frames);
-        Clip::of(frames, options, log)
+        Ok(Clip::of(frames, options, log))
     }
 
     fn of(frames: usize, options: OpenOptions, log: Log) -> Clip {
-        let frames = vec![FrameState::default(); frames];
-        let objects = Arc::new(Objects::new(0));
-        let empty = SegmentedClip { size: [0, 0], mark_unknown: false, objects, frames };
         Clip {
             options,
-            history: History::new(empty),
+            history: History::new(SegmentedClip::empty(frames)),
             waiting: VecDeque::new(),
             running: None,
             given: BTreeMap::new(),
@@ -158,6 +164,7 @@ impl Clip {
             next: 1,
             log,
             settled: Vec::new(),
+            cancelled: Vec::new(),
             changed: BTreeSet::new(),
         }
     }
@@ -181,7 +188,7 @@ impl Clip {
     /// commands go first if all their frames have masks.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`], [`Error::ObjectLocked`]; nothing has changed then. A command that has to wait can fail later, see
+    /// [`Error::InvalidOption`], [`Error::ObjectLocked`]; nothing has changed then. A command that waits or needs frames can also fail later: see
     /// [`Settled`].
     pub fn apply(&mut self, command: Command) -> Result<StepId> {
         self.check(&command)?;
@@ -217,11 +224,12 @@ impl Clip {
         if let Some(frame) = frames.into_iter().find(|&frame| !has_masks(frame) && !is_coming(frame)) {
             return invalid("frame", format!("frame {frame} has no masks: segment it first"));
         }
+        // What waits is written in the journal, and has to be readable.
+        command.check_sizes()?;
         match command {
             Command::Describe { object, .. } if !is_object(*object) => {
                 invalid("object", format!("{object} is no number of an object: these are 1 to 254"))
             }
-            Command::Merge(objects) if objects.len() < 2 => invalid("objects", "there is nothing to merge".into()),
             _ => Ok(()),
         }
     }
@@ -249,7 +257,8 @@ impl Clip {
         }
     }
 
-    /// Takes back: the last command that waits, or else the one under way, or else the last step. Returns whether there was one.
+    /// Takes back: the last command that waits, or else the one under way, or else the last step. Returns whether there was one. A range that is
+    /// being segmented goes on: [`cancel`](Self::cancel) and [`finish`](Self::finish) end it.
     pub fn undo(&mut self) -> bool {
         let last = self.waiting.back().map(|waiting| waiting.step);
         let running = self.running.as_ref().map(|running| running.step);
@@ -298,6 +307,7 @@ impl Clip {
         let is_known = self.forget_waiting(step);
         if is_known {
             self.log.append(Kind::Dropped, &(step as usize));
+            self.cancelled.push(StepId(step));
             self.advance();
         }
         is_known
@@ -313,10 +323,11 @@ impl Clip {
         self.given.remove(&step).is_some()
     }
 
-    /// Ends the range under way after the frames that are in; it fails if these are fewer than two.
-    pub fn finish(&mut self) {
-        if let Some(range) = self.ranges.front_mut() {
-            let (end, step) = (range.finish(None), range.step);
+    /// Ends a range after the frames that are in, for instance because the next one cannot be read. It fails if these are fewer than two. The
+    /// frame before the range is still wanted if it has masks; a second call does without it.
+    pub fn finish(&mut self, StepId(step): StepId) {
+        if let Some(range) = self.ranges.iter_mut().find(|range| range.step == step) {
+            let end = range.finish(None);
             self.note(step, Kind::Range, range_record(step, end, false));
             self.advance();
         }
@@ -325,21 +336,21 @@ impl Clip {
     /// The frame to take next, and what for; `None` when there is nothing to do.
     pub fn wanted(&self) -> Option<Wanted> {
         if let Some(frame) = self.looked_at.filter(|&frame| self.is_unknown(frame)) {
-            return Some(Wanted { frame, stage: Stage::Labels, step: None });
+            return Some(Wanted { frame, stage: ClipStage::Labels, step: None });
         }
         if let Some(running) = &self.running {
             let step = Some(StepId(running.step));
-            return running.wanted().map(|frame| Wanted { frame, stage: Stage::Annotations, step });
+            return running.wanted().map(|frame| Wanted { frame, stage: ClipStage::Annotations, step });
         }
         let range = self.ranges.front()?;
         let frame = range.wanted(&self.state().clip)?;
-        Some(Wanted { frame, stage: Stage::Pairs, step: Some(StepId(range.step)) })
+        Some(Wanted { frame, stage: ClipStage::Pairs, step: Some(StepId(range.step)) })
     }
 
     /// Gives the clip all frames that it [wants](Self::wanted), as `read` reads them.
     ///
     /// # Errors
-    /// Those of `read` and of [`take`](Self::take). The clip then still wants that frame.
+    /// Those of `read` and of [`take`](Self::take). The clip then still wants that frame. A command that fails is no error here: see [`Settled`].
     pub fn run<E: From<Error>>(&mut self, mut read: impl FnMut(usize) -> Result<Frame, E>) -> Result<(), E> {
         while let Some(Wanted { frame, .. }) = self.wanted() {
             self.take(frame, &read(frame)?, None)?;
@@ -356,8 +367,8 @@ impl Clip {
     pub fn take(&mut self, index: usize, frame: &Frame, solved: Option<&FramePairs>) -> Result<()> {
         let Some(wanted) = self.wanted().filter(|wanted| wanted.frame == index) else { return Ok(()) };
         match wanted.stage {
-            Stage::Labels => self.describe(index, frame)?,
-            Stage::Annotations => {
+            ClipStage::Labels => self.describe(index, frame)?,
+            ClipStage::Annotations => {
                 let Some(running) = &mut self.running else { return Ok(()) };
                 match running.take(frame) {
                     Err(error @ (Error::FrameSizeMismatch { .. } | Error::OtherFrame { .. })) => return Err(error),
@@ -365,7 +376,7 @@ impl Clip {
                     Ok(()) => self.changed.extend(running.has_changed(index).then_some(index)),
                 }
             }
-            Stage::Pairs => {
+            ClipStage::Pairs => {
                 let clip = &self.history.current().clip;
                 let Some(range) = self.ranges.front_mut() else { return Ok(()) };
                 if let Some(entry) = range.take(clip, frame, solved, self.pairs.get(&index))? {
@@ -447,9 +458,13 @@ impl Clip {
 
     /// Makes the copy on which a command has taken effect the state. A command that has changed nothing is no step.
     fn commit(&mut self, mut running: Running) {
-        let (step, changes) = (running.step, running.changes());
+        let step = running.step;
+        if let Some(range) = &running.range {
+            self.pairs.retain(|frame, _| !range.contains(frame));
+        }
         self.given.remove(&step);
         running.clip.mark_used();
+        let changes = running.changes();
         let before = self.state();
         let is_part = |(object, coalesce)| coalesce && before.describes == Some(object);
         let joined = running.describes.is_some_and(is_part).then(|| self.history.before()).flatten();
@@ -467,7 +482,6 @@ impl Clip {
             let content = result(step, parent, &difference, describes, false);
             let bytes = content.0.len();
             self.log.append(Kind::Result, &content);
-            difference.segmented().for_each(|frame| drop(self.pairs.remove(&frame)));
             self.history.push(parent, State::new(step, running.clip, remembered, describes, bytes));
             self.history.forget(self.options.undo);
             self.add_changed(&before_clip);

@@ -59,11 +59,6 @@ impl Area {
         self.rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// Whether a pixel of a grid that is `width` wide is inside. No pixel is inside an empty area.
-    pub(crate) fn contains(&self, p: usize, width: usize) -> bool {
-        !self.columns.is_empty() && self.columns.contains(&(p % width)) && self.rows.contains(&(p / width))
-    }
-
     /// Index within the area of a pixel of a grid that is `width` wide.
     pub(crate) fn index_of(&self, p: usize, width: usize) -> usize {
         (p / width - self.rows.start) * self.width() + p % width - self.columns.start

@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 use super::{PIXELS, fast, print, read, run, said, segment, settle, start, summary};
 use crate::support::moving::{scene_of, thing};
 use veronese::clip::{
-    Annotation, Click, Clip, Command, Content, Declaration, Description, FramePairs, OpenOptions, Recovered, Spread,
-    Stage, StepId, solve_pair,
+    Annotation, Click, Clip, ClipStage, Command, Content, Declaration, Description, FramePairs, OpenOptions, Recovered,
+    Spread, StepId, solve_pair,
 };
 use veronese::{Frame, Random};
 
@@ -58,7 +58,7 @@ struct Player<'a> {
 
 impl<'a> Player<'a> {
     fn new(film: &'a Film<'a>) -> Player<'a> {
-        let clip = Clip::new(film.frames.len(), OpenOptions::default());
+        let clip = Clip::new(film.frames.len(), OpenOptions::default()).unwrap();
         Player { film, clip, journal: Vec::new(), given: Vec::new(), taken: BTreeMap::new(), solved: 0 }
     }
 
@@ -74,7 +74,7 @@ impl<'a> Player<'a> {
     fn take(&mut self, helps: bool) -> bool {
         let Some(wanted) = self.clip.wanted() else { return false };
         let pairs = wanted.frame.checked_sub(1).map(|before| &self.film.pairs[before]).filter(|_| helps);
-        self.solved += usize::from(wanted.stage == Stage::Pairs && pairs.is_none());
+        self.solved += usize::from(wanted.stage == ClipStage::Pairs && pairs.is_none());
         self.clip.take(wanted.frame, &self.film.frames[wanted.frame], pairs).unwrap();
         wanted.step.into_iter().for_each(|step| *self.taken.entry(step).or_default() += 1);
         true
@@ -98,8 +98,9 @@ impl<'a> Player<'a> {
             },
             Action::Finish => {
                 // Only of a range whose frames are in again.
-                if self.clip.wanted().is_some_and(|wanted| wanted.stage == Stage::Pairs) {
-                    self.clip.finish();
+                if let Some(step) = self.clip.wanted().filter(|of| of.stage == ClipStage::Pairs).and_then(|of| of.step)
+                {
+                    self.clip.finish(step);
                 }
                 String::new()
             }
@@ -110,7 +111,7 @@ impl<'a> Player<'a> {
             }
             Action::Look(index) => {
                 self.clip.look_at(*index);
-                if self.clip.wanted().is_some_and(|wanted| wanted.stage == Stage::Labels) {
+                if self.clip.wanted().is_some_and(|wanted| wanted.stage == ClipStage::Labels) {
                     self.take(false);
                 }
                 String::new()

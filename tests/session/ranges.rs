@@ -5,12 +5,12 @@ use super::{
     settle, shown, start, summary, take,
 };
 use crate::support::moving::{scene_of, thing};
-use veronese::clip::{Annotation, Clip, Command, Content, OpenOptions, Spread, Stage, solve_pair};
+use veronese::clip::{Annotation, Clip, ClipStage, Command, Content, OpenOptions, Spread, solve_pair};
 use veronese::{Error, Frame};
 
 /// A clip whose frames from 0 to `end` are segmented.
 fn first(end: usize) -> Clip {
-    let mut clip = Clip::new(COUNT, OpenOptions::default());
+    let mut clip = Clip::new(COUNT, OpenOptions::default()).unwrap();
     settle(&mut clip, segment(0..end)).unwrap();
     clip
 }
@@ -38,7 +38,7 @@ fn labels_in(clip: &mut Clip, frame: usize) -> Vec<u8> {
 #[test]
 fn ranges_beside_each_other_keep_numbers_and_pass_annotations_on() {
     for (one, other) in [(0..3, 3..COUNT), (3..COUNT, 0..3)] {
-        let mut clip = Clip::new(COUNT, OpenOptions::default());
+        let mut clip = Clip::new(COUNT, OpenOptions::default()).unwrap();
         settle(&mut clip, segment(one.clone())).unwrap();
         let of_one = labels_in(&mut clip, one.start);
         settle(&mut clip, segment(other.clone())).unwrap();
@@ -140,10 +140,10 @@ fn commands_go_before_a_range_and_those_that_need_it_wait() {
 #[test]
 fn a_range_that_is_ended_early_has_the_frames_that_were_in() {
     for count in 0..=COUNT {
-        let mut clip = Clip::new(COUNT, OpenOptions::default());
+        let mut clip = Clip::new(COUNT, OpenOptions::default()).unwrap();
         let range = clip.apply(segment(0..COUNT)).unwrap();
         let _ = (0..count).all(|_| take(&mut clip));
-        clip.finish();
+        clip.finish(range);
         run(&mut clip);
         let settled = clip.take_events().settled;
         assert_eq!((settled[0].step, settled[0].changes.is_ok()), (range, count > 1), "{count}");
@@ -155,23 +155,23 @@ fn a_range_that_is_ended_early_has_the_frames_that_were_in() {
     // Behind other masks it is joined to them, unless it is ended once more.
     for (ends, count) in [(1, COUNT), (2, 3)] {
         let mut clip = first(3);
-        clip.apply(segment(3..COUNT)).unwrap();
+        let range = clip.apply(segment(3..COUNT)).unwrap();
         (0..3).for_each(|_| assert!(take(&mut clip)));
-        (0..ends).for_each(|_| clip.finish());
+        (0..ends).for_each(|_| clip.finish(range));
         run(&mut clip);
         settle(&mut clip, said(1, strokes(9))).unwrap();
         let has = shown(&mut clip).iter().filter(|labels| labels.contains(&9)).count();
         assert_eq!(has, count, "ended {ends} times");
     }
     let mut clip = first(3);
-    clip.apply(segment(3..COUNT)).unwrap();
-    clip.finish();
+    let range = clip.apply(segment(3..COUNT)).unwrap();
+    clip.finish(range);
     assert_eq!((clip.wanted(), clip.steps()[2]), (None, 0), "no frame was in");
 }
 
 #[test]
 fn solved_pairs_of_a_cancelled_range_are_kept() {
-    let mut clip = Clip::new(COUNT, OpenOptions::default());
+    let mut clip = Clip::new(COUNT, OpenOptions::default()).unwrap();
     let range = clip.apply(segment(0..COUNT)).unwrap();
     for index in 0..4 {
         clip.take(index, &SCENE.frames[index], None).unwrap();
@@ -194,7 +194,7 @@ fn solved_pairs_of_a_cancelled_range_are_kept() {
 
 #[test]
 fn pairs_of_others_give_the_same_bits() {
-    let mut alone = Clip::new(COUNT, OpenOptions::default());
+    let mut alone = Clip::new(COUNT, OpenOptions::default()).unwrap();
     alone.apply(segment(0..COUNT)).unwrap();
     let mut segmenter =
         veronese::clip::ClipSegmenter::new(crate::support::moving::options(veronese::Quality::Fast, None)).unwrap();
@@ -208,7 +208,7 @@ fn pairs_of_others_give_the_same_bits() {
     let records = alone.take_events().records;
     // Of some frames, of all, and of other frames or options, which are not used.
     for kind in 0..4 {
-        let mut clip = Clip::new(COUNT, OpenOptions::default());
+        let mut clip = Clip::new(COUNT, OpenOptions::default()).unwrap();
         clip.apply(segment(0..COUNT)).unwrap();
         for (index, frame) in SCENE.frames.iter().enumerate() {
             let solved = match kind {
@@ -257,7 +257,7 @@ fn frames_of_another_size_cover_all_masks_and_scale_what_was_said() {
     // Nor can what is left of the whole when it ends early.
     let whole = clip.apply(segment(0..COUNT)).unwrap();
     (0..3).for_each(|index| clip.take(index, &larger[index], None).unwrap());
-    clip.finish();
+    clip.finish(whole);
     let settled = clip.take_events().settled;
     assert!(matches!(settled[..], [ref of] if of.step == whole && of.changes.is_err()));
     assert_eq!(print(&mut clip), state);
@@ -266,7 +266,7 @@ fn frames_of_another_size_cover_all_masks_and_scale_what_was_said() {
     let mut again = 0;
     while let Some(wanted) = clip.wanted() {
         clip.take(wanted.frame, &larger[wanted.frame], None).unwrap();
-        again += usize::from(wanted.stage == Stage::Annotations);
+        again += usize::from(wanted.stage == ClipStage::Annotations);
     }
     assert!(again > 0, "annotations are applied again");
     assert_eq!(clip.size(), [2 * SIZE[0], 2 * SIZE[1]]);
@@ -318,7 +318,7 @@ fn a_look_at_a_frame_whose_masks_are_undone_asks_for_nothing() {
     let mut clip = read(&start().save());
     settle(&mut clip, said(1, strokes(9))).unwrap();
     clip.look_at(1);
-    assert_eq!(clip.wanted().unwrap().stage, Stage::Labels);
+    assert_eq!(clip.wanted().unwrap().stage, ClipStage::Labels);
     assert!(clip.undo() && clip.undo());
     assert_eq!(clip.wanted(), None);
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use veronese::Frame;
 use veronese::clip::{
-    Changed, Clip, ClipFrame, Command, Events, OpenOptions, Recovered, Settled, Stage, StepId, Wanted,
+    Changed, Clip, ClipFrame, ClipStage, Command, Events, OpenOptions, Recovered, Settled, StepId, Wanted,
 };
 
 use crate::clip::journal::Journal;
@@ -83,7 +83,7 @@ impl JournaledClip {
 
     /// The frame that is wanted. A range that another process has begun is not gone on with, but its solved pairs are kept.
     pub(crate) fn wanted(&mut self) -> Result<Option<Wanted>, Failure> {
-        while let Some(Wanted { stage: Stage::Pairs, step: Some(step), .. }) = self.clip.wanted()
+        while let Some(Wanted { stage: ClipStage::Pairs, step: Some(step), .. }) = self.clip.wanted()
             && self.step.is_none_or(|(own, _)| own != step)
         {
             self.with(|clip| clip.cancel(step))?;
@@ -119,7 +119,7 @@ impl JournaledClip {
     /// Whether a frame has masks whose labels are not known.
     pub(crate) fn needs(&mut self, index: usize) -> bool {
         self.clip.look_at(index);
-        let needs = self.clip.wanted().is_some_and(|wanted| wanted.stage == Stage::Labels);
+        let needs = self.clip.wanted().is_some_and(|wanted| wanted.stage == ClipStage::Labels);
         self.clip.look_at(None);
         needs
     }

@@ -159,8 +159,11 @@ impl Composition<'_> {
                 strokes::keep(&mut mask, base, &seeds, width);
             }
         } else if let Some((proposal, known)) = proposal.and_then(|of| Some((of, self.known(object)?))) {
-            let looks = |p: usize| proposal.signs.looks.at(self.pixel(p));
-            let change = proposal.signs.change.as_ref().map(|change| |p: usize| change.at(self.pixel(p)));
+            let pixels = self.features.pixels();
+            let looks = proposal.signs.looks.values(pixels);
+            let looks = |p: usize| looks[self.pixel(p)];
+            let change = proposal.signs.change.as_ref().map(|change| change.values(pixels));
+            let change = change.as_ref().map(|change| |p: usize| change[self.pixel(p)]);
             let change = change.as_ref().map(|change| change as &dyn Fn(usize) -> f32);
             strokes::settle(&mut mask, &known, &looks, change, width);
         }

@@ -282,11 +282,11 @@ impl Propagator {
             z.clamp(-model().certain, most)
         });
         let log_odds = log_odds.collect();
-        let looks = Patch::new(area.clone(), width, |p| {
-            let k = area.index_of(p, width);
+        let looks = |k: usize| {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             memory + model().trace * traced.as_ref().map_or(0.0, |of| of[k])
-        });
+        };
+        let looks = Patch::new(area.clone(), width, (0..area.width() * area.height()).map(looks).collect());
         let change = self.change.as_ref().map(|change| gaussian(change, model().blur));
         let change = change.map(|change| {
             let values: Vec<f32> = (0..width * height).map(|p| along(&change, p)).collect();
@@ -368,11 +368,13 @@ impl Propagator {
             mark(&now);
         }
         if let Some(change) = &signs.change {
+            let change = change.values(features.pixels());
             if !found.contains(&1) {
-                return Some(features.plane_of(&|p| change.at(p)));
+                return Some(features.plane_of(&|p| change[p]));
             }
+            let looks = signs.looks.values(features.pixels());
             let mut now = now.to_vec();
-            strokes::settle(&mut now, &found, &|p| signs.looks.at(p), Some(&|p| change.at(p)), width);
+            strokes::settle(&mut now, &found, &|p| looks[p], Some(&|p| change[p]), width);
             mark(&now);
         }
         Some(features.plane(&|p| is_changed[p]))

@@ -76,7 +76,8 @@ impl Proposal {
                 [_, true] => of[0].area.clone(),
                 _ => of[0].area.with(&of[1].area),
             };
-            Patch::new(area, width, |p| joined(of.map(|of| of.at(p))))
+            let values = of.map(|of| of.values(features.pixels()));
+            Patch { values: area.pixels(width).map(|p| joined([values[0][p], values[1][p]])).collect(), area, width }
         };
         let signs = Signs {
             looks: both(proposals.map(|of| &of.signs.looks), &mean),
@@ -110,25 +111,29 @@ impl Proposal {
 
 impl Patch {
     /// The values of a rectangle of a grid that is `width` wide.
-    pub(super) fn new(area: Area, width: usize, value: impl Fn(usize) -> f32) -> Patch {
-        let values = area.pixels(width).map(value).collect();
+    pub(super) fn new(area: Area, width: usize, values: Vec<f32>) -> Patch {
         Patch { area, width, values }
     }
 
     /// The smallest patch of values.
     pub(super) fn of(values: &[f32], width: usize) -> Patch {
         let set: Vec<usize> = (0..values.len()).filter(|&p| values[p] != 0.0).collect();
-        Patch::new(Area::of(&set, width), width, |p| values[p])
+        let area = Area::of(&set, width);
+        Patch { values: area.pixels(width).map(|p| values[p]).collect(), area, width }
     }
 
-    pub(super) fn at(&self, p: usize) -> f32 {
-        if self.area.contains(p, self.width) { self.values[self.area.index_of(p, self.width)] } else { 0.0 }
+    /// The values of all pixels.
+    pub(super) fn values(&self, pixels: usize) -> Vec<f32> {
+        let mut values = vec![0.0; pixels];
+        self.area.pixels(self.width).zip(&self.values).for_each(|(p, &value)| values[p] = value);
+        values
     }
 }
 
 /// Log-odds at any pixel, nats; a negative constant outside the area.
 pub(super) fn log_odds_at(area: &Area, log_odds: &[f32], p: usize, width: usize) -> f32 {
-    if area.contains(p, width) { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
+    let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
+    if inside { log_odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
 /// The mask of least energy: 1 inside.

@@ -9,7 +9,7 @@ pub struct StepId(pub(super) u32);
 
 /// What a frame is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum ClipStage {
     /// Its pairs with the frames beside it, nearly all the work of segmenting a range.
     Pairs,
     /// Annotations that are applied and spread.
@@ -19,13 +19,14 @@ pub enum Stage {
 }
 
 /// A frame that a [`Clip`](super::Clip) needs.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// Index of the frame.
     pub frame: usize,
     /// What it is wanted for.
-    pub stage: Stage,
-    /// The step that needs it; `None` for [`Stage::Labels`].
+    pub stage: ClipStage,
+    /// The step that needs it; `None` for [`ClipStage::Labels`].
     pub step: Option<StepId>,
 }
 
@@ -33,7 +34,7 @@ pub struct Wanted {
 #[non_exhaustive]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Events {
-    /// Records for the journal. They have to be kept before anything else is told to anyone: what is kept can be read again.
+    /// Records for the journal. Write them to durable storage before you report any result.
     pub records: Vec<u8>,
     /// Whether the records take the place of the journal so far; otherwise they are appended to it.
     pub replaces: bool,
@@ -41,13 +42,16 @@ pub struct Events {
     pub frames: Vec<usize>,
     /// Steps that have taken effect or failed, in order.
     pub settled: Vec<Settled>,
+    /// Steps that were cancelled, or taken back before they took effect.
+    pub cancelled: Vec<StepId>,
 }
 
 /// A step that has taken effect or failed.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// The step.
     pub step: StepId,
-    /// What objects have gained and lost, or why nothing has changed.
+    /// What objects have gained and lost by annotations, or why nothing has changed. Merges, deletions and ranges are not counted.
     pub changes: Result<Vec<Changed>>,
 }

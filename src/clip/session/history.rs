@@ -131,6 +131,8 @@ impl State {
         describes: Option<u8>,
         bytes: usize,
     ) -> State {
+        // A state holds pointers to its parts.
+        let bytes = bytes + size_of_val(&clip.frames[..]);
         State { step, clip, remembered, describes, bytes }
     }
 }

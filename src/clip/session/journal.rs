@@ -6,18 +6,17 @@ use super::events::Events;
 use super::history::{Difference, History, State};
 use super::log::{Kind, Log, Reader, Written, result};
 use super::shown::Shown;
-use super::{Clip, OpenOptions};
+use super::{Clip, MOST_FRAMES, OpenOptions};
 use crate::clip::command::Command;
 use crate::clip::saved::Saved;
+use crate::clip::segmented_clip::SegmentedClip;
 use crate::error::{Error, Result};
 
 /// A log that has grown by so many bytes, and to twice its size, since it was compacted is compacted again.
 const GROWTH: usize = 1 << 20;
 
-/// Largest number of frames of a clip that is read.
-const MOST_FRAMES: usize = 1 << 20;
-
 /// A [`Clip`] that was read from a journal.
+#[non_exhaustive]
 #[derive(Debug)]
 pub struct Recovered {
     /// The clip.
@@ -104,6 +103,11 @@ impl Clip {
             }
             Kind::Dropped => {
                 let step: usize = Saved::read(bytes)?;
+                // A range whose frames have all been in has found what was there.
+                let complete = self.ranges.iter().find(|range| range.step as usize == step && range.is_complete);
+                if let Some(range) = complete {
+                    self.pairs.retain(|frame, _| !range.frames.contains(frame));
+                }
                 self.forget_waiting(step as u32);
             }
             Kind::Range => {
@@ -143,7 +147,8 @@ impl Clip {
         }
         let (records, replaces) = self.log.take();
         let frames = std::mem::take(&mut self.changed).into_iter().collect();
-        Events { records, replaces, frames, settled: std::mem::take(&mut self.settled) }
+        let (settled, cancelled) = (std::mem::take(&mut self.settled), std::mem::take(&mut self.cancelled));
+        Events { records, replaces, frames, settled, cancelled }
     }
 
     /// The bytes of this clip, for [`read`](Self::read): its states, what waits, and all labels that are known.
@@ -154,7 +159,7 @@ impl Clip {
     fn compacted(&self) -> Log {
         let mut log = Log::with_capacity(self.history.bytes());
         log.append(Kind::Open, &self.len());
-        let empty = Clip::of(self.len(), self.options, Log::new()).history.current().clip.clone();
+        let empty = SegmentedClip::empty(self.len());
         let mut before = (0, &empty);
         for (k, state) in self.history.states().iter().enumerate() {
             let difference = Difference::between(before.1, &mut state.clip.clone());

@@ -254,7 +254,7 @@ mod tests {
     }
 
     fn journal(frames: &[Frame]) -> Vec<u8> {
-        let mut clip = Clip::new(3, OpenOptions::default());
+        let mut clip = Clip::new(3, OpenOptions::default()).unwrap();
         let options = SegmentOptions::default().with_quality(Quality::Fast);
         let content =
             Content::Strokes { object: 7, labels: (0..32 * 24).map(|p| if p % 32 < 9 { 1 } else { 255 }).collect() };

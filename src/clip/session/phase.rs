@@ -17,10 +17,14 @@ pub(super) enum Phase {
         object: Option<u8>,
         labels: Vec<u8>,
     },
+    /// Makes a new object of pieces of another one.
     Split {
         object: u8,
         frame: usize,
+        new: u8,
     },
+    /// Locks these objects and no others.
+    Lock(Vec<u8>),
     /// Restores locks and names that were lifted.
     Restore(Box<[ObjectSet; 2]>),
 }

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
-use super::combined::{combined, over, uncover, uncover_under};
+use super::combined::{Combined, over, uncover, uncover_under};
 use super::phase::{Phase, invalid};
 use crate::answer::UNLABELLED;
-use crate::clip::annotation::{Accepted, Annotations, Painted, Spread};
+use crate::clip::annotation::{Accepted, Annotations, Painted, Spread, is_object};
 use crate::clip::command::{Annotation, Command, Declaration};
 use crate::clip::description::ClipFrame;
 use crate::clip::frame_state::FrameState;
@@ -28,7 +28,11 @@ pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDe
                 return Err(Error::ObjectLocked { object });
             }
             uncover(clip, frame, object);
-            Annotations { cleared: vec![(frame, object)], accepted: reopened(clip, &[frame]), ..Annotations::default() }
+            // What was merged into the object is part of it.
+            let is_it = |k: &u8| object == Some(clip.objects.number(*k));
+            let merged = (1..UNLABELLED).filter(is_it).map(|k| (frame, Some(k)));
+            let cleared = if object.is_none() { vec![(frame, None)] } else { merged.collect() };
+            Annotations { cleared, accepted: reopened(clip, &[frame]), ..Annotations::default() }
         }
         Command::Accept { frames, on } => {
             let stays = |index: &usize| clip.frames[*index].accepted && (on || !frames.contains(index));
@@ -40,28 +44,38 @@ pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDe
         Command::Lock { objects, on } => {
             let objects = known_objects(clip, &objects)?;
             let is_locked = |object: u8| clip.objects.locked[usize::from(object)];
-            let stays = |object: &u8| if objects.contains(object) { on } else { is_locked(*object) };
+            let stays = |&k: &u8| if objects.contains(&clip.objects.number(k)) { on } else { is_locked(k) };
             Annotations { locked: Some((1..UNLABELLED).filter(stays).collect()), ..Annotations::default() }
         }
         Command::Describe { object, description, .. } => {
-            let [object] = known_objects(clip, &[object])?[..] else { return Ok(VecDeque::new()) };
+            let object = known_object(clip, object)?;
             describe(clip, object, description);
             return Ok(VecDeque::new());
         }
         Command::Merge(objects) => {
             let objects = known_objects(clip, &objects)?;
+            match objects[..] {
+                [into, _, ..] if !clip.frames_with(into).is_empty() => {}
+                [into, _, ..] => {
+                    return invalid("objects", format!("object {into} has no pixel: nothing is merged into it"));
+                }
+                _ => return invalid("objects", "there is nothing to merge".into()),
+            }
             Annotations { numbers: merged(&objects), ..Annotations::default() }
         }
         Command::Delete(objects) => {
             let objects = known_objects(clip, &objects)?;
             Annotations { numbers: deleted(&objects), ..Annotations::default() }
         }
-        Command::Split { object, frame } => {
-            let [object] = known_objects(clip, &[object])?[..] else { return Ok(VecDeque::new()) };
+        Command::Split { object, frame, new } => {
+            let object = known_object(clip, object)?;
             if clip.objects.locked[usize::from(object)] {
                 return Err(Error::ObjectLocked { object });
             }
-            return Ok(VecDeque::from([Phase::Split { object, frame }]));
+            if !is_object(new) || clip.objects.used[usize::from(new)] {
+                return invalid("new", format!("{new} is no number of a new object"));
+            }
+            return Ok(VecDeque::from([Phase::Split { object, frame, new }]));
         }
     };
     Ok(VecDeque::from([Phase::Annotate(annotations)]))
@@ -80,15 +94,19 @@ fn deleted(objects: &[u8]) -> Vec<[u8; 2]> {
 fn known_objects(clip: &SegmentedClip, objects: &[u8]) -> Result<Vec<u8>> {
     let mut known = Vec::new();
     for &object in objects {
-        let number = clip.objects.current(object)?;
-        if !clip.objects.used[usize::from(number)] {
-            return invalid("object", format!("there is no object {object}"));
-        }
+        let number = known_object(clip, object)?;
         if !known.contains(&number) {
             known.push(number);
         }
     }
     Ok(known)
+}
+
+fn known_object(clip: &SegmentedClip, object: u8) -> Result<u8> {
+    match clip.objects.current(object)? {
+        number if clip.objects.used[usize::from(number)] => Ok(number),
+        _ => invalid("object", format!("there is no object {object}")),
+    }
 }
 
 fn describe(clip: &mut SegmentedClip, object: u8, description: Description) {
@@ -117,17 +135,20 @@ fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Optio
     let number = |label: u8| clip.objects.number(label);
     labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
 }
+
 /// The phases of annotations.
 fn annotate(clip: &mut SegmentedClip, all: Vec<Annotation>) -> Result<VecDeque<Phase>> {
     let frames: Vec<usize> = all.iter().map(|annotation| annotation.frame).collect();
-    let (annotations, draws) = combined(clip, all)?;
-    for Painted { frame, object, labels, .. } in &annotations.corrections {
-        uncover_under(clip, *frame, *object, labels);
+    let Combined { masks, painted, prompts, draws, covers, .. } = Combined::new(clip, all)?;
+    for (frame, object, labels) in covers {
+        uncover_under(clip, frame, object, &labels);
     }
-    let annotations = Annotations { accepted: reopened(clip, &frames), ..annotations };
+    let accepted = reopened(clip, &frames);
+    let annotations = Annotations { masks, corrections: painted, prompts, accepted, ..Annotations::default() };
     Ok(std::iter::once(Phase::Annotate(annotations)).chain(draws).collect())
 }
-/// The phases that replace all that a person has said.
+
+/// The phases that replace all annotations, descriptions, merges and acceptances.
 fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>> {
     let Declaration { annotations, locked, described, merged: groups, deleted: gone, accepted } = all;
     let objects = Objects::new(clip.objects.dropped);
@@ -140,28 +161,44 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
         }
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
     }
-    let (annotations, draws) = combined(clip, annotations)?;
+    let Combined { masks, painted, prompts, draws, .. } = Combined::new(clip, annotations)?;
+    let edited = groups.iter().chain([&gone, &locked]).flatten().chain(described.iter().map(|(object, _)| object));
+    edited.into_iter().try_for_each(|&object| clip.objects.current(object).map(drop))?;
+    if let Some(object) = groups.iter().flatten().find(|object| gone.contains(object)) {
+        return invalid("deleted", format!("object {object} cannot be merged and deleted"));
+    }
     for (object, description) in described {
-        let object = clip.objects.current(object)?;
         describe(clip, object, description);
     }
     let mut numbers: Vec<[u8; 2]> = groups.iter().flat_map(|group| merged(group)).collect();
     numbers.extend(deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
-        let given = annotations.masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
+        let given = masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
         let labels = seen.remove(&frame).map(|seen| match given {
             Some(given) => over(Some(seen), given),
             None => seen,
         });
         Accepted { frame, labels }
     });
-    let accepted = accepted.collect();
-    let annotations = Annotations { accepted: Some(accepted), locked: Some(locked), numbers, ..annotations };
-    Ok(std::iter::once(Phase::Annotate(annotations)).chain(draws).collect())
+    let accepted = Some(accepted.collect());
+    let annotations = Annotations {
+        masks,
+        corrections: painted,
+        prompts,
+        accepted,
+        locked: Some(locked.clone()),
+        numbers,
+        ..Annotations::default()
+    };
+    // Exact drawing may be that of objects that were locked later.
+    let mut phases = VecDeque::from([Phase::Annotate(annotations), Phase::Lock(Vec::new())]);
+    phases.extend(draws);
+    phases.push_back(Phase::Lock(locked));
+    Ok(phases)
 }
 
 /// The annotations that make a new object of all pieces of an object but the largest.
-pub(super) fn split(clip: &SegmentedClip, shown: &ClipFrame, object: u8) -> Result<Annotations> {
+pub(super) fn split(clip: &mut SegmentedClip, shown: &ClipFrame, object: u8, new: u8) -> Result<Annotations> {
     let (frame, width) = (shown.index, clip.size[0]);
     let inside: Vec<u8> = shown.labels.iter().map(|&label| u8::from(label == object)).collect();
     let parts = components(&inside, width, Connectivity::Eight);
@@ -169,20 +206,23 @@ pub(super) fn split(clip: &SegmentedClip, shown: &ClipFrame, object: u8) -> Resu
     let largest = order.first().copied().unwrap_or(0);
     let is_other = |p: usize| inside[p] > 0 && parts.of[p] as usize != largest;
     if !(0..inside.len()).any(is_other) {
-        return invalid("object", format!("object {object} is in one piece in frame {frame}"));
+        let pieces = if inside.contains(&1) { "in one piece" } else { "not" };
+        return invalid("object", format!("object {object} is {pieces} in frame {frame}"));
     }
-    let Some(new) = clip.next_object() else {
-        return invalid("object", "no number is left for another object".into());
+    let labels = |label: u8, elsewhere: u8| {
+        (0..inside.len()).map(|p| if is_other(p) { label } else { elsewhere }).collect::<Vec<u8>>()
     };
-    let labels =
-        |label: u8, elsewhere: u8| (0..inside.len()).map(|p| if is_other(p) { label } else { elsewhere }).collect();
+    uncover_under(clip, frame, None, &labels(new, UNLABELLED));
     let mut corrections = Vec::new();
-    // An object that a person has not spoken of gives way by itself.
-    if clip.protected()[usize::from(object)] || clip.frames.iter().any(|frame| frame.anchors(object)) {
-        let own = clip.frames[frame].annotation.as_ref().and_then(|of| of.painted_of(object));
+    // An object that a person has neither annotated nor named gives way by itself.
+    let protected = clip.protected();
+    let is_it = |&k: &u8| clip.objects.number(k) == object;
+    let gives_way = |k: u8| !protected[usize::from(k)] && !clip.frames.iter().any(|frame| frame.anchors(k));
+    for part in (1..UNLABELLED).filter(is_it).filter(|&k| !gives_way(k)) {
+        let own = clip.frames[frame].annotation.as_ref().and_then(|of| of.painted_of(part));
         corrections.push(Painted {
             frame,
-            object: Some(object),
+            object: Some(part),
             labels: over(own, labels(0, UNLABELLED)),
             spread: Spread::Both,
         });

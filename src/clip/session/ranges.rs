@@ -71,6 +71,9 @@ impl RangeJob {
     fn beside(&self, clip: &SegmentedClip, side: usize) -> Option<usize> {
         let Range { start, end } = self.frames;
         let beside = if side == 0 { start.checked_sub(1)? } else { end };
+        if self.segmenter.size() != Some(clip.size) {
+            return None;
+        }
         let halvings = ClipOptions::default().with_pair(self.options).settings(clip.size).scaling(clip.size).halvings();
         let found = clip.frames.get(beside)?.found.as_ref()?;
         (found.halvings == halvings && self.ends[side].is_some()).then_some(beside)

@@ -79,7 +79,7 @@ impl SegmentedClip {
             [k as u8, number].write(&mut bytes);
             [users[k], users[usize::from(number)], given, protected[k]].write(&mut bytes);
         }
-        // Never that of a frame without labels.
+        // 0 stands for a frame that is not segmented.
         hash(0, &bytes) | 1
     }
 }

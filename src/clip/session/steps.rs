@@ -1,6 +1,7 @@
 //! A command that takes effect: on a copy of the state, in phases that ask for the frames that they need.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
 use super::phase::{Phase, some_labels};
 use super::phases::{phases, split};
@@ -22,6 +23,8 @@ pub(super) struct Running {
     pub(super) clip: SegmentedClip,
     /// The object that the command describes, and whether it is then part of the step before.
     pub(super) describes: Option<(u8, bool)>,
+    /// The frames of the range that it puts in its place.
+    pub(super) range: Option<Range<usize>>,
     phases: VecDeque<Phase>,
     job: Option<ClipJob>,
     /// What earlier phases have changed.
@@ -36,11 +39,11 @@ impl Running {
     pub(super) fn new(step: u32, before: &SegmentedClip, command: Command) -> Result<Running> {
         let mut clip = before.clone();
         let describes = match &command {
-            Command::Describe { object, coalesce, .. } => Some((*object, *coalesce)),
+            Command::Describe { object, coalesce, .. } => Some((before.objects.current(*object)?, *coalesce)),
             _ => None,
         };
         let phases = phases(&mut clip, command)?;
-        Running { step, clip, describes, phases, job: None, changes: Changes::default() }.advanced()
+        Running { step, clip, describes, range: None, phases, job: None, changes: Changes::default() }.advanced()
     }
 
     /// Puts a segmented range in its place, and applies the annotations of its scenes again.
@@ -48,17 +51,18 @@ impl Running {
     /// # Errors
     /// [`Error::InvalidOption`] for a range of fewer than two frames.
     pub(super) fn of_range(range: RangeJob, before: &SegmentedClip) -> Result<Running> {
-        let step = range.step;
+        let (step, frames) = (range.step, range.frames.clone());
         let (mut clip, scenes) = range.conclude(before)?;
         let phases = repeated(before, &mut clip, scenes).into();
-        Running { step, clip, describes: None, phases, job: None, changes: Changes::default() }.advanced()
+        Running { step, clip, describes: None, range: Some(frames), phases, job: None, changes: Changes::default() }
+            .advanced()
     }
 
     /// The frame to [`take`](Self::take) next; `None` when the command has taken effect.
     pub(super) fn wanted(&self) -> Option<usize> {
         self.job.as_ref().and_then(ClipJob::wanted).or_else(|| match self.phases.front()? {
             Phase::Draw { frame, .. } | Phase::Split { frame, .. } => Some(*frame),
-            Phase::Annotate(_) | Phase::Restore(_) => None,
+            Phase::Annotate(_) | Phase::Lock(_) | Phase::Restore(_) => None,
         })
     }
 
@@ -73,8 +77,8 @@ impl Running {
             let shown = self.clip.frame(index, frame)?;
             match self.phases.pop_front() {
                 Some(Phase::Draw { object, labels, .. }) => self.draw(&shown, object, &labels),
-                Some(Phase::Split { object, .. }) => {
-                    let annotations = split(&self.clip, &shown, object)?;
+                Some(Phase::Split { object, new, .. }) => {
+                    let annotations = split(&mut self.clip, &shown, object, new)?;
                     self.phases.push_front(Phase::Annotate(annotations));
                 }
                 _ => {}
@@ -88,9 +92,17 @@ impl Running {
         self.job.as_ref().map_or(self.changes.frames(), ClipJob::changed).contains(&index)
     }
 
-    /// What objects have gained and lost.
+    /// What objects have gained and lost, under their current numbers. Nothing for a range, whose masks are new.
     pub(super) fn changes(&self) -> Vec<Changed> {
-        self.job.as_ref().map_or_else(|| self.changes.list(), ClipJob::changes)
+        let mut all: Vec<Changed> = Vec::new();
+        for changed in self.changes.list().into_iter().filter(|_| self.range.is_none()) {
+            let object = self.clip.objects.number(changed.object);
+            match all.iter_mut().find(|of| (of.frame, of.object) == (changed.frame, object)) {
+                Some(of) => (of.gained, of.lost) = (of.gained + changed.gained, of.lost + changed.lost),
+                None => all.push(Changed { object, ..changed }),
+            }
+        }
+        all
     }
 
     fn advanced(mut self) -> Result<Running> {
@@ -112,6 +124,7 @@ impl Running {
                     let earlier = std::mem::take(&mut self.changes);
                     self.job = Some(self.clip.annotate(annotations)?.after(earlier));
                 }
+                Some(Phase::Lock(objects)) => self.clip.objects_mut().lock(&objects),
                 Some(Phase::Restore(sets)) => {
                     let objects = self.clip.objects_mut();
                     [objects.locked, objects.named] = *sets;
@@ -121,7 +134,7 @@ impl Running {
         }
     }
 
-    /// Draws labels exactly. Pixels of locked objects stay as they are; the ground of one object is ground for this object alone.
+    /// Draws labels exactly. Pixels of locked objects stay as they are; a stroke of 0 removes only its own object.
     fn draw(&mut self, shown: &ClipFrame, object: Option<u8>, labels: &[u8]) {
         let ClipFrame { index, labels: shown, .. } = shown;
         let frame = &mut self.clip.frames[*index];

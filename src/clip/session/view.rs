@@ -6,7 +6,6 @@ use super::Clip;
 use super::shown::Shown;
 use crate::answer::UNLABELLED;
 use crate::clip::description::ClipFrame;
-use crate::clip::frame_state::FrameState;
 use crate::clip::objects::{Description, Objects};
 use crate::clip::segmented_clip::SegmentedClip;
 use crate::clip::tracks::{ClipTracks, Tracks};
@@ -86,14 +85,17 @@ impl Clip {
 
     /// What is known of each frame.
     pub fn frames(&self) -> Vec<FrameStatus> {
-        let clip = &self.state().clip;
-        let status = |(index, frame): (usize, &FrameState)| FrameStatus {
-            has_masks: frame.found.is_some(),
-            accepted: frame.accepted,
-            annotated: frame.annotation.is_some() || frame.exact.is_some(),
-            revision: clip.key(index, self.options.mark_unknown),
+        let status = |index: usize| {
+            let clip = self.clip_of(index);
+            let frame = &clip.frames[index];
+            FrameStatus {
+                has_masks: frame.found.is_some(),
+                accepted: frame.accepted,
+                annotated: frame.annotation.is_some() || frame.exact.is_some(),
+                revision: clip.key(index, self.options.mark_unknown),
+            }
         };
-        clip.frames.iter().enumerate().map(status).collect()
+        (0..self.len()).map(status).collect()
     }
 
     /// All objects that there have been, by number.
@@ -111,9 +113,16 @@ impl Clip {
         (1..UNLABELLED).filter(|&number| used[usize::from(number)]).map(object).collect()
     }
 
-    /// The lowest number that no object has had; `None` if none is left.
+    /// The lowest number that no object has had, and that no command gives which has not taken effect; `None` if none is left.
     pub fn next_object(&self) -> Option<u8> {
-        self.state().clip.next_object()
+        let coming: Vec<u8> = self
+            .given
+            .keys()
+            .filter_map(|&step| self.command(step))
+            .flat_map(|command| command.new_objects())
+            .collect();
+        let used = &self.state().clip.objects.used;
+        (1..UNLABELLED).find(|&k| !used[usize::from(k)] && !coming.contains(&k))
     }
 
     /// The tracks of all objects in the frames whose labels are known.
