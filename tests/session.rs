@@ -644,3 +644,86 @@ fn the_oldest_steps_are_forgotten_and_never_the_state() {
     }
     assert!(steps.is_sorted() && steps[0] == 0 && steps[1] < steps[2] && steps[2] < steps[3], "{steps:?}");
 }
+
+#[test]
+fn merged_objects_are_erased_cleared_and_unlocked_as_one() {
+    let mut clip = start();
+    let [left, right] = [[4, 4, 12, 8], [70, 4, 9, 8]];
+    for (object, place) in [(7, left), (9, right)] {
+        settle(&mut clip, said(2, Content::Strokes { object, labels: in_box(place, 1, 255) })).unwrap();
+    }
+    settle(&mut clip, Command::Merge(vec![7, 9])).unwrap();
+    let count = |clip: &mut Clip, [x, y, columns, rows]: [usize; 4]| {
+        let labels = shown(clip).swap_remove(2);
+        let inside = |p: &usize| (x..x + columns).contains(&(p % SIZE[0])) && (y..y + rows).contains(&(p / SIZE[0]));
+        (0..PIXELS).filter(|p| inside(p) && labels[*p] == 7).count()
+    };
+    assert_eq!((count(&mut clip, left), count(&mut clip, right)), (96, 72));
+    settle(&mut clip, Command::Lock { objects: vec![7], on: true }).unwrap();
+    settle(&mut clip, Command::Lock { objects: vec![9], on: false }).unwrap();
+    settle(&mut clip, said(2, Content::Strokes { object: 7, labels: in_box(right, 0, 255) })).unwrap();
+    assert_eq!(count(&mut clip, right), 0, "what was object 9 is erased");
+    assert!(clip.undo());
+    assert_eq!(count(&mut clip, right), 72);
+    settle(&mut clip, Command::Clear { frame: 2, object: Some(7) }).unwrap();
+    assert_eq!((count(&mut clip, left), count(&mut clip, right)), (0, 0));
+    assert!(settle(&mut clip, Command::Merge(vec![7, 9])).is_err(), "they are one already");
+}
+
+#[test]
+fn exact_drawing_yields_to_what_is_painted_later() {
+    let mut clip = start();
+    let place = [4, 4, 12, 8];
+    let exact = |content| Command::Annotate(vec![Annotation { frame: 2, content, spread: Spread::Exact }]);
+    let paint = || said(2, Content::Strokes { object: 7, labels: in_box(place, 1, 255) });
+    let has = |clip: &mut Clip, t: usize| shown(clip).swap_remove(t)[5 * SIZE[0] + 5] == 7;
+    settle(&mut clip, paint()).unwrap();
+    settle(&mut clip, exact(Content::Strokes { object: 7, labels: in_box(place, 0, 255) })).unwrap();
+    assert!(!has(&mut clip, 2) && has(&mut clip, 3), "it is erased in its frame alone");
+    settle(&mut clip, paint()).unwrap();
+    assert!(has(&mut clip, 2), "the same stroke again");
+    // An eraser over a label map, over strokes, and over what was drawn exactly.
+    for below in [said(2, Content::Labels(in_box(place, 7, 255))), exact(Content::Labels(in_box(place, 7, 255)))] {
+        settle(&mut clip, below).unwrap();
+        assert!(has(&mut clip, 2));
+        settle(&mut clip, said(2, Content::Labels(in_box(place, 0, 255)))).unwrap();
+        assert!(!has(&mut clip, 2));
+    }
+    // What is declared is drawn, also of objects that are locked.
+    let annotations = vec![
+        Annotation::new(2, Content::Strokes { object: 7, labels: in_box(place, 1, 255) }),
+        Annotation {
+            frame: 2,
+            content: Content::Strokes { object: 7, labels: in_box([4, 4, 3, 3], 0, 255) },
+            spread: Spread::Exact,
+        },
+    ];
+    let declared = Declaration { annotations, locked: vec![7], ..Declaration::default() };
+    settle(&mut clip, Command::ReplaceAnnotations(declared)).unwrap();
+    assert!(!has(&mut clip, 2) && has(&mut clip, 3));
+}
+
+#[test]
+fn a_host_knows_what_is_under_way() {
+    let mut clip = start();
+    let before = clip.frames()[2].revision;
+    let command = || said(2, Content::Strokes { object: 7, labels: in_box([4, 4, 12, 8], 1, 255) });
+    let step = clip.apply(command()).unwrap();
+    assert_eq!(
+        clip.next_object(),
+        Some((1..255).find(|k| *k != 7 && clip.objects().iter().all(|of| of.number != *k)).unwrap())
+    );
+    clip.look_at(2);
+    assert!(take(&mut clip) && take(&mut clip));
+    let shown = clip.labels(2).unwrap();
+    assert!(shown.labels.contains(&7) && clip.frames()[2].revision != before, "its own frame comes first");
+    assert!(clip.cancel(step));
+    assert_eq!(clip.frames()[2].revision, before);
+    assert_eq!(clip.take_events().cancelled, [step]);
+    // What cannot be written in the journal is refused at once.
+    let large = vec![255; 4096 * 4096 + 1];
+    let mut waiting = Clip::new(COUNT, OpenOptions::default()).unwrap();
+    waiting.apply(segment(0..COUNT)).unwrap();
+    assert!(waiting.apply(said(2, Content::Labels(large))).is_err());
+    assert!(Clip::new(usize::MAX, OpenOptions::default()).is_err());
+}

@@ -47,15 +47,24 @@ pub(crate) fn open_clip(
     let options = OpenOptions::default().with_mark_unknown(mark_unknown);
     let (kept, warning) = py.detach(|| JournaledClip::open(length, saved.as_deref(), journal, options))?;
     let mut clip = Clip { worker: Some(Worker::start(kept)?), source, length, is_kept };
-    if let Some(warning) = warning {
+    let warn = |sentence: String| {
         let warnings = py.import("warnings")?;
-        warnings.call_method1("warn", (warning, py.get_type::<PyUserWarning>(), 2))?;
+        warnings.call_method1("warn", (sentence, py.get_type::<PyUserWarning>(), 2)).map(drop)
+    };
+    warning.map_or(Ok(()), warn)?;
+    match clip.work(py, None) {
+        Ok(_) => Ok(clip),
+        // The steps before are there all the same.
+        Err(error) if error.is_instance_of::<PyException>(py) => {
+            clip.call(py, JournaledClip::cancel_all)?;
+            warn(format!("annotations that were under way when the journal ended are left out: {error}"))?;
+            Ok(clip)
+        }
+        Err(error) => {
+            clip.close(py)?;
+            Err(error)
+        }
     }
-    let finished = clip.work(py, None);
-    if finished.is_err() {
-        clip.close(py)?;
-    }
-    finished.map(|_| clip)
 }
 
 /// A clip, from its opening to its closing.
@@ -182,7 +191,9 @@ impl Clip {
     /// Makes a new object of all connected pieces of an object but the largest in a frame.
     fn split<'py>(&mut self, py: Python<'py>, object: &Bound<'_, PyAny>, frame: &Bound<'_, PyAny>) -> Changes<'py> {
         let (object, frame) = (options::object("object", object)?, index("frame", frame)?);
-        self.change(py, Command::Split { object, frame }, None)
+        let none = || Failure::input("no number is left for another object".into());
+        let new = self.call(py, move |kept| kept.clip.next_object().ok_or_else(none))?;
+        self.change(py, Command::Split { object, frame, new }, None)
     }
 
     /// Takes back the last step. Returns whether there was one.
@@ -321,20 +332,26 @@ impl Clip {
     /// error is returned.
     fn work(&mut self, py: Python<'_>, progress: Optional<'_, '_>) -> PyResult<Option<PyErr>> {
         let mut failure = None;
-        while let Some(Wanted { frame, stage, .. }) = self.call(py, JournaledClip::wanted)? {
+        while let Some(Wanted { frame, stage, step, .. }) = self.call(py, JournaledClip::wanted)? {
             py.check_signals()?;
             let is_pairs = stage == ClipStage::Pairs;
             report(progress, if is_pairs { "pairs" } else { "annotations" }, frame, Some(self.length))?;
             match self.read(py, frame, JournaledClip::take) {
-                Err(error) if is_pairs && error.is_instance_of::<PyException>(py) => {
+                Err(error) if is_pairs && is_of_frame(py, &error) => {
                     failure = Some(error);
-                    self.call(py, |kept| kept.with(|clip| clip.finish()))?;
+                    self.call(py, move |kept| kept.with(|clip| step.into_iter().for_each(|step| clip.finish(step))))?;
                 }
                 taken => taken?,
             }
         }
         Ok(failure)
     }
+}
+
+/// Whether an error is about a frame: not an interruption, nor a journal that cannot be written.
+fn is_of_frame(py: Python<'_>, error: &PyErr) -> bool {
+    let code = error.value(py).getattr("code").and_then(|code| code.extract::<String>());
+    error.is_instance_of::<PyException>(py) && code.map_or(true, |code| code != "write-failed")
 }
 
 /// Tells the listener that work on a frame begins.

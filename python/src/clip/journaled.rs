@@ -34,7 +34,7 @@ impl JournaledClip {
                 return Err(Failure::option("saved", "the journal has a clip already: give one of the two"));
             }
             (Some(content), None) => {
-                let Recovered { clip, used, is_damaged } = recovered("journal", content, frames, options)?;
+                let Recovered { clip, used, is_damaged, .. } = recovered("journal", content, frames, options)?;
                 if let Some(journal) = &mut journal {
                     warning = journal.cut(content, used, is_damaged)?;
                 }
@@ -50,7 +50,7 @@ impl JournaledClip {
                 }
                 clip
             }
-            (None, None) => Clip::new(frames, options),
+            (None, None) => Clip::new(frames, options)?,
         };
         let mut kept = JournaledClip { clip, journal, step: None, settled: Vec::new() };
         kept.keep()?;
@@ -89,6 +89,14 @@ impl JournaledClip {
             self.with(|clip| clip.cancel(step))?;
         }
         Ok(self.clip.wanted())
+    }
+
+    /// Cancels everything that is under way or waits.
+    pub(crate) fn cancel_all(&mut self) -> Result<(), Failure> {
+        while let Some(step) = self.clip.wanted().and_then(|wanted| wanted.step) {
+            self.with(|clip| clip.cancel(step))?;
+        }
+        Ok(())
     }
 
     /// Takes a frame that is wanted.
