@@ -98,7 +98,8 @@ class Clip:
         """Accepts frames as correct, or no longer. Annotations of other frames do not change an accepted frame; one of itself ends the
         acceptance."""
     def lock(self, objects: Sequence[int], on: bool = True) -> None:
-        """Locks objects, or unlocks them. Nothing changes the pixels of a locked object; annotating it raises ``object-locked``."""
+        """Locks objects, or unlocks them. Only segmenting its frames again changes the pixels of a locked object; annotating it
+        raises ``object-locked``."""
     def describe(
         self, number: int, name: str = "", class_name: str = "", colour: Optional[Colour] = None
     ) -> None:
