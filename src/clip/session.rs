@@ -1,10 +1,10 @@
 //! A clip from its opening to its closing: commands in, labels out, undo, and a journal from which it can be read again.
 //!
-//! - A command takes effect on a copy of the state (`session/steps.rs`), frame by frame; the copy becomes the state as a whole or not at all.
+//! - A command takes effect on a copy of the state (`session/running.rs`), frame by frame; the copy becomes the state as a whole or not at all.
 //! - A range of frames is segmented beside that (`session/ranges.rs`), and takes its place between two commands.
 //! - The states after each step share all parts in which they do not differ (`session/history.rs`).
 //! - The journal has every command before it takes effect, and what it has changed (`session/journal.rs`, `session/log.rs`).
-//! - Labels are remembered by what they follow from (`session/view.rs`, `session/shown.rs`).
+//! - Labels are cached under a hash of their inputs (`session/view.rs`, `session/shown.rs`).
 
 mod combined;
 mod events;
@@ -15,8 +15,8 @@ mod phase;
 mod phases;
 mod ranges;
 mod repeated;
+mod running;
 mod shown;
-mod steps;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -33,7 +33,7 @@ use crate::frame::Frame;
 use history::{Difference, History, Remembered, State};
 use log::{Kind, Log, Written, range_record, result};
 use ranges::RangeJob;
-use steps::Running;
+use running::Running;
 
 pub use events::{ClipStage, Events, Settled, StepId, Wanted};
 pub use journal::Recovered;
@@ -431,7 +431,7 @@ impl Clip {
         self.ranges.front().is_some_and(|range| range.is_complete)
     }
 
-    /// Whether a step is taking effect. After reading, a range whose frames have all been in takes effect when they are in again.
+    /// Whether a step is taking effect. A range that was complete when the journal ended does so once its frames have been taken again.
     fn is_under_way(&self) -> bool {
         self.running.is_some() || self.has_complete_range()
     }

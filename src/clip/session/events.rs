@@ -1,4 +1,4 @@
-//! What a host is told: the frames that are wanted, and what has happened.
+//! What a clip reports to its host: the frames that are wanted, and what has happened.
 
 use crate::clip::changes::Changed;
 use crate::error::Result;

@@ -59,7 +59,7 @@ impl Clip {
         Ok(Recovered { clip, used: reader.used, is_damaged: is_damaged || reader.is_damaged() })
     }
 
-    /// Does again what a record says; `None` if that is not valid.
+    /// Applies a record; `None` if it is not valid.
     fn replay(&mut self, kind: Kind, content: &[u8]) -> Option<()> {
         let mut rest = content;
         let bytes = &mut rest;

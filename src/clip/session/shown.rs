@@ -1,4 +1,4 @@
-//! The labels of a frame as they are shown, remembered by what they follow from.
+//! The labels of a frame as they are shown, cached under a hash of their inputs.
 
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::ObjectSet;
@@ -12,7 +12,7 @@ use crate::motion::AffineMotion;
 /// Labels and objects of a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
-    /// The key of what they follow from.
+    /// The hash of their inputs.
     pub(super) key: u64,
     labels: Runs,
     objects: Vec<ClipObject>,
@@ -53,7 +53,7 @@ impl Shown {
 }
 
 impl SegmentedClip {
-    /// A hash of everything that the labels of a frame follow from; 0 for a frame that is not segmented.
+    /// A hash of all inputs of the labels of a frame; 0 for a frame that is not segmented.
     pub(super) fn key(&self, index: usize, mark_unknown: bool) -> u64 {
         let frame = &self.frames[index];
         let Some(found) = &frame.found else { return 0 };

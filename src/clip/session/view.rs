@@ -22,7 +22,7 @@ pub struct FrameStatus {
     pub accepted: bool,
     /// Whether a person has annotated it.
     pub annotated: bool,
-    /// A hash of everything that its labels follow from: equal revisions have equal labels. 0 before it is segmented.
+    /// A hash of all inputs of its labels: equal revisions have equal labels. 0 before it is segmented.
     pub revision: u64,
 }
 
