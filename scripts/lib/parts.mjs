@@ -85,7 +85,7 @@ export const DAILY = {
     title: 'the Python package',
     named: true,
     needs: { ownPython: true },
-    budget: 72,
+    budget: 92,
     inputs: { build: buildPackage, apart: [...NOTES, ...PAGE, 'pkg/test', 'experiments'] },
     run: async (setup) => added(await ofPython('python', setup, buildTestWheel), await ofStart(setup, ['start-python'])),
     stressed: { busy: (setup) => ofPython('python', setup, buildTestWheel) },
