@@ -1,5 +1,6 @@
 //! Wires the page together: one store, one session, and the views mounted on their markup.
 
+import { imported } from './common/loaded.js';
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
@@ -75,7 +76,7 @@ mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountLeaving(window, store);
 mountTitle(document, store);
-mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
+mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await imported(() => import('./views/panel.js'))).mountPanel(panel, store, session));
 mountEvidence(find(document, '#evidence', HTMLElement), store, session);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));

@@ -166,7 +166,7 @@ export class Projects {
   }
 
   async #load(): Promise<Shelf> {
-    return (this.#shelf ??= await loaded(import('./shelf.js')));
+    return (this.#shelf ??= await loaded(() => import('./shelf.js')));
   }
 
   #watch(now: State, before: State): void {

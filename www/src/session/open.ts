@@ -190,7 +190,7 @@ export class Open {
 }
 
 function importing(): Promise<typeof import('./clip/importing.js')> {
-  return loaded(import('./clip/importing.js'));
+  return loaded(() => import('./clip/importing.js'));
 }
 
 /** Opens a sample as the folder that it is. */

@@ -3,6 +3,7 @@
 //! selected object, with Alt or the right button to what does not belong to it. With Shift the wheel changes the size of the brush. All tools:
 //! the wheel and two fingers zoom.
 
+import { imported } from '../common/loaded.js';
 import { inPicture } from '../drawing/viewport.js';
 import { maskOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
@@ -122,7 +123,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     const { look } = store.get();
     if (look.kind !== 'objects' || look.selected !== 0) return;
     const view = inView(event);
-    offering ??= import('./offer.js').then(({ Offer }) => new Offer(layers, store, session));
+    offering ??= imported(() => import('./offer.js')).then(({ Offer }) => new Offer(layers, store, session));
     // Without it there is the box, which does the same.
     offering.then((offer) => offer.at(at, view), () => (offering = null));
   };

@@ -1,6 +1,7 @@
 //! Handles keyboard shortcuts, and opens the list of them with `?`. Single-key shortcuts can be disabled there, because speech
 //! input triggers them.
 
+import { imported } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
@@ -15,7 +16,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   const peek = new Peek(store);
   const show = (): void => {
     if (!dialog.open) dialog.showModal();
-    if (list.childElementCount === 0) import('./key-list.js').then(({ listKeys }) => listKeys(list), () => session.say(strings.errors.notLoaded, 'not-loaded'));
+    if (list.childElementCount === 0) imported(() => import('./key-list.js')).then(({ listKeys }) => listKeys(list), () => session.say(strings.errors.notLoaded, 'not-loaded'));
     // From the top, which the first control may be far from.
     dialog.focus();
     dialog.scrollTop = 0;

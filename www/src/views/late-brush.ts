@@ -1,6 +1,7 @@
 //! The brush is loaded when a tool that draws is first chosen. What pointers and keys do until then waits for it, unless other frames come
 //! first.
 
+import { imported } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { FramePair } from '../state/pair.js';
@@ -26,7 +27,7 @@ export class LateBrush {
     layers.addEventListener('pointermove', (event) => (over = event));
     layers.addEventListener('pointerleave', () => (over = null));
     this.#load = async () => {
-      const { Brush } = await import('./brush.js');
+      const { Brush } = await imported(() => import('./brush.js'));
       this.now = new Brush(stage, store, session);
       // A pointer that rests does not say again where it is.
       if (over !== null) layers.dispatchEvent(new PointerEvent('pointermove', over));
@@ -45,7 +46,7 @@ export class LateBrush {
     session.objects.drawing = () => loading().then(({ drawing }) => drawing, () => null);
     // Whoever comes to the tools is likely to choose one.
     const tools = find(document, '#tools', HTMLElement);
-    for (const coming of ['pointerenter', 'focusin']) tools.addEventListener(coming, () => void import('./brush.js').catch(() => undefined), { once: true });
+    for (const coming of ['pointerenter', 'focusin']) tools.addEventListener(coming, () => void imported(() => import('./brush.js')).catch(() => undefined), { once: true });
     const picture = find(stage, '#strokes', SVGSVGElement);
     store.subscribe(({ tool }) => {
       // Styles go by it: from now on a finger draws, and scrolls nothing.

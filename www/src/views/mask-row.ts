@@ -44,8 +44,11 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     for (const end of ['pointerup', 'pointercancel']) window.addEventListener(end, () => (pressed = false), { once: true, capture: true });
   });
   row.addEventListener('focusin', select);
-  // Once the box that was clicked has changed.
-  row.addEventListener('click', (event) => setTimeout(() => select(event)));
+  // At once, because a key may come next; a box that was clicked has to change before.
+  row.addEventListener('click', (event) => {
+    const isBox = event.target instanceof HTMLInputElement && event.target.type === 'checkbox';
+    return isBox ? void setTimeout(() => select(event)) : select(event);
+  });
   // The background cannot be hidden: it is not painted.
   for (const control of [shown, colour, solo, find(row, '.thumbnail', HTMLCanvasElement)]) control.hidden = id === 0;
 
