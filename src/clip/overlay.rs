@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::annotation::ObjectSet;
+use super::annotation::{ObjectSet, is_object};
 use super::description::{ClipFrame, WorkingFrame};
 use super::layer::Layer;
 use super::options::model;
@@ -89,9 +89,11 @@ impl SegmentedClip {
     pub(super) fn overlaid(&self, index: usize, found: &[u8], user_objects: &ObjectSet) -> Vec<u8> {
         let layer = self.layer_labels(index).unwrap_or_else(|| vec![UNLABELLED; found.len()]);
         let (mut sizes, given) = ([[0usize; 2]; 256], &self.objects.given);
-        for (&found, &label) in found.iter().zip(&layer) {
-            sizes[usize::from(found)][0] += 1;
-            sizes[usize::from(found)][1] += usize::from(given[usize::from(label)]);
+        if given.contains(&true) {
+            for (&found, &label) in found.iter().zip(&layer) {
+                sizes[usize::from(found)][0] += 1;
+                sizes[usize::from(found)][1] += usize::from(given[usize::from(label)]);
+            }
         }
         let protected = self.protected();
         let is_hidden = |label: u8| {
@@ -109,9 +111,11 @@ impl SegmentedClip {
 
     /// The labels of the layer of a frame, if it has one. At the pixels of deleted objects, the labels below show.
     pub(super) fn layer_labels(&self, index: usize) -> Option<Vec<u8>> {
-        let is_deleted = |label: u8| label > 0 && label != UNLABELLED && self.objects.numbers[usize::from(label)] == 0;
+        let is_deleted: ObjectSet = std::array::from_fn(|k| self.objects.numbers[k] == 0 && is_object(k as u8));
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
-        labels.iter_mut().filter(|label| is_deleted(**label)).for_each(|label| *label = UNLABELLED);
+        if is_deleted.contains(&true) {
+            labels.iter_mut().filter(|label| is_deleted[usize::from(**label)]).for_each(|label| *label = UNLABELLED);
+        }
         Some(labels)
     }
 
