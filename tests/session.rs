@@ -155,6 +155,12 @@ fn of_thing(frame: usize, thing: usize, inside: u8, outside: u8) -> Vec<u8> {
     SCENE.truths[frame].iter().map(|&t| if t == thing { inside } else { outside }).collect()
 }
 
+/// A label map of things of a frame under some numbers, open elsewhere.
+fn numbered(frame: usize, numbers: [(usize, u8); 2]) -> Vec<u8> {
+    let number = |thing: &usize| numbers.iter().find(|(of, _)| of == thing).map_or(255, |(_, number)| *number);
+    SCENE.truths[frame].iter().map(number).collect()
+}
+
 fn renumbered(labels: &[u8], object: u8) -> Vec<u8> {
     labels.iter().map(|&label| if label == 1 { object } else { label }).collect()
 }
@@ -165,18 +171,7 @@ fn pairs_of_annotations() -> Vec<(&'static str, Command, Annotations)> {
     let painted = |frame, object, labels, spread| vec![Painted { frame, object, labels, spread }];
     let strokes = in_box([62, 76, 14, 8], 1, 255);
     let mask = of_thing(2, 3, 1, 0);
-    let map: Vec<u8> = SCENE.truths[1]
-        .iter()
-        .map(|&t| {
-            if t == 3 {
-                9
-            } else if t == 1 {
-                4
-            } else {
-                255
-            }
-        })
-        .collect();
+    let map = numbered(1, [(3, 9), (1, 4)]);
     let eraser = in_box([20, 30, 24, 30], 0, 255);
     let clicks = vec![Click { at: [72, 80], inside: true }];
     let within = Some([58, 70, 34, 24]);
@@ -243,18 +238,7 @@ fn masks_are_those_of_annotations_of_a_segmented_clip() {
 #[test]
 fn replacing_all_annotations_gives_the_masks_of_these_alone() {
     let strokes = in_box([62, 76, 14, 8], 1, 255);
-    let given: Vec<u8> = SCENE.truths[4]
-        .iter()
-        .map(|&t| {
-            if t == 3 {
-                7
-            } else if t == 1 {
-                1
-            } else {
-                255
-            }
-        })
-        .collect();
+    let given = numbered(4, [(3, 7), (1, 1)]);
     let all = Declaration {
         annotations: vec![
             Annotation::new(4, Content::Given(given.clone())),

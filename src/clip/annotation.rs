@@ -194,10 +194,9 @@ impl Prompt {
 impl Annotations {
     /// Checks labels, positions and object numbers for frames of the given size.
     pub(super) fn check(&self, size: [usize; 2]) -> Result<()> {
-        let fill = |name, labels: &[u8]| check_labels_of(name, labels, size);
         for (name, painted) in [("masks", &self.masks), ("corrections", &self.corrections)] {
             for Painted { object, labels, .. } in painted {
-                fill(name, labels)?;
+                check_labels(name, labels, size)?;
                 let Some(object) = *object else { continue };
                 if !is_object(object) || labels.iter().any(|label| ![0, object, UNLABELLED].contains(label)) {
                     let reason = format!("what is said of object {object} alone has the labels 0, {object} and 255");
@@ -207,7 +206,7 @@ impl Annotations {
         }
         self.prompts.iter().try_for_each(|prompt| prompt.check(size))?;
         for labels in self.accepted.iter().flatten().filter_map(|of| of.labels.as_ref()) {
-            fill("accepted", labels)?;
+            check_labels("accepted", labels, size)?;
         }
         let is_number = |[object, number]: &&[u8; 2]| is_object(*object) && *number != UNLABELLED;
         if let Some([object, number]) = self.numbers.iter().find(|numbers| !is_number(numbers)) {
@@ -230,11 +229,7 @@ impl Annotations {
 }
 
 /// Checks that labels fill a frame of a width and height.
-pub(super) fn check_labels(labels: &[u8], size: [usize; 2]) -> Result<()> {
-    check_labels_of("labels", labels, size)
-}
-
-fn check_labels_of(name: &'static str, labels: &[u8], [width, height]: [usize; 2]) -> Result<()> {
+pub(super) fn check_labels(name: &'static str, labels: &[u8], [width, height]: [usize; 2]) -> Result<()> {
     match labels.len() == width * height {
         true => Ok(()),
         false => invalid(name, format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len())),

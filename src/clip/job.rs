@@ -7,7 +7,6 @@ use super::annotation::{Accepted, Annotations, ObjectSet, Painted, Prompt};
 use super::changes::{Changed, Changes};
 use super::correction::SceneCorrection;
 use super::frame_annotation::{Change, FrameAnnotation};
-use super::objects::Objects;
 use super::segmented_clip::SegmentedClip;
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -91,17 +90,13 @@ impl ClipJob {
         }
         // Deleted objects claim no pixel from the first step on.
         job.renumber(clip, true);
-        if locked.is_some() || named.is_some() {
-            let Objects { numbers, locked: locks, named: names, .. } = clip.objects_mut();
-            for (set, now) in [(locks, locked), (names, named)] {
-                if let Some(objects) = now {
-                    // An object is locked or named with those that were merged into it.
-                    let is_of = |k: usize| objects.contains(&(k as u8)) || objects.contains(&numbers[k]);
-                    (0..set.len()).for_each(|k| set[k] = is_of(k));
-                }
-            }
-            job.locks.iter().for_each(|&object| locks_of(clip)[usize::from(object)] = false);
+        if let Some(objects) = locked {
+            clip.objects_mut().locked = clip.objects.with_merged(&objects);
         }
+        if let Some(objects) = named {
+            clip.objects_mut().named = clip.objects.with_merged(&objects);
+        }
+        job.locks.iter().for_each(|&object| locks_of(clip)[usize::from(object)] = false);
         if let Some(accepted) = accepted {
             for (index, frame) in clip.frames.iter_mut().enumerate() {
                 frame.accepted &= accepted.iter().any(|of| of.frame == index);

@@ -45,9 +45,9 @@ impl Objects {
         Objects { numbers, locked, named, given, used, dropped, descriptions: Vec::new() }
     }
 
-    /// Locks these objects, with those that were merged into them, and no others.
-    pub(super) fn lock(&mut self, objects: &[u8]) {
-        self.locked = std::array::from_fn(|k| objects.contains(&(k as u8)) || objects.contains(&self.numbers[k]));
+    /// These objects, and those that were merged into them.
+    pub(super) fn with_merged(&self, objects: &[u8]) -> ObjectSet {
+        std::array::from_fn(|k| objects.contains(&(k as u8)) || objects.contains(&self.numbers[k]))
     }
 
     /// The number under which an object goes on, its own unless it was merged.

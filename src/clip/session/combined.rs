@@ -43,7 +43,7 @@ impl<'a> Combined<'a> {
         | Content::Labels(labels)
         | Content::Given(labels) = &content
         {
-            check_labels(labels, self.clip.size)?;
+            check_labels("labels", labels, self.clip.size)?;
         }
         match content {
             Content::Strokes { object, labels } | Content::Mask { object, labels }

@@ -124,7 +124,7 @@ impl Running {
                     let earlier = std::mem::take(&mut self.changes);
                     self.job = Some(self.clip.annotate(annotations)?.after(earlier));
                 }
-                Some(Phase::Lock(objects)) => self.clip.objects_mut().lock(&objects),
+                Some(Phase::Lock(objects)) => self.clip.objects_mut().locked = self.clip.objects.with_merged(&objects),
                 Some(Phase::Restore(sets)) => {
                     let objects = self.clip.objects_mut();
                     [objects.locked, objects.named] = *sets;
