@@ -5,7 +5,7 @@ import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
 const CLIP_CALLS = ['beginClip', 'pushClip', 'previewClip', 'finishClip', 'concludeClip', 'restoreClip', 'saveClip', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
-const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, 'paintLabels', 'paintLabelsOffscreen'];
+const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [

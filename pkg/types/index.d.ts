@@ -518,24 +518,6 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
 /** The source of the WebAssembly module. */
 export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 
-/** Red, green, blue and optional alpha, 0 to 255. */
-export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
-
-/** The part of a canvas's 2d context that is needed; the canvas may be an offscreen one. */
-export interface PaintContext {
-  putImageData(image: never, x: number, y: number): void;
-}
-
-export interface PaintOptions {
-  /**
-   * One colour per label; labels without a colour are transparent, and alpha 0 hides a label. Default: the DAVIS palette, with labels
-   * 0 and 255 transparent.
-   */
-  palette?: readonly Colour[] | undefined;
-  /** Scales every alpha, 0 to 1; default 0.5. */
-  opacity?: number | undefined;
-}
-
 /** The stable error codes, the same as on the command line. */
 export type ErrorCode =
   // the input
@@ -616,16 +598,6 @@ export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
 
 /** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
-
-/**
- * Replaces the top-left width × height pixels of a canvas with the labels' colours, with transparency, for a canvas that overlays the
- * frame.
- */
-export function paintLabels(
-  context: PaintContext,
-  segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
-  options?: PaintOptions,
-): Promise<void>;
 
 /** Replaces each pixel's label with its group number; 255 stays. Throws code `invalid-input`. */
 export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;

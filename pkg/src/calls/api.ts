@@ -1,15 +1,12 @@
 // The calls themselves, on the module that has them: stages reported, the signal heard, time measured.
 
 import type * as calls from '../../types/index.js';
-import type { CallOptions, Milliseconds, MotionFit, PaintContext, Pixels, Segmentation } from '../../types/index.js';
-import { checkedBytes, entriesOf, invalidInput, invalidOption, isNumber, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
+import type { CallOptions, Milliseconds, MotionFit, Pixels, Segmentation } from '../../types/index.js';
 import { cancelled } from '../common/errors.js';
-import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
 import type { CallTask, ClipTask, Result } from './messages.js';
-import { taken } from './taking.js';
 import { fitCall, segmentCall, start } from './tasks.js';
 
 export class Api {
@@ -56,14 +53,6 @@ export class Api {
     return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
       glue.segmentPair(first, second, task.settings, onStage),
     );
-  };
-
-  readonly paintLabels: typeof calls.paintLabels = async (context, segmentation, options) => {
-    const rest = reading(() => paintArguments(context, segmentation, options));
-    await this.#frames.call((glue) => {
-      if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
-      else glue.paintLabels(context as CanvasRenderingContext2D, ...rest);
-    });
   };
 }
 
@@ -127,27 +116,6 @@ function stepOf(glue: FramesGlue, task: ClipTask): unknown {
   if (task.call === 'takeAnnotations') return glue.takeAnnotations(clip, task.frame);
   if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);
   return glue[task.call](clip);
-}
-
-function paintArguments(context: unknown, segmentation: unknown, options: unknown) {
-  if (typeof Object(context).putImageData !== 'function') throw invalidInput('the context must be the 2d context of a canvas');
-  const { labels, width, height } = Object(segmentation) as Partial<Segmentation>;
-  const [bytes] = taken([checkedBytes('the labels', labels)], false) as [Uint8Array];
-  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) {
-    throw invalidInput(`width and height must be whole numbers from 1 to ${LONGEST_SIDE}`);
-  }
-  const { palette = overlayPalette(), opacity = 0.5 } = entriesOf(options, ['palette', 'opacity']);
-  if (!isNumber(opacity)) throw invalidOption('opacity', 'a number from 0 to 1', opacity);
-  return [bytes, width, height, colourBytes(palette, 4), opacity] as const;
-}
-
-/** The default of {@link Api.paintLabels}: DAVIS, with what is dominant or unlabelled left transparent. */
-function overlayPalette(): (readonly [number, number, number, number])[] {
-  return davisPalette().map(([r, g, b], label) => [r, g, b, label === 0 || label === 255 ? 0 : 255] as const);
-}
-
-function isOffscreen(context: PaintContext): context is OffscreenCanvasRenderingContext2D {
-  return typeof OffscreenCanvasRenderingContext2D === 'function' && context instanceof OffscreenCanvasRenderingContext2D;
 }
 
 /** Milliseconds per stage; a stage that is entered again goes on where it stopped. */

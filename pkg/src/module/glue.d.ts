@@ -4,7 +4,6 @@
 import type { Glue } from './core.js';
 
 export type OnStage = (stage: string, index: number, of: number) => void;
-type PaintArguments = [labels: Uint8Array, width: number, height: number, palette: Uint8Array, opacity: number];
 
 export interface FramesGlue extends Glue {
   segmentPair(first: unknown, second: unknown, options: unknown, onStage: OnStage): unknown;
@@ -20,9 +19,6 @@ export interface FramesGlue extends Glue {
   annotateClip(clip: number, annotations: unknown): unknown;
   takeAnnotations(clip: number, frame: unknown): unknown;
   endClip(clip: number): void;
-
-  paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;
-  paintLabelsOffscreen(context: OffscreenCanvasRenderingContext2D, ...rest: PaintArguments): void;
 }
 
 export const glue: FramesGlue;
