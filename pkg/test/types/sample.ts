@@ -31,6 +31,15 @@ import { decodeImage } from 'veronese/codecs';
 import { type CocoVideoDocument, encodeCocoRle, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
+export async function pictures(bitmap: ImageBitmap, frame: VideoFrame, file: File, image: HTMLImageElement, canvas: HTMLCanvasElement | OffscreenCanvas): Promise<void> {
+  await segmentPair(bitmap, frame);
+  await new Segmenter().segmentPair(file, canvas);
+  for await (const { labels } of segmentClip([image, file, canvas, bitmap, frame])) console.log(labels);
+  for await (const { error } of segmentPairs([{ first: bitmap, second: file }])) console.log(error);
+  // @ts-expect-error no picture
+  await segmentPair(5, document);
+}
+
 export async function browser(first: ImageData, second: ImageData): Promise<string> {
   await init(new URL('/veronese_bg.wasm', location.href));
   await initPoints(new URL('/veronese_points_bg.wasm', location.href));
