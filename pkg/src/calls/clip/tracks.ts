@@ -30,6 +30,12 @@ export interface Ground {
   of: number;
 }
 
+/** What tracks need of a frame: its objects, and those that are as large as the ground. */
+export interface Seen {
+  frame: FoundFrame;
+  large: number[];
+}
+
 /** The objects of a frame. */
 type FoundFrame = Omit<LabelledFrame, 'labels'>;
 
@@ -56,11 +62,15 @@ export class Tracks {
   }
 
   /** Adds a frame with its labels and returns it with its size. */
-  see(frame: LabelledFrame, size: Size): ClipFrame {
-    for (const { id, pixels } of frame.objects) {
-      if (pixels > MOST * size.width * size.height || shareOfBorder(frame.labels, id, size) > MOST_OF_BORDER) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
-    }
-    return sized(this.add(frame), size);
+  see(found: LabelledFrame, size: Size): ClipFrame {
+    const frame = sized(found, size);
+    this.addSeen(seenIn(frame));
+    return frame;
+  }
+
+  addSeen({ frame, large }: Seen): void {
+    for (const id of large) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
+    this.add(frame);
   }
 
   /** The objects that are likely to be the ground. */
@@ -101,6 +111,12 @@ export class Tracks {
     const name = this.names.get(id);
     return { id, ...(name !== undefined && { name }), ...rest };
   }
+}
+
+export function seenIn({ labels, ...frame }: ClipFrame): Seen {
+  const { width, height, objects } = frame;
+  const isLarge = (id: number, pixels: number) => pixels > MOST * width * height || shareOfBorder(labels, id, frame) > MOST_OF_BORDER;
+  return { frame, large: objects.flatMap(({ id, pixels }) => (isLarge(id, pixels) ? [id] : [])) };
 }
 
 export function sized(frame: LabelledFrame, { width, height }: Size): ClipFrame {
