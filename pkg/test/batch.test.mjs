@@ -233,9 +233,9 @@ describe('frames', () => {
 });
 
 describe('the progress bar', () => {
-  const drawn = (isTTY, total) => {
+  const drawn = (isTTY, total, options) => {
     let [text, now] = ['', 0];
-    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, { now: () => now });
+    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, { now: () => now, ...options });
     for (let done = 1; done <= 4; done++) {
       now += 500;
       bar.update({ done, skipped: 1, failed: 0 });
@@ -250,7 +250,7 @@ describe('the progress bar', () => {
     assert.equal(pieces.length, 6, 'four times, and the clearing');
     assert.equal(pieces[4], '[###############.........] 5 of 8 pairs, 1 done before, 2.0 pairs/s, 2 s left');
     assert.equal(pieces[5], '');
-    assert.equal(drawn(true, undefined)[2], '3 pairs, 1 done before, 2.0 pairs/s');
+    assert.equal(drawn(true, undefined, { unit: 'frames', title: 'labels: ' })[2], 'labels: 3 frames, 1 done before, 2.0 frames/s');
   });
 
   test('and nowhere else', () => assert.deepEqual(drawn(false, 8), ['']));

@@ -111,7 +111,7 @@ describe('in our folder', () => {
       cpSync(out, path('copy'), { recursive: true });
       appendFileSync(join(path('copy'), result), ' ');
       const inCopy = args.map((arg) => (arg === out ? path('copy') : arg));
-      const other = command === 'convert' ? ['--from', '2'] : ['--overlay', '--motions', '1'];
+      const other = command === 'convert' ? ['--from', '2'] : ['--overlay'];
       await done([...inCopy, ...other]);
       assert.notDeepEqual(Object.keys(tree(path('copy'))), Object.keys(tree(out)));
       await done(inCopy);
