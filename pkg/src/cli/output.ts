@@ -8,6 +8,7 @@ import { dirname, join } from 'node:path';
 import { keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { checkFolder, lookAt, makeFolder, type OutputFile, readWritten, sha256, taken, writing } from './files.js';
+import { isFileName } from './sequence.js';
 
 /** The content of a file, at once or piece by piece. */
 export type Content = Uint8Array | string | AsyncIterable<string>;
@@ -22,16 +23,14 @@ const HOST = sha256(hostname()).slice(0, 8);
 /** The name of this run for what is not complete. */
 const RUN = `${LIST}-${HOST}-${process.pid}`;
 const PART = `${RUN}.part`;
-const PARTS = /^\.veronese-([0-9a-f]{8})-(\d+)\.(?:part|file)$/;
-/** Age from which files of another machine were left behind, milliseconds. */
-const LEFT = 86_400_000;
+const PARTS = new RegExp(`^${LIST}-${HOST}-(\\d+)\\.(?:part|file)$`);
 
 export class Output {
   readonly folder: string;
   readonly #force: boolean;
   readonly #isInput: boolean;
-  readonly #listed = new Set<string>();
-  readonly #keys = new Set<string>();
+  /** Listed paths by their keys. */
+  readonly #listed = new Map<string, string>();
   #hasList: boolean;
 
   /**
@@ -67,9 +66,9 @@ export class Output {
 
   /** Lists paths. This comes before files take their places: whenever the process ends, what is there is known. */
   add(paths: readonly string[]): void {
-    const fresh = paths.filter((path) => !this.#listed.has(path));
+    const fresh = paths.filter((path) => this.#listed.get(keyOf(path)) !== path);
     if (this.#hasList && fresh.length === 0) return;
-    this.#enter(fresh);
+    for (const path of fresh) this.#listed.set(keyOf(path), path);
     if (this.#hasList) appendFileSync(join(this.folder, LIST), fresh.map((path) => `\n${path}`).join(''));
     else this.#move(LIST, [HEADER, ...fresh].join('\n'));
     this.#hasList = true;
@@ -78,7 +77,7 @@ export class Output {
   /** Lists what is there, sorted. Other processes may have added to it. */
   settle(): void {
     this.#readList();
-    const there = [...this.#listed].filter((path) => lookAt(join(this.folder, path)));
+    const there = [...this.#listed.values()].filter((path) => lookAt(join(this.folder, path)));
     this.#move(LIST, [HEADER, ...there.sort()].join('\n'));
   }
 
@@ -140,7 +139,7 @@ export class Output {
   /** Deletes listed files that are not among `kept`, and folders that are empty then. */
   removeOld(isOld: (path: string) => boolean, kept: Iterable<string> = []): void {
     const keys = new Set([...kept].map(keyOf));
-    for (const path of this.#listed) {
+    for (const path of this.#listed.values()) {
       if (!isOld(path) || keys.has(keyOf(path)) || !lookAt(join(this.folder, path))) continue;
       rmSync(join(this.folder, path));
       for (let folder = dirname(path); folder !== '.'; folder = dirname(folder)) removeIfEmpty(join(this.folder, folder));
@@ -160,19 +159,17 @@ export class Output {
     rmSync(join(this.folder, PART), { recursive: true, force: true, maxRetries: 10 });
   }
 
-  /** Removes what runs that were killed left behind, nothing of one that may still go on. */
+  /** Removes what runs on this machine left behind when they were killed. */
   removeLeftovers(): void {
     for (const name of lookAt(this.folder) ? readdirSync(this.folder) : []) {
-      const [, host, pid] = PARTS.exec(name) ?? [];
-      if (host === undefined || (host === HOST && Number(pid) !== process.pid && isAlive(Number(pid)))) continue;
-      const path = join(this.folder, name);
-      if (host === HOST || Date.now() - (lookAt(path)?.mtimeMs ?? 0) > LEFT) rmSync(path, { recursive: true, force: true });
+      const [, pid] = PARTS.exec(name) ?? [];
+      if (pid !== undefined && !isAlive(Number(pid))) rmSync(join(this.folder, name), { recursive: true, force: true });
     }
   }
 
   #checkFree(path: string): void {
     const place = join(this.folder, path);
-    if (!this.#force && !this.#keys.has(keyOf(path)) && lookAt(place)) throw foreign(place);
+    if (!this.#force && !this.#listed.has(keyOf(path)) && lookAt(place)) throw foreign(place);
   }
 
   #move(path: string, content: Uint8Array | string): void {
@@ -187,15 +184,8 @@ export class Output {
     const [header, ...paths] = readWritten(join(this.folder, LIST))?.toString().split('\n') ?? [];
     if (header !== HEADER) return false;
     // A path may not lead out of the folder.
-    this.#enter(paths.filter((path) => path.split('/').every((part) => !/^\.{0,2}$|\\/.test(part))));
+    for (const path of paths) if (path.split('/').every(isFileName)) this.#listed.set(keyOf(path), path);
     return true;
-  }
-
-  #enter(paths: readonly string[]): void {
-    for (const path of paths) {
-      this.#listed.add(path);
-      this.#keys.add(keyOf(path));
-    }
   }
 }
 
@@ -207,15 +197,12 @@ export function removeIfEmpty(folder: string): void {
   }
 }
 
-/** The file or folder that it is in. */
-function topOf(path: string): string {
-  return path.includes('/') ? path.slice(0, path.indexOf('/') + 1) : path;
-}
+/** The file, or the folder that it is in, with a `/`. */
+const topOf = (path: string): string => path.replace(/\/.*/s, '/');
 
 function isAlive(pid: number): boolean {
   try {
-    process.kill(pid, 0);
-    return true;
+    return process.kill(pid, 0);
   } catch (thrown) {
     return (thrown as NodeJS.ErrnoException).code === 'EPERM';
   }
