@@ -13,10 +13,55 @@ export interface Pixels {
 }
 
 /**
- * In Node, an image file in place of its pixels: its path, its address, or a stream of its bytes, such as a `Readable` or the body of a response.
- * Read as `veronese/codecs` does. Elsewhere code `invalid-input`.
+ * In Node, an image file in place of its pixels: its path, its address, a `Blob`, or a stream of its bytes, such as a `Readable` or the body of a
+ * response. Read as `veronese/codecs` does. Elsewhere code `invalid-input`, but for a `Blob`.
  */
-export type FrameFile = string | URL | AsyncIterable<Uint8Array>;
+export type FrameFile = string | URL | BlobLike | AsyncIterable<Uint8Array>;
+
+/**
+ * In browsers and their workers, a picture in place of its pixels: an `ImageBitmap`, a `VideoFrame`, an image file as a `Blob` or `File`, an
+ * `HTMLImageElement`, an `HTMLCanvasElement` or an `OffscreenCanvas`. It is copied before the call returns, so you may close it afterwards. One
+ * that is closed is refused with code `invalid-input`, one that cannot be decoded or read with code `unreadable-image`.
+ */
+export type FramePicture = BlobLike | ImageBitmapLike | VideoFrameLike | ImageLike | CanvasLike;
+
+/** A frame that is segmented. */
+export type FrameInput = Pixels | FrameFile | FramePicture;
+
+/** The part of a `Blob` that tells it from others, without depending on the types of the DOM or Node. */
+export interface BlobLike {
+  readonly size: number;
+  readonly type: string;
+  arrayBuffer(): Promise<ArrayBuffer>;
+}
+
+/** The same of an `ImageBitmap`. */
+export interface ImageBitmapLike {
+  readonly width: number;
+  readonly height: number;
+  close(): void;
+}
+
+/** The same of a `VideoFrame`. */
+export interface VideoFrameLike {
+  readonly displayWidth: number;
+  readonly displayHeight: number;
+  close(): void;
+}
+
+/** The same of an `HTMLImageElement`. */
+export interface ImageLike {
+  readonly naturalWidth: number;
+  readonly naturalHeight: number;
+  decode(): Promise<void>;
+}
+
+/** The same of an `HTMLCanvasElement` or an `OffscreenCanvas`. */
+export interface CanvasLike {
+  width: number;
+  height: number;
+  getContext(kind: '2d'): object | null;
+}
 
 /** Progress of a call: a stage has just begun. */
 export interface Progress {
@@ -221,9 +266,9 @@ export interface PointMeasurements {
  * unless an option needs a whole clip.
  */
 export type ClipSource =
-  | Iterable<Pixels | FrameFile | Promise<Pixels | FrameFile>>
-  | AsyncIterable<Pixels | FrameFile>
-  | { readonly length: number; read(index: number): Pixels | FrameFile | Promise<Pixels | FrameFile> };
+  | Iterable<FrameInput | Promise<FrameInput>>
+  | AsyncIterable<FrameInput>
+  | { readonly length: number; read(index: number): FrameInput | Promise<FrameInput> };
 
 /** Progress of a clip: work on a frame begins. */
 export interface ClipProgress {
@@ -518,24 +563,6 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
 /** The source of the WebAssembly module. */
 export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 
-/** Red, green, blue and optional alpha, 0 to 255. */
-export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
-
-/** The part of a canvas's 2d context that is needed; the canvas may be an offscreen one. */
-export interface PaintContext {
-  putImageData(image: never, x: number, y: number): void;
-}
-
-export interface PaintOptions {
-  /**
-   * One colour per label; labels without a colour are transparent, and alpha 0 hides a label. Default: the DAVIS palette, with labels
-   * 0 and 255 transparent.
-   */
-  palette?: readonly Colour[] | undefined;
-  /** Scales every alpha, 0 to 1; default 0.5. */
-  opacity?: number | undefined;
-}
-
 /** The stable error codes, the same as on the command line. */
 export type ErrorCode =
   // the input
@@ -596,7 +623,7 @@ export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<v
  * Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. To correct masks, segment the two
  * frames as a clip ({@link segmentClip}), which takes corrections.
  */
-export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
+export function segmentPair(first: FrameInput, second: FrameInput, options?: SegmentOptions): Promise<Segmentation>;
 
 /**
  * Segments a clip: objects that move get a number that they keep from their first frame to their last. Objects are numbered by first
@@ -617,16 +644,6 @@ export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
 /** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
 
-/**
- * Replaces the top-left width × height pixels of a canvas with the labels' colours, with transparency, for a canvas that overlays the
- * frame.
- */
-export function paintLabels(
-  context: PaintContext,
-  segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
-  options?: PaintOptions,
-): Promise<void>;
-
 /** Replaces each pixel's label with its group number; 255 stays. Throws code `invalid-input`. */
 export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;
 
@@ -638,8 +655,8 @@ export function davisPalette(): [number, number, number][];
  * next input is requested, so a source may reuse one set of buffers for all pairs.
  */
 export interface PairInput {
-  first: Pixels;
-  second: Pixels;
+  first: FrameInput;
+  second: FrameInput;
 }
 
 /** Options of {@link segmentPairs} for all pairs. */
@@ -683,7 +700,7 @@ export interface PoolOptions extends SegmenterOptions {
 export class Segmenter {
   /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
-  segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
+  segmentPair(first: FrameInput, second: FrameInput, options?: SegmentOptions): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /**
    * As {@link segmentClip}. The worker keeps the clip from the first frame to the last; a second clip waits for that, other calls run
@@ -737,7 +754,9 @@ export function segmentPairs<Input extends PairInput>(
 declare global {
   interface AbortSignal {}
   interface Response {}
-  interface URL {}
+  interface URL {
+    href: string;
+  }
   namespace WebAssembly {
     interface Module {}
   }

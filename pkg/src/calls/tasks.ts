@@ -30,6 +30,9 @@ const SHORTEST_SIDE = 16;
 /** Longest side of a frame that is to be scaled down, pixels: as of files. */
 const LARGE_SIDE = 4 * LONGEST_SIDE;
 
+/** Frames that need not be pixels. */
+const PICTURES = 'in browsers an ImageBitmap, VideoFrame, Blob, image or canvas, in Node a path, address, Blob or stream';
+
 /** A task, how it is to be run, and what its result becomes for the caller. */
 export interface Call<T> {
   task: CallTask;
@@ -120,7 +123,7 @@ export function checkedPixels(which: string, pixels: unknown, maxSize?: number):
   const { data, width, height } = Object(pixels) as Partial<Pixels>;
   if (!isArrayOf(data, 'Uint8Array', 'Uint8ClampedArray')) {
     if (isNamed(pixels)) throw invalidInput(`${which} is a path, an address or a stream: only 'veronese' in Node reads these, decode it first`);
-    throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData`);
+    throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData, or a picture: ${PICTURES}`);
   }
   if (!isWhole(width, 0, Infinity) || !isWhole(height, 0, Infinity)) {
     throw invalidInput(`${which}: width and height must be whole numbers of pixels`);

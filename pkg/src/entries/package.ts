@@ -3,10 +3,10 @@
 // First in the file as well, where gzip packs it best: measured, 1 % of the whole.
 import { glue } from '../module/glue.js';
 import { glue as pointsGlue } from '../module/glue-points.js';
-import type * as calls from '../../types/index.js';
 import type { Clip, ClipOptions, ClipSource } from '../../types/index.js';
 import { Api } from '../calls/api.js';
 import { clipOf } from '../calls/clip.js';
+import { pictures } from '../calls/places.js';
 import { VeroneseError } from '../common/errors.js';
 import { Core } from '../module/core.js';
 import type { Read } from '../module/loading.js';
@@ -27,15 +27,14 @@ interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'places'>> {
 }
 
 /** Without an address the caller has to name the module, without `worker` to make the workers. */
-export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, places }: Entry) {
+export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, places = pictures }: Entry) {
   const newCore = () => new Core(glue, read, frames);
   const newPoints = () => new Core(pointsGlue, read, points);
   const api = new Api(newCore(), newPoints());
   // Not one of `Api`: workers have that, and none of the code that takes frames to them.
   const segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
     clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }), places);
-  const segmentPair: typeof calls.segmentPair = places?.pair(api.segmentPair) ?? (api.segmentPair as typeof calls.segmentPair);
-  return { ...api, segmentPair, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs, places }) };
+  return { ...api, segmentPair: places.pair(api.segmentPair), segmentClip, ...segmenters({ newCore, newPoints, worker, jobs, places }) };
 }
 
 function noWorker(): never {

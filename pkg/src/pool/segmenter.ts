@@ -42,8 +42,8 @@ export interface Host {
   worker: () => WorkerLike;
   /** Default number of workers. */
   jobs: () => number;
-  /** Reads frames that are named. */
-  places: Places | undefined;
+  /** Reads frames that are no pixels. */
+  places: Places;
 }
 
 /** The classes for one host. */
@@ -63,7 +63,7 @@ export function segmenters(host: Host) {
 
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
       const call: PairCall<Pixels, SegmentOptions, Segmentation> = (...pair) => start(() => segmentCall(...pair), this.#perform);
-      return (host.places?.pair(call) ?? (call as typeof calls.segmentPair))(...given);
+      return host.places.pair(call)(...given);
     }
 
     fitMotions(...given: Parameters<typeof calls.fitMotions>): Promise<MotionFit> {
