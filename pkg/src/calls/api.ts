@@ -135,27 +135,27 @@ function isOfClip(task: ClipTask | SegmentedTask): task is ClipTask {
 
 /** Frames that a clip takes stay in the cache. The result is undefined where one was expected there and is gone. */
 function clipStep(glue: FramesGlue, task: ClipTask, cache: FrameCache): unknown {
-  const { clip, call } = task;
-  if (call === 'saveClip') return glue.saveClip(clip);
-  if (call === 'closeClip') {
+  const { clip } = task;
+  if (task.call === 'saveClip') return glue.saveClip(clip);
+  if (task.call === 'closeClip') {
     cache.forget(clip);
     return glue.closeClip(clip);
   }
-  const frame = call === 'takeClip' ? (task.frame ?? cache.get(clip, task.index)) : undefined;
-  if (call === 'takeClip' && !frame) return undefined;
+  const frame = task.call === 'takeClip' ? (task.frame ?? cache.get(clip, task.index)) : undefined;
+  if (task.call === 'takeClip' && !frame) return undefined;
   const answer = answerOf(glue, task, frame);
-  if (call === 'takeClip' && task.frame) cache.add(clip, task.index, task.frame);
+  if (task.call === 'takeClip' && task.frame) cache.add(clip, task.index, task.frame);
   if (answer?.wanted) answer.wanted.isCached = cache.has(clip, answer.wanted.frame);
   return answer;
 }
 
-function answerOf(glue: FramesGlue, task: Exclude<ClipTask, { call: 'saveClip' | 'closeClip' }>, frame: Pixels | undefined): ClipAnswer | null {
+function answerOf(glue: FramesGlue, task: ClipTask, frame: Pixels | undefined): ClipAnswer | null {
   const { clip } = task;
   if (task.call === 'openClip') return glue.openClip(clip, task.frames, task.markUnknown, task.saved) as ClipAnswer;
   if (task.call === 'applyClip') return glue.applyClip(clip, task.command) as ClipAnswer | null;
   if (task.call === 'moveClip') return glue.moveClip(clip, task.what, task.step) as ClipAnswer | null;
   if (task.call === 'takeClip') return glue.takeClip(clip, task.index, frame, task.solved, task.draft) as ClipAnswer | null;
-  return glue.lookAtClip(clip, task.index) as ClipAnswer | null;
+  return glue.lookAtClip(clip, task.call === 'lookAtClip' ? task.index : undefined) as ClipAnswer | null;
 }
 
 /** Milliseconds per stage; a stage that is entered again goes on where it stopped. */

@@ -1,7 +1,8 @@
 // The messages between the page and its worker.
 
-import type { ClipChange, ClipEntry, ClipFrame, ClipPropagation, ErrorCode, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
+import type { ClipChange, ClipEntry, ClipFrame, ErrorCode, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
+import type { ClipPropagation } from './segmented/types.js';
 import { buffersOf } from './taking.js';
 
 /** Options as the core takes them, all plain values; it refuses those that it cannot use. */

@@ -4,9 +4,10 @@ import type * as calls from '../../types/index.js';
 import type {
   CallOptions,
   Clip,
-  ClipOptions,
-  ClipSource,
+  ClipFrames,
+  ClipStream,
   MotionFit,
+  OpenOptions,
   PairInput,
   PairOutcome,
   PairsOptions,
@@ -16,13 +17,19 @@ import type {
   Segmentation,
   SegmenterOptions,
   SegmentOptions,
+  StreamOptions,
+  StreamSource,
   WasmSource,
   WorkerLike,
 } from '../../types/index.js';
-import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
-import type { PairCall, Places } from '../calls/places.js';
+import type { PairCall } from '../calls/places.js';
+import { segmentedClip } from '../calls/segmented/clip.js';
+import type { ClipOptions, ClipSource, SegmentedClip } from '../calls/segmented/types.js';
+import type { Home } from '../calls/session/clip.js';
+import { type ClipHost, openedClip } from '../calls/session/open.js';
+import { streamOf } from '../calls/stream.js';
 import { fitCall, parted, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
@@ -34,7 +41,7 @@ import { spawnWith } from './threads.js';
 export const MOST_JOBS = 256;
 
 /** Needs of the classes that differ by the place where they run. */
-export interface Host {
+export interface Host extends ClipHost {
   newCore: () => Core<Glue>;
   /** For measurements. */
   newPoints: () => Core<Glue>;
@@ -42,8 +49,6 @@ export interface Host {
   worker: () => WorkerLike;
   /** Default number of workers. */
   jobs: () => number;
-  /** Reads frames that are no pixels. */
-  places: Places;
 }
 
 /** The classes for one host. */
@@ -51,6 +56,12 @@ export function segmenters(host: Host) {
   class Segmenter {
     readonly #pool: WorkerPool<Task, Result>;
     readonly #perform = (task: CallTask, options: CallOptions) => this.#pool.run(task, options);
+
+    /** A worker for a clip or a stream. */
+    readonly #house = (): Home => {
+      const { perform, beside, release } = this.#pool.pin();
+      return { perform, beside, release, anywhere: this.#perform, size: this.#pool.size, endIdle: () => this.#pool.endIdle() };
+    };
 
     constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions, jobs = 1) {
       const { worker = host.worker, points: place } = workerOptions(options);
@@ -70,8 +81,17 @@ export function segmenters(host: Host) {
       return start(() => fitCall(...given), this.#perform);
     }
 
-    segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
-      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }), host.places);
+    openClip(frames: ClipFrames, options?: OpenOptions): Promise<Clip> {
+      return openedClip(frames, options, this.#house, host);
+    }
+
+    segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream {
+      return streamOf(frames, options, this.#house, host.places);
+    }
+
+    /** For the page. */
+    segmentClip(frames: ClipSource, options?: ClipOptions): SegmentedClip {
+      return segmentedClip(frames, options, this.#house, host.places);
     }
 
     async warmUp(): Promise<void> {

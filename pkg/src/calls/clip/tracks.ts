@@ -1,21 +1,7 @@
 // The tracks of a clip's objects, collected frame by frame.
 
-import type { ClipChange, ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
+import type { ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
 import type { LabelledFrame } from '../messages.js';
-import type { PlacedClip } from './place.js';
-
-/** The results of a clip besides its frames, and where they are kept until it ends. */
-export interface ClipResults {
-  tracks: Tracks;
-  state?: Uint8Array;
-  /** The changes by annotations. */
-  changes?: ClipChange[];
-  /** Where edits name objects that are not there: these, and those that are. */
-  missing?: { numbers: number[]; objects: number[] };
-  /** Of a stream in which nothing was found so far: the latest pair whose first frame has 0 or a power of two as its index. */
-  pair?: SeenPair;
-  clip?: PlacedClip;
-}
 
 export interface SeenPair {
   /** Of its first frame. */

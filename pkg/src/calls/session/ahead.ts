@@ -4,7 +4,7 @@
 import type { Pixels } from '../../../types/index.js';
 
 /** Solves the pairs of a frame with the one before. */
-export type Solve = (before: Pixels, frame: Pixels) => Promise<Uint8Array>;
+export type Solve = (index: number, before: Pixels, frame: Pixels) => Promise<Uint8Array>;
 
 export interface Solved {
   frame: Pixels;
@@ -46,7 +46,7 @@ export class Ahead {
       const frame = await reading;
       if (!before || !this.#solve || isKnown) return { frame, pairs: undefined };
       // A frame before that cannot be read ends the range.
-      const pairs = await this.#solve(await before, frame).catch(() => undefined);
+      const pairs = await this.#solve(index, await before, frame).catch(() => undefined);
       return { frame, pairs };
     })();
     // Whoever wants the frame hears of it.

@@ -72,6 +72,7 @@ export class OpenedClip implements Clip, StepClip {
   readonly #seen = new Map<number, Seen>();
   readonly #listeners = new Set<(event: ClipEvent) => void>();
   #closed: VeroneseError | undefined;
+  isDamaged = false;
 
   constructor(parts: ClipParts) {
     this.#parts = parts;
@@ -545,7 +546,7 @@ export class OpenedClip implements Clip, StepClip {
       // Where there are masks to correct, their home is left free.
       const perform = this.#status.flags.some((flag) => flag & HAS_MASKS) ? beside : anywhere;
       const copied = ({ data, ...size }: Pixels) => ({ ...size, data: data.slice() });
-      const solve = perform && size > 1 ? (before: Pixels, frame: Pixels) => perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, {}) as Promise<Uint8Array> : undefined;
+      const solve = perform && size > 1 ? (_: number, before: Pixels, frame: Pixels) => perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, {}) as Promise<Uint8Array> : undefined;
       const read = (index: number) => this.#parts.frames.read(index);
       this.#ahead = { step, frames: new Ahead(read, solve, solve ? size : 1, range.last) };
     }
