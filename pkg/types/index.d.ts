@@ -302,6 +302,11 @@ export interface RangeOptions extends Pick<SegmentOptions, 'motions' | 'quality'
   last?: number | undefined;
   /** Cancels the step. Solved pairs are kept. */
   signal?: AbortSignal | undefined;
+  /**
+   * Gives solved pairs of a frame with the one before, from {@link solvePair} with the same options, if there are some: a farm may have solved
+   * them. Those that do not fit are solved again.
+   */
+  pairs?: ((frame: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
   /** Whether events of type `draft` come, which take some more time. Default: false. */
   drafts?: boolean | undefined;
 }
@@ -649,6 +654,15 @@ export function openClip(frames: ClipFrames, options?: OpenOptions): Promise<Cli
  */
 export function segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream;
 
+/** Options of {@link solvePair}. */
+export type PairOptions = Omit<SegmentOptions, 'markUnknown' | 'confidence' | 'onProgress'>;
+
+/**
+ * Solves the pairs of a frame of a clip with the one before: nearly all the work of segmenting it. The bytes are for the option `pairs` of
+ * {@link Clip.segment}, so that other machines can share the work; they are of the same version of this package.
+ */
+export function solvePair(before: FrameInput, frame: FrameInput, options?: PairOptions): Promise<Uint8Array>;
+
 /** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
 
@@ -709,6 +723,7 @@ export class Segmenter {
   /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: FrameInput, second: FrameInput, options?: SegmentOptions): Promise<Segmentation>;
+  solvePair(before: FrameInput, frame: FrameInput, options?: PairOptions): Promise<Uint8Array>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /** As {@link openClip}, in the worker. If the worker is lost, the clip goes on in another one. */
   openClip(frames: ClipFrames, options?: OpenOptions): Promise<Clip>;
@@ -754,6 +769,9 @@ export function segmentPairs<Input extends PairInput>(
 // no types of Node), it lets a program compile.
 declare global {
   interface AbortSignal {}
+  interface SymbolConstructor {
+    readonly dispose: unique symbol;
+  }
   interface Response {}
   interface URL {
     href: string;

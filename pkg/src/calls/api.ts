@@ -8,7 +8,7 @@ import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
 import type { CallTask, ClipAnswer, ClipTask, Result, SegmentedTask, StreamTask } from './messages.js';
 import { FrameCache } from './session/frame-cache.js';
-import { fitCall, segmentCall, start } from './tasks.js';
+import { fitCall, segmentCall, solveCall, start } from './tasks.js';
 
 export class Api {
   readonly #frames: Core<FramesGlue>;
@@ -26,6 +26,8 @@ export class Api {
   readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
   readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> => start(() => segmentCall(...given), this.perform);
+
+  readonly solvePair = (...given: Parameters<typeof solveCall>): Promise<Uint8Array> => start(() => solveCall(...given), this.perform);
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 

@@ -9,7 +9,7 @@ import { read } from './reading.js';
 
 export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
 
-export const { init, initPoints, segmentPair, openClip, segmentStream, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({
+export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({
   read,
   frames: new URL('../wasm/veronese_bg.wasm', import.meta.url),
   points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),

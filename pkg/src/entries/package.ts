@@ -37,7 +37,7 @@ export function packageFor({ read = (place) => fetch(place), frames, points, wor
   // Not of `Api`: workers have that, and none of the code that takes frames to them.
   const openClip = (given: ClipFrames, options?: OpenOptions): Promise<Clip> => openedClip(given, options, here, { places, journal });
   const segmentStream = (given: StreamSource, options?: StreamOptions): ClipStream => streamOf(given, options, here, places);
-  return { ...api, segmentPair: places.pair(api.segmentPair), openClip, segmentStream, ...segmenters({ newCore, newPoints, worker, jobs, places, journal }) };
+  return { ...api, segmentPair: places.pair(api.segmentPair), solvePair: places.pair(api.solvePair), openClip, segmentStream, ...segmenters({ newCore, newPoints, worker, jobs, places, journal }) };
 }
 
 /** In the storage of the page's origin. */

@@ -9,6 +9,7 @@ import type {
   MotionFit,
   OpenOptions,
   PairInput,
+  PairOptions,
   PairOutcome,
   PairsOptions,
   Pixels,
@@ -30,7 +31,7 @@ import type { ClipOptions, ClipSource, SegmentedClip } from '../calls/segmented/
 import type { Home } from '../calls/session/clip.js';
 import { type ClipHost, openedClip } from '../calls/session/open.js';
 import { streamOf } from '../calls/stream.js';
-import { fitCall, parted, segmentCall, start } from '../calls/tasks.js';
+import { fitCall, parted, segmentCall, solveCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
@@ -74,6 +75,11 @@ export function segmenters(host: Host) {
 
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
       const call: PairCall<Pixels, SegmentOptions, Segmentation> = (...pair) => start(() => segmentCall(...pair), this.#perform);
+      return host.places.pair(call)(...given);
+    }
+
+    solvePair(...given: Parameters<typeof calls.solvePair>): Promise<Uint8Array> {
+      const call: PairCall<Pixels, PairOptions, Uint8Array> = (...pair) => start(() => solveCall(...pair), this.#perform);
       return host.places.pair(call)(...given);
     }
 

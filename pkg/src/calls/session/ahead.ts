@@ -3,8 +3,8 @@
 
 import type { Pixels } from '../../../types/index.js';
 
-/** Solves the pairs of a frame with the one before. */
-export type Solve = (index: number, before: Pixels, frame: Pixels) => Promise<Uint8Array>;
+/** Solves the pairs of a frame with the one before, or knows them; undefined where the clip is to solve them. */
+export type Solve = (index: number, before: Pixels, frame: Pixels) => Promise<Uint8Array | undefined>;
 
 export interface Solved {
   frame: Pixels;

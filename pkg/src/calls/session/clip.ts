@@ -2,17 +2,17 @@
 // loop that gives it the frames that it wants. A home that dies is replaced by another one, which reads the journal.
 
 import type { Clip, ClipEntry, ClipEvent, ClipFrame, ClipFrameStatus, ClipJournal, ClipStep, ClipTracks, Pixels, Segmentation } from '../../../types/index.js';
-import { entriesOf, invalidInput, isWhole, optionsObject, reading } from '../../common/checks.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import { checkCount } from '../clip/frames.js';
 import { type Seen, Tracks, seenIn, sized } from '../clip/tracks.js';
 import type { ClipAnswer, ClipCommand, ClipStatus, ClipTask, LabelledFrame, SettledStep, WantedFrame } from '../messages.js';
 import { type Perform, parted } from '../tasks.js';
-import { Ahead, type Solved } from './ahead.js';
+import { Ahead, type Solve, type Solved } from './ahead.js';
 import * as commands from './commands.js';
 import type { ClipFrames } from './frames.js';
 import type { JournalWriter } from './journal.js';
-import { Step, type StepClip, type StepSubject } from './step.js';
+import { Step, type StepClip, type StepRange, type StepSubject } from './step.js';
 
 /** The worker in which a clip lives, or this thread. */
 export interface Home {
@@ -138,13 +138,15 @@ export class OpenedClip implements Clip, StepClip {
     const { length } = this;
     const read = () => {
       const given = { ...optionsObject(options) };
-      const { first = 0, last = length - 1, drafts = false, ...rest } = given;
+      const { first = 0, last = length - 1, drafts = false, pairs, ...rest } = given;
       const { call, settings } = parted(rest, ['motions', 'quality', 'subject']);
       checkCount(length);
       if (!isWhole(last, 1, length - 1)) throw new VeroneseError('invalid-option', `option 'last': must be a frame from 1 to ${length - 1}`);
       if (!isWhole(first, 0, last - 1)) throw new VeroneseError('invalid-option', `option 'first': must be a frame before the last, ${last}`);
+      if (typeof drafts !== 'boolean') throw invalidOption('drafts', 'true or false', drafts);
+      if (pairs !== undefined && typeof pairs !== 'function') throw invalidOption('pairs', 'a function', pairs);
       if (call.signal?.aborted) throw cancelled(call.signal);
-      return { range: { first, last, options: settings, drafts: drafts === true }, signal: call.signal };
+      return { range: { first, last, options: settings, drafts, pairs: pairs as StepRange['pairs'] }, signal: call.signal };
     };
     let asked: ReturnType<typeof read>;
     try {
@@ -153,7 +155,8 @@ export class OpenedClip implements Clip, StepClip {
       return this.#failed(thrown);
     }
     const { range, signal } = asked;
-    const step = this.#apply(() => ({ type: 'segment', ...range }), { range });
+    const { first, last, options: settings } = range;
+    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
     if (signal) {
       const cancel = () => step.cancel();
       signal.addEventListener('abort', cancel);
@@ -538,22 +541,27 @@ export class OpenedClip implements Clip, StepClip {
 
   /** A frame of the range with its pairs; undefined if something else came first. */
   async #next(step: Step, { frame: index }: WantedFrame): Promise<Solved | undefined> {
-    const { home } = this.#place ?? {};
-    const range = step.range as NonNullable<Step['range']>;
-    if (this.#ahead?.step !== step) {
-      const { beside, anywhere, size = 1 } = home ?? {};
-      const settings = range.options;
-      // Where there are masks to correct, their home is left free.
-      const perform = this.#status.flags.some((flag) => flag & HAS_MASKS) ? beside : anywhere;
-      const copied = ({ data, ...size }: Pixels) => ({ ...size, data: data.slice() });
-      const solve = perform && size > 1 ? (_: number, before: Pixels, frame: Pixels) => perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, {}) as Promise<Uint8Array> : undefined;
-      const read = (index: number) => this.#parts.frames.read(index);
-      this.#ahead = { step, frames: new Ahead(read, solve, solve ? size : 1, range.last) };
-    }
+    const range = step.range as StepRange;
+    if (this.#ahead?.step !== step) this.#ahead = { step, frames: this.#aheadOf(range) };
     const solved = new Set(this.#status.solved);
     const frame = this.#ahead.frames.at(index, (index) => solved.has(index));
     const poked = new Promise<undefined>((resolve) => (this.#poke = () => resolve(undefined)));
     return Promise.race([frame, poked]);
+  }
+
+  #aheadOf({ options: settings, last, pairs: given }: StepRange): Ahead {
+    const { beside, anywhere, size = 1 } = this.#place?.home ?? {};
+    // Where there are masks to correct, their home is left free.
+    const perform = this.#status.flags.some((flag) => flag & HAS_MASKS) ? beside : anywhere;
+    const copied = ({ data, ...size }: Pixels) => ({ ...size, data: data.slice() });
+    const isShared = perform !== undefined && size > 1;
+    const solve: Solve = async (index, before, frame) => {
+      const known = await given?.(index);
+      if (known !== undefined) return checkedBytes(`the pairs of frame ${index}`, known).slice();
+      if (!isShared) return undefined;
+      return perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, {}) as Promise<Uint8Array>;
+    };
+    return new Ahead((index) => this.#parts.frames.read(index), isShared || given ? solve : undefined, isShared ? size : 1, last);
   }
 
   async #drop(number: number): Promise<void> {

@@ -11,9 +11,19 @@ export interface StepClip {
   shownOf(step: Step): Promise<ClipFrame>;
 }
 
+export interface StepRange {
+  first: number;
+  last: number;
+  /** Of its pairs. */
+  options: Settings;
+  drafts: boolean;
+  /** Gives pairs that were solved elsewhere. */
+  pairs: ((index: number) => unknown) | undefined;
+}
+
 /** What a step is about: a range of frames, or a frame, or objects. */
 export interface StepSubject {
-  range?: { first: number; last: number; options: Settings; drafts: boolean } | undefined;
+  range?: StepRange | undefined;
   frame?: number | undefined;
 }
 
