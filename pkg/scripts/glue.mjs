@@ -4,8 +4,10 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
-const CLIP_CALLS = ['beginClip', 'pushClip', 'previewClip', 'finishClip', 'concludeClip', 'restoreClip', 'saveClip', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
-const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS];
+const CLIP_CALLS = ['openClip', 'applyClip', 'moveClip', 'takeClip', 'lookAtClip', 'saveClip', 'closeClip', 'solvePair', 'beginStream', 'pushStream', 'finishStream'];
+/** Of the page. */
+const SEGMENTED_CALLS = ['beginClip', 'pushClip', 'previewClip', 'concludeClip', 'restoreClip', 'saveSegmented', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
+const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, ...SEGMENTED_CALLS];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, openSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, openSync, readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
@@ -37,22 +37,14 @@ function checkError({ code, stdout, stderr, seconds }, exit, errorCode) {
 const withoutLabels = ({ labels, ...rest }) => rest;
 
 describe('veronese pair', () => {
-  test('prints what segmentPair gives', async (t) => {
+  test('prints what segmentPair gives, with every option handed on', async (t) => {
     const { first, second } = frames(t);
-    const found = json(await veronese(['pair', first, second]));
-    checkPair(found, 64, 48);
-    assert.deepEqual(timeless(found), timeless(withoutLabels(await segmentPair(...pair()))));
-  });
-
-  test('hands every option on', async (t) => {
-    const { first, second } = frames(t);
-    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown', '--subject'];
-    const found = json(await veronese(['pair', ...options, first, second]));
-    const { software, ...settings } = found.settings;
-    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true, subject: true });
-    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true, subject: true });
-    assert.deepEqual(timeless(found), timeless(withoutLabels(direct)));
-    assert.equal(json(await veronese(['pair', first, second, '--motions=auto'])).settings.motions, 'auto');
+    const options = { motions: 2, quality: 'fast', markUnknown: true, subject: true };
+    for (const [args, given] of [[['--motions=auto'], {}], [['--motions', '2', '--quality', 'fast', '--mark-unknown', '--subject'], options]]) {
+      const found = json(await veronese(['pair', ...args, first, second]));
+      checkPair(found, 64, 48);
+      assert.deepEqual(timeless(found), timeless(withoutLabels(await segmentPair(...pair(), given))));
+    }
   });
 
   for (const option of [undefined, '--grouped', '--subject']) {
@@ -89,16 +81,17 @@ describe('veronese pair', () => {
     });
   }
 
-  test('--confidence writes how sure the labels are, and changes nothing else', async (t) => {
+  test("--confidence writes how sure the labels are, and changes nothing else; an earlier run's files do not stay", async (t) => {
     const { folder, first, second } = frames(t);
     const out = folder.path('out');
-    const found = json(await veronese(['pair', first, second, '--out', out, '--confidence']));
-    const direct = await segmentPair(...pair(), { confidence: true });
-    const { labels, confidence, ...report } = direct;
+    const found = json(await veronese(['pair', first, second, '--out', out, '--overlay', '--confidence']));
+    const { labels, confidence, ...report } = await segmentPair(...pair(), { confidence: true });
     assert.deepEqual(timeless(found), timeless(report));
     const bytes = readFileSync(`${out}/confidence.png`);
     assert.deepEqual([bytes[24], bytes[25]], [8, 0], '8 bits, grey');
     assert.deepEqual(new Uint8Array(decode(bytes).data), confidence);
+    json(await veronese(['pair', first, second, '--out', out, '--motions', '1']));
+    assert.deepEqual(entries(out), ['labels.png', 'mask-0.png', 'result.json']);
   });
 
   test('reads PNG, BMP, PNM, WebP and JPEG', async (t) => {
@@ -117,16 +110,6 @@ describe('veronese pair', () => {
       assert.match(stderr, /^veronese: note: nothing moves between the frames: [^\n]+\n$/);
       checkPair(JSON.parse(stdout), 24, 20);
     }
-  });
-
-  test("an earlier run's masks do not stay, other files do", async (t) => {
-    const { folder, first, second } = frames(t);
-    const out = folder.path('out');
-    const before = json(await veronese(['pair', first, second, '--out', out, '--overlay', '--confidence']));
-    assert.equal(before.motions.length, 2);
-    for (const name of ['mask-7.png', 'mask-x.png', 'mine.txt']) writeFileSync(`${out}/${name}`, 'mine');
-    json(await veronese(['pair', first, second, '--out', out, '--motions', '1']));
-    assert.deepEqual(entries(out), ['labels.png', 'mask-0.png', 'mask-7.png', 'mask-x.png', 'mine.txt', 'result.json']);
   });
 
   for (const [signal, exit] of [['SIGINT', 130], ['SIGTERM', 143]]) {
@@ -174,20 +157,12 @@ describe('veronese points', () => {
   const bad = {
     'no JSON': ['invalid-json', 'hello'],
     'an empty file': ['invalid-json', ''],
-    'blanks': ['invalid-json', ' \n'],
-    'half a file': ['invalid-json', `{"positions": ${P}, "deriv`],
     'NaN': ['invalid-json', `{"positions": [[NaN, 2]], "derivatives": ${D}}`],
-    'binary': ['invalid-json', Buffer.from([0xff, 0xfe, 0, 1, 10, 13])],
     'a number too large for a number': ['not-finite', `{"positions": [[1e999, 2], [3, 4]], "derivatives": ${D}}`],
-    'null': ['invalid-input', 'null'],
     'a list': ['invalid-input', '[]'],
     'no derivatives': ['invalid-input', `{"positions": ${P}}`],
-    'positions that are no list': ['invalid-input', `{"positions": {"0": [1, 2]}, "derivatives": ${D}}`],
     'a null in a row': ['invalid-input', `{"positions": [[1, null], [3, 4]], "derivatives": ${D}}`],
-    'a word in a row': ['invalid-input', `{"positions": [[1, "2"], [3, 4]], "derivatives": ${D}}`],
     'a short row': ['invalid-input', `{"positions": [[1, 2], [3]], "derivatives": ${D}}`],
-    'a long row': ['invalid-input', `{"positions": ${P}, "derivatives": [[1, 2, 3], [4, 5, 6, 7]]}`],
-    'a null row': ['invalid-input', `{"positions": ${P}, "derivatives": [[1, 2, 3], null]}`],
     'flat numbers': ['invalid-input', `{"positions": [1, 2, 3, 4], "derivatives": ${D}}`],
     'lists of different length': ['measurement-count-mismatch', `{"positions": [[1, 2]], "derivatives": ${D}}`],
   };
@@ -245,11 +220,10 @@ describe('veronese pair refuses', () => {
   test('an output folder that cannot be one', async (t) => {
     const { folder, first, second } = frames(t);
     const taken = folder.file('taken', '');
-    checkError(await veronese(['pair', first, second, '--out', taken]), 1, 'write-failed');
-    checkError(await veronese(['pair', first, second, '--out', `${taken}/below`]), 1, 'write-failed');
+    for (const out of [taken, `${taken}/below`]) checkError(await veronese(['pair', first, second, '--out', out]), 1, 'write-failed');
     mkdirSync(folder.path('out', 'labels.png'), { recursive: true });
-    checkError(await veronese(['pair', first, second, '--out', folder.path('out')]), 1, 'write-failed');
-    assert.deepEqual(readdirSync(folder.path('out')), ['labels.png'], 'nothing half-written stays');
+    checkError(await veronese(['pair', first, second, '--out', folder.path('out'), '--force']), 1, 'write-failed');
+    assert.deepEqual(entries(folder.path('out')), ['labels.png'], 'nothing half-written stays');
   });
 
   test('a full disk behind stdout', { skip: !existsSync('/dev/full') }, async (t) => {
@@ -265,13 +239,9 @@ describe('usage', () => {
     'no command': ['usage', []],
     'an unknown command': ['usage', ['pear', 'a', 'b']],
     'one frame': ['usage', ['pair', 'a']],
-    'three frames': ['usage', ['pair', 'a', 'b', 'c']],
     'no points': ['usage', ['points']],
-    'two files of points': ['usage', ['points', 'a', 'b']],
     'an unknown option': ['wrong-usage', ['pair', 'a', 'b', '--speed', '3']],
-    'an unknown short option': ['wrong-usage', ['pair', 'a', 'b', '-x']],
     'an option of the other command': ['wrong-usage', ['points', 'a', '--quality', 'best']],
-    'a seed of a pair': ['wrong-usage', ['pair', 'a', 'b', '--seed', '1']],
     'a frame before': ['wrong-usage', ['pair', 'a', 'b', '--before', 'c']],
     'an option without its value': ['usage', ['pair', 'a', 'b', '--out']],
     'an empty value': ['usage', ['pair', 'a', 'b', '--out', '']],
@@ -280,31 +250,20 @@ describe('usage', () => {
     '--overlay without --out': ['usage', ['pair', 'a', 'b', '--overlay']],
     '--confidence without --out': ['usage', ['pair', 'a', 'b', '--confidence']],
     'no motions': ['invalid-option', ['pair', 'a', 'b', '--motions', '0']],
-    'eleven motions': ['invalid-option', ['pair', 'a', 'b', '--motions', '11']],
-    'two and a half motions': ['invalid-option', ['points', 'a', '--motions', '2.5']],
-    'motions in words': ['invalid-option', ['pair', 'a', 'b', '--motions', 'two']],
+    'eleven motions': ['invalid-option', ['points', 'a', '--motions', '11']],
     'another quality': ['invalid-option', ['pair', 'a', 'b', '--quality', 'good']],
-    'another method': ['invalid-option', ['points', 'a', '--method', 'ours']],
     'a negative seed': ['invalid-option', ['points', 'a', '--seed=-1']],
-    'a clip without frames': ['usage', ['clip', '--out', 'a']],
     'a clip without --out': ['usage', ['clip', 'a']],
     'an option of pairs for a clip': ['wrong-usage', ['clip', 'a', '--out', 'b', '--grouped']],
-    'a look-ahead below 0': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead=-1']],
     'a look-ahead above 8': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', '9']],
-    'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
     'a seed too large': ['invalid-option', ['points', 'a', '--seed', '9007199254740992']],
     'a batch of nothing': ['usage', ['batch']],
     'an empty name in a batch': ['usage', ['batch', 'a', '']],
     'an overlay of a batch without --out': ['usage', ['batch', 'a', '--overlay']],
-    'a before file': ['wrong-usage', ['batch', 'a', '--before', 'b']],
-    'two videos': ['usage', ['video', 'a', 'b']],
-    'a list for a video': ['wrong-usage', ['video', 'a', '--list', 'b']],
     'jobs of pair': ['wrong-usage', ['pair', 'a', 'b', '--jobs', '2']],
     'no jobs': ['invalid-option', ['batch', 'a', '--jobs', '0']],
     'too many jobs': ['invalid-option', ['batch', 'a', '--jobs', '257']],
     'every none': ['invalid-option', ['batch', 'a', '--every', '0']],
-    'half a shard': ['invalid-option', ['batch', 'a', '--shard', '1']],
-    'shard 0': ['invalid-option', ['batch', 'a', '--shard', '0/2']],
     'shard 3 of 2': ['invalid-option', ['batch', 'a', '--shard', '3/2']],
   };
   for (const [title, [code, args]] of Object.entries(wrong)) {

@@ -240,7 +240,7 @@ describe('a batch', () => {
     for (let k = 0; k < 4; k++) folder.file(`a${k}.png`, png(frame(k)));
     const { code, stderr } = await veronese(['batch', folder.path('a*.png'), '--out', folder.path('out'), '--quality', 'fast', ...options]);
     assert.equal(code, 0, stderr);
-    const pairs = readdirSync(folder.path('out'));
+    const pairs = entries(folder.path('out'));
     return { folder, out: folder.path('out'), pairs };
   }
 

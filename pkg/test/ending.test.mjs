@@ -49,7 +49,7 @@ describe('SIGTERM', { skip: process.platform === 'win32' }, () => {
     for (const [name, script] of Object.entries(scripts)) {
       mkdirSync(path(name));
       writeFileSync(path(name, 'ffmpeg'), `#!/bin/sh\n${script} kill -TERM $PPID; exec sleep 60\n`, { mode: 0o755 });
-      for (const args of [['video', film], ['clip', film, '--out', path('out')]]) {
+      for (const args of [['batch', film], ['clip', film, '--out', path('out')]]) {
         await ends(args, { env: { PATH: `${path(name)}:${process.env.PATH}` } });
       }
     }

@@ -1,5 +1,5 @@
-// What the program says to a person: help, suggestions, completion, colour, and what it does not say.
-// cspell:ignore clpi compinit compreply cword davsi kecho mtoions pipestatus shaard shar tcsh zmodload zpty
+// What the program tells a person: help, suggestions, colour, and what it leaves out.
+// cspell:ignore clpi davsi mtoions pipestatus shaard
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
@@ -14,11 +14,9 @@ const OF_PAIRS = ['motions', 'quality', 'grouped', 'subject', 'mark-unknown', 'c
 const OPTIONS = {
   pair: OF_PAIRS,
   batch: [...OF_PAIRS, 'list', 'every', 'shard', 'jobs'],
-  video: [...OF_PAIRS, 'every', 'shard', 'jobs'],
   clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'levels', 'subject', 'mark-unknown', 'max-size', 'jobs', 'out', 'overlay', 'show', 'frame-rate', 'allow-damaged', 'force'],
   convert: ['to', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'levels', 'first-frame', 'out', 'force'],
   points: ['motions', 'method', 'seed'],
-  completion: [],
 };
 
 async function shown(...args) {
@@ -33,7 +31,6 @@ function inShell(shell, script, { env = {}, cwd } = {}) {
   assert.equal(found.error, undefined);
   return found;
 }
-const has = (shell) => spawnSync(shell, ['-c', 'true']).status === 0;
 
 function moving(t) {
   const folder = temporaryFolder(t);
@@ -104,7 +101,7 @@ describe('an error names', () => {
     "the option before another": [['pair', 'a', 'b', '--out', '--overlay'], /option '--out' needs DIR/],
     "the one format that is wrong": [['convert', 'a', '--to', 'coco,davsi'], /there is no format 'davsi'; did you mean 'davis'\?/],
     "the value that was meant": [['pair', 'a', 'b', '--quality', 'fats'], /option '--quality' must be 'fast' or 'best', not 'fats'/],
-    "the shell": [['completion', 'tcsh'], /bash, zsh or fish, not 'tcsh'/],
+    "the command that took its place": [['video', 'a.mp4'], /there is no command 'video'; did you mean 'batch'\?/],
     "the help that there is": [['help', 'clop'], /there is no command 'clop'; did you mean 'clip'\?/],
   };
   for (const [title, [args, sentence]] of Object.entries(typos)) {
@@ -160,41 +157,4 @@ describe('colour', { skip: !existsSync('/usr/bin/script') }, () => {
       assert.ok(!(stdout + stderr).includes('\u001b['));
     });
   }
-});
-
-describe('completion', () => {
-  test('of bash', { skip: process.platform === 'win32' }, () => {
-    const lines = [
-      [['c'], 'clip convert completion'],
-      [['clip', '--lo'], '--look-ahead'],
-      [['pair', '--quality', ''], 'fast best'],
-      [['convert', 'x', '--to', 'cvat-v'], 'cvat-video'],
-      [['clip', '-o', ''], ''],
-      [['completion', 'z'], 'zsh'],
-    ];
-    const complete = ([words]) => `COMP_WORDS=(veronese ${words.map((word) => `'${word}'`).join(' ')}); COMP_CWORD=${words.length}; COMPREPLY=(); _veronese; echo "\${COMPREPLY[@]}"`;
-    const script = ['source <("$NODE" "$PROGRAM" completion bash)', ...lines.map(complete), 'complete -p veronese'].join('\n');
-    const [last, ...completed] = inShell('bash', script).stdout.split('\n').slice(0, -1).reverse();
-    assert.deepEqual(completed.reverse(), lines.map(([, words]) => words));
-    assert.match(last, /^complete .*-o default.* veronese$/, 'elsewhere files');
-  });
-
-  test('of fish', { skip: !has('fish') }, () => {
-    const words = (line) =>
-      inShell('fish', `$NODE $PROGRAM completion fish | source; complete -C '${line}'`).stdout.trimEnd().split('\n').map((line) => line.split('\t')[0]);
-    assert.deepEqual(words('veronese c').sort(), ['clip', 'completion', 'convert']);
-    assert.deepEqual(words('veronese clip --look'), ['--look-ahead']);
-    assert.deepEqual(words('veronese pair --quality ').sort(), ['best', 'fast']);
-    assert.deepEqual(words('veronese points --shar'), ['']);
-    assert.deepEqual(words('veronese completion z'), ['zsh']);
-  });
-
-  test('of zsh', { skip: !has('zsh') }, (t) => {
-    const folder = temporaryFolder(t);
-    const script = `autoload -Uz compinit && compinit -D -u; source <("$NODE" "$PROGRAM" completion zsh); print -r -- "$_comps[veronese]"; functions _veronese`;
-    const { stdout, stderr } = inShell('zsh', script, { cwd: folder.path('.') });
-    assert.equal(stderr, '');
-    assert.match(stdout, /^_veronese\n/);
-    for (const word of ['--look-ahead', '--quality', 'completion', 'fast']) assert.ok(stdout.includes(word), word);
-  });
 });

@@ -52,7 +52,7 @@ describe('README.md', () => {
     const { status, stderr } = spawnSync('sh', ['-e', '-c', `npx() { "$@"; }\n${commands}`], { cwd: folder.path('.'), env, encoding: 'utf8', timeout: 120_000 });
     assert.equal(status, 0, stderr);
     assert.ok(existsSync(folder.path('masks', 'overlay.png')));
-    assert.deepEqual(readdirSync(folder.path('results')), ['000000-f0', '000001-f1', '000002-f2']);
+    assert.deepEqual(readdirSync(folder.path('results')), ['.veronese', '000000-f0', '000001-f1', '000002-f2']);
     assert.equal(readFileSync(folder.path('lines.jsonl'), 'utf8').trim().split('\n').length, 3);
     assert.deepEqual(readdirSync(folder.path('tracked')), ['.clip', '.veronese', 'labels', 'overlay', 'tracks.json']);
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);

@@ -1,6 +1,6 @@
 // Frames that are given as something else than their pixels: files in Node, pictures in browsers and their workers.
 
-import type { FrameFile, FrameInput, FramePicture, Pixels, SegmentOptions } from '../../types/index.js';
+import type { FrameFile, FrameInput, FramePicture, PairOptions, Pixels } from '../../types/index.js';
 
 /** A call that takes two frames. */
 export type PairCall<Frame, Options, Result> = (first: Frame, second: Frame, options?: Options) => Promise<Result>;
@@ -9,7 +9,7 @@ export interface Places {
   /** A frame, read unless it is pixels; one that is larger than `maxSize` may be scaled down. `name` is how errors call it. */
   frame(given: unknown, maxSize?: number, name?: string): Promise<unknown>;
   /** A call whose frames need not be pixels. */
-  pair<Options extends SegmentOptions, Result>(call: PairCall<Pixels, Options, Result>): PairCall<FrameInput, Options, Result>;
+  pair<Options extends PairOptions, Result>(call: PairCall<Pixels, Options, Result>): PairCall<FrameInput, Options, Result>;
 }
 
 /** `isOurs` tells what `read` gives the pixels of. */
@@ -19,11 +19,11 @@ export function placesBy<Given extends FrameFile | FramePicture>(
 ): Places {
   const frame = async (given: unknown, maxSize?: number, name = 'the frame') => (isOurs(given) ? read(given, maxSize, name) : given);
   const pair =
-    <Options extends SegmentOptions, Result>(call: PairCall<Pixels, Options, Result>): PairCall<FrameInput, Options, Result> =>
+    <Options extends PairOptions, Result>(call: PairCall<Pixels, Options, Result>): PairCall<FrameInput, Options, Result> =>
     (first, second, options) => {
       // Two frames of pixels are taken at once, and held no longer than by the call itself.
       if (![first, second].some(isOurs)) return call(first as Pixels, second as Pixels, options);
-      const { maxSize } = Object(options) as SegmentOptions;
+      const { maxSize } = Object(options) as PairOptions;
       const frames = [frame(first, maxSize, 'the first frame'), frame(second, maxSize, 'the second frame')];
       // Of two that fail the first is named, whichever fails sooner.
       const settled = Promise.allSettled(frames).then(() => Promise.all(frames));

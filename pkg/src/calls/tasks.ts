@@ -4,6 +4,7 @@ import type {
   CallOptions,
   FitOptions,
   MotionFit,
+  PairOptions,
   Pixels,
   PointMeasurements,
   Segmentation,
@@ -63,6 +64,14 @@ export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOpti
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames, maxSize), settings: asked.settings };
   return { task, options: asked.call, finish: (result) => result as Segmentation };
+}
+
+export function solveCall(before: Pixels, frame: Pixels, options?: PairOptions): Call<Uint8Array> {
+  const asked = parted(options, ['motions', 'quality', 'subject', 'maxSize']);
+  const frames = checkedFrames(before, frame, asked.maxSize);
+  const own = takenFor(asked, dataOf(frames));
+  const task: CallTask = { call: 'solvePair', frames: framesWith(own, frames, asked.maxSize), settings: asked.settings };
+  return { task, options: asked.call, finish: (result) => result as Uint8Array };
 }
 
 export function fitCall(measurements: PointMeasurements, options?: FitOptions): Call<MotionFit> {

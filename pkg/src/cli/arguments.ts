@@ -5,7 +5,7 @@ import { parseArgs } from 'node:util';
 import { FRAME_RATES, LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
-import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf, SHELLS } from './commands.js';
+import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf } from './commands.js';
 import type { Range } from './sequence.js';
 import { type Shown, SHOWN, shownOf } from './showing.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
@@ -15,7 +15,7 @@ const SHORTEST_SIDE = 16;
 const LONGEST_LOOK_AHEAD = 8;
 
 /** By command who reads what is asked. */
-const READ = { pair, batch, video, clip, convert, points, completion };
+const READ = { pair, batch, clip, convert, points };
 
 type Values = ReturnType<typeof parsed>['values'];
 
@@ -24,7 +24,7 @@ export type PointsCommand = ReturnType<typeof points>;
 export type ConvertCommand = Extract<ReturnType<typeof convert>, { name: 'convert' }>;
 export type CorrectionsCommand = Extract<ReturnType<typeof convert>, { name: 'corrections' }>;
 export type ClipCommand = ReturnType<typeof clip>;
-export type SequenceCommand = ReturnType<typeof batch> | ReturnType<typeof video>;
+export type BatchCommand = ReturnType<typeof batch>;
 export type Command = { quiet?: boolean } & (
   | { name: 'help'; of: CommandName | 'all' | undefined }
   | { name: 'version' }
@@ -60,14 +60,7 @@ export function parseCommand(args: string[]): Command {
 
 function commandNamed(name: string): CommandName {
   if (isCommand(name)) return name;
-  throw usage(`there is no command '${name}'${question(meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`);
-}
-
-function completion(_: Values, files: string[]) {
-  const [shell] = exactly(1, files, "'completion' takes the name of a shell") as [string];
-  const known = SHELLS.find((name) => name === shell);
-  if (known === undefined) throw usage(`the shell must be bash, zsh or fish, not '${shell}'`);
-  return { name: 'completion' as const, shell: known };
+  throw usage(`there is no command '${name}'${question(name === 'video' ? 'batch' : meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`);
 }
 
 function points(values: Values, files: string[]) {
@@ -77,7 +70,7 @@ function points(values: Values, files: string[]) {
 }
 
 function convert(values: Values, files: string[], given: readonly string[]) {
-  const { to, out, clip, grouped, background, image, video, force, levels: said, 'first-frame': first } = values;
+  const { to, out, clip, grouped, background, image, video, force, 'first-frame': first } = values;
   const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
   if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
   const back = to.split(',').includes(BACK);
@@ -90,7 +83,7 @@ function convert(values: Values, files: string[], given: readonly string[]) {
     if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
     const firstFrame = first === undefined ? undefined : choice('first-frame', first, '0', '1');
-    return { name: BACK, source: folder, out, clip, force, levels: levels(said), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
+    return { name: BACK, source: folder, out, clip, force, levels: levels(values.levels), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
   }
   const { shapes, 'frame-rate': rate } = values;
   const settings = {
@@ -125,16 +118,11 @@ function pair(values: Values, files: string[]) {
   return { name: 'pair' as const, first, second, ...settings };
 }
 
+/** The part of all pairs to process is counted from 0. */
 function batch(values: Values, frames: string[]) {
-  const settings = ofSequences(values);
+  const settings = { ...ofPairs(values), every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), shard: shard(values.shard) };
   checkFrames('batch', frames, values.list);
   return { name: 'batch' as const, frames, list: values.list, ...settings };
-}
-
-function video(values: Values, files: string[]) {
-  const settings = ofSequences(values);
-  const [file] = exactly(1, files, "'video' takes one file") as [string];
-  return { name: 'video' as const, file, ...settings };
 }
 
 function ofPairs(values: Values) {
@@ -145,11 +133,6 @@ function ofPairs(values: Values) {
   const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], subject, confidence };
   // The subject's masks are of the whole of it.
   return { options, grouped: values.grouped || subject, overlay, allowDamaged: values['allow-damaged'], maxSize: maxSize(values['max-size']), out, force };
-}
-
-/** The part of all pairs to process is counted from 0. */
-function ofSequences(values: Values) {
-  return { ...ofPairs(values), every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), shard: shard(values.shard) };
 }
 
 function parsed(args: string[]) {
@@ -176,7 +159,7 @@ function hint(command: CommandName | undefined): string {
 }
 
 function checkFrames(command: string, files: string[], list: string | undefined): void {
-  if (files.length === 0 && list === undefined) throw usage(`'${command}' takes frames, or a list of them`);
+  if (files.length === 0 && list === undefined) throw usage(`'${command}' takes frames, a list of them, or a video`);
   if (files.includes('')) throw usage("a frame's name is empty");
 }
 

@@ -1,14 +1,17 @@
-// `batch` and `video`: every pair of consecutive frames, by several threads, one line of JSON for each pair in their order.
+// `batch`: every pair of consecutive frames, by several threads, one line of JSON for each pair in their order.
 
+import { existsSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { inOrder } from '../calls/ordered.js';
-import type { SequenceCommand } from './arguments.js';
-import { findFrames, type Frame, leftOutNotes, readList } from './frames.js';
+import type { BatchCommand } from './arguments.js';
+import { pairFolders } from './batch-folder.js';
+import { findFrames, type Frame, leftOutNotes, readList, videoIn } from './frames.js';
 import type { Io } from './io.js';
 import { Output } from './output.js';
+import { possibleFiles } from './pair-folder.js';
 import { jsonLine, type Report } from './pair.js';
-import { checkPairs, writePair } from './store.js';
+import { writePair } from './store.js';
 import { complain, note, print, ProgressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
 import { notesOnVideo, videoFrames, type VideoInfo } from './video.js';
@@ -24,21 +27,16 @@ interface Pair {
 type Outcome = { pair: Pair; result: TaskResult } | { pair: Pair; error: VeroneseError };
 
 /** Throws `pairs-failed` at the end where some did, or at once what concerns all pairs. */
-export async function batch(command: SequenceCommand, io: Io): Promise<void> {
+export async function batch(command: BatchCommand, io: Io): Promise<void> {
   const { out, shard, jobs, force } = command;
   const output = out === undefined ? undefined : new Output(out, { force, signal: io.signal });
-  const paths = command.name === 'batch' ? findFrames(command.frames, await readList(command.list, io.stdin)) : undefined;
+  const video = await videoIn(command);
+  const paths = video === undefined ? findFrames(command.frames, await readList(command.list, io.stdin)) : undefined;
   if (paths) checkCount(Math.ceil(paths.length / command.every));
-  if (output) {
-    const used = paths?.filter((_, position) => position % command.every === 0);
-    const names = used && new Set(used.map((name, index) => nameOf(index, { name })));
-    const isMine = (name: string) => ofShard(Number.parseInt(name, 10), shard);
-    await checkPairs(output.folder, (name) => isMine(name) && (names ? names.has(name) : isOfVideo(name, command.every)), command, paths ?? []);
-    output.removeLeftovers();
-  }
+  if (output) checkPlaces(output, command, paths ?? []);
 
   const about: VideoInfo = { times: [] };
-  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' }, io, about);
+  const frames = video === undefined ? (paths ?? []).map((name) => ({ name })) : videoFrames({ ...command, file: video }, io, about);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
   const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
@@ -69,7 +67,7 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   } finally {
     output?.discard();
     bar.clear();
-    for (const each of command.name === 'video' ? notesOnVideo(command.file, about) : leftOutNotes(command.frames)) note(io, each);
+    for (const each of video === undefined ? leftOutNotes(command.frames) : notesOnVideo(video, about)) note(io, each);
     for (const failure of failures) complain(io, failure);
   }
   if (failures.length === 0) return;
@@ -77,8 +75,17 @@ export async function batch(command: SequenceCommand, io: Io): Promise<void> {
   throw new VeroneseError('pairs-failed', `${failures.length} of ${all} pairs failed, listed above`);
 }
 
+/** Throws `file-exists` where a file of another is in the way, in the folder or in that of a pair. */
+function checkPlaces(output: Output, command: BatchCommand, paths: readonly string[]): void {
+  output.check([]);
+  for (const { index, name } of existsSync(output.folder) ? pairFolders(output.folder) : []) {
+    if (ofShard(index, command.shard)) new Output(join(output.folder, name), command).check(possibleFiles(command), paths);
+  }
+  output.removeLeftovers();
+}
+
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
-async function perform(pair: Pair, command: SequenceCommand, out: Output | undefined): Promise<Outcome> {
+async function perform(pair: Pair, command: BatchCommand, out: Output | undefined): Promise<Outcome> {
   const { options, grouped, overlay, allowDamaged, maxSize, jobs, force } = command;
   try {
     const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay, allowDamaged, maxSize }, withImages: out !== undefined };
@@ -94,7 +101,7 @@ async function perform(pair: Pair, command: SequenceCommand, out: Output | undef
 async function* pairsOf(
   frames: Iterable<Frame> | AsyncIterable<Frame>,
   every: number,
-  { shard }: SequenceCommand,
+  { shard }: BatchCommand,
 ): AsyncGenerator<Pair, void, undefined> {
   let first: Frame | undefined;
   let [position, used] = [0, 0];
@@ -119,12 +126,12 @@ function checkCount(frames: number): void {
   throw new VeroneseError('too-few-frames', `a pair needs two frames, found ${frames === 0 ? 'none' : 'one'}`);
 }
 
-function ofShard(index: number, shard: SequenceCommand['shard']): boolean {
+function ofShard(index: number, shard: BatchCommand['shard']): boolean {
   return index % shard.of === shard.index;
 }
 
 /** How many of the numbers from 0 belong to the shard. */
-function count(pairs: number, { index, of }: SequenceCommand['shard']): number {
+function count(pairs: number, { index, of }: BatchCommand['shard']): number {
   return Math.max(0, Math.ceil((pairs - index) / of));
 }
 
@@ -136,12 +143,6 @@ const LONGEST_STEM = 200;
 /** The pair's number, and its first frame for people who look for it. */
 function nameOf(index: number, { name, stem = basename(name, extname(name)) }: Frame): string {
   return `${String(index).padStart(6, '0')}-${stem.slice(0, LONGEST_STEM).replace(/[^\w.-]/g, '_')}`;
-}
-
-/** Whether a pair of every K-th frame of a video has this name. */
-function isOfVideo(name: string, every: number): boolean {
-  const [, index, frame] = /^(\d+)-frame-(\d+)$/.exec(name) ?? [];
-  return frame !== undefined && Number(frame) === Number(index) * every;
 }
 
 function namesOf({ frames: [first, second] }: Pair): { first: string | undefined; second: string | undefined } {

@@ -4,8 +4,8 @@ import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
-import { editsOf, isObjectNumber, RANGE } from '../calls/clip/edits.js';
-import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/clip/annotations.js';
+import { editsOf, isObjectNumber, RANGE } from '../calls/segmented/edits.js';
+import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/segmented/annotations.js';
 import { isListOf, isNumber, isObject, isWhole, UNLABELLED, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaledLabels, scaledSize } from '../common/scaling.js';
@@ -62,7 +62,7 @@ interface LabelImage {
 
 /** The annotations of a folder. */
 interface Folder extends Edits, Images {
-  said: ClipCorrection[];
+  labels: ClipCorrection[];
   sha256: string;
 }
 
@@ -92,15 +92,14 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
   if (both.length === 0) return undefined;
   const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
-  const spread = <T extends { frame: number }>(said: T[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
+  const spread = <T extends { frame: number }>(annotations: T[] = []) => annotations.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
   const prompts = both.flatMap((folder) => folder.prompts);
   const outlines = both.flatMap((folder) => folder.outlines);
-  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ said }) => said), ...prompts, ...outlines].some((each) => each.frame === frame));
-  if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', of which nothing is said`);
+  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ labels }) => labels), ...prompts, ...outlines].some((each) => each.frame === frame));
+  if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', which has no annotation`);
   const edits = {
     merge: all(({ merge }) => merge),
-    delete: all((edits) => edits.delete),
-    background: all(({ background }) => background),
+    delete: [...all((edits) => edits.delete), ...all(({ background }) => background)],
     locked: all(({ locked }) => locked),
     names: { ...masks?.edits.names, ...corrections?.edits.names },
   };
@@ -112,8 +111,8 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
     return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
   });
   return {
-    masks: spread(masks?.said),
-    corrections: spread([...(corrections?.said ?? []), ...merged, ...outlines]),
+    masks: spread(masks?.labels),
+    corrections: spread([...(corrections?.labels ?? []), ...merged, ...outlines]),
     prompts: spread(prompts),
     accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
     edits,
@@ -124,38 +123,38 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
 }
 
 async function readFolder(folder: string, frames: ClipFrames, maxSize: number | undefined, found: Images): Promise<Folder> {
-  const said: ClipCorrection[] = [];
+  const labelled: ClipCorrection[] = [];
   for (const { path, stem, ...image } of found.images) {
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
-    if (said.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
+    if (labelled.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
     const size = frames.size ?? (await frames.read(0));
     const { labels, width, height } = scaledLabels(image, maxSize);
     if (width !== size.width || height !== size.height) {
       throw new VeroneseError('frame-size-mismatch', `'${path}' has ${image.width}×${image.height} pixels, the frames have ${size.width}×${size.height}`);
     }
-    said.push({ frame, labels });
+    labelled.push({ frame, labels });
   }
-  said.sort((one, other) => one.frame - other.frame);
+  labelled.sort((one, other) => one.frame - other.frame);
   const none: Edits = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
   const hasEdits = found.names.includes(EDITS);
-  const told = hasEdits ? await readEdits(join(folder, EDITS), frames, maxSize) : none;
-  const { edits, prompts, outlines, accepted, propagate } = told;
-  const lists = [said, prompts, outlines, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
+  const content = hasEdits ? await readEdits(join(folder, EDITS), frames, maxSize) : none;
+  const { edits, prompts, outlines, accepted, propagate } = content;
+  const lists = [labelled, prompts, outlines, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
   if (lists.every((list) => list.length === 0)) {
     const [left] = found.left;
     const remedy = left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
-    const which = left !== undefined ? `'${left}' is not read: ${remedy}` : hasEdits ? `'${EDITS}' says nothing` : 'there is no file of these';
+    const which = left !== undefined ? `'${left}' is not read: ${remedy}` : hasEdits ? `'${EDITS}' is empty` : 'there is no file of these';
     throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
   }
   const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
-  const hashes = [...said, ...outlines].map(({ frame, object, labels }: ClipCorrection) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
-  const content = [hashes, edits, ...propagate, prompts, accepted];
+  const hashes = [...labelled, ...outlines].map(({ frame, object, labels }: ClipCorrection) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
+  const all = [hashes, edits, ...propagate, prompts, accepted];
   const paths = [...new Set([...found.names.map((name) => join(folder, name)), ...found.paths])];
-  return { ...found, notes, said, ...told, paths, sha256: sha256(JSON.stringify(content)) };
+  return { ...found, notes, ...content, labels: labelled, paths, sha256: sha256(JSON.stringify(all)) };
 }
 
-/** Label images as the program writes them, painted over: 255 says nothing. */
+/** Label images as the program writes them, painted over: 255 is not annotated. */
 async function paintedLabels(folder: string, names: string[], levels: Levels | undefined): Promise<Images> {
   const images: LabelImage[] = [];
   const isRead = (name: string) => isImage(name) && extname(name).toLowerCase() === '.png';
@@ -223,9 +222,9 @@ function namesIn(folder: string): string[] {
 async function readEdits(path: string, frames: ClipFrames, maxSize: number | undefined): Promise<Edits> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['boxes', 'clicks', 'prompts', 'polygons', 'accepted', 'propagate', 'size']);
-  const { propagate = {}, boxes = {}, clicks = {}, prompts: listed = [], polygons = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
-  if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
+  editsOf(content, wrong, ['prompts', 'polygons', 'accepted', 'propagate', 'size']);
+  const { propagate = {}, prompts: listed = [], polygons = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
+  if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to the directions in which annotations spread");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
@@ -246,17 +245,12 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
   const scale = own === undefined ? 1 : await scaleOf(own, frames, maxSize, wrong);
   // One after another: the first keeps its pixels.
   const prompts: FullPrompt[] = [];
-  const add = async (entry: Record<string, unknown>, bad: (reason: string) => VeroneseError) => {
-    const pointed = promptOf(scaledPrompt(entry, scale), bad);
-    if (!isWithin(pointed, await sizeOf())) throw bad('is not within the frame');
-    const before = prompts.find(({ frame, object }) => frame === pointed.frame && object === pointed.object);
-    if (before) throw bad(`has a ${before.box ? 'box' : 'click'} already`);
-    const { label, click, object = label, clicks = click && [[...(click as number[]), 1]], ...rest } = scaledPrompt(entry, scale);
-    prompts.push({ ...rest, object, clicks } as FullPrompt);
-  };
   for (const { entry, frame, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
-    await add({ ...entry, frame }, bad);
+    const prompt = scaledPrompt({ ...entry, frame }, scale);
+    if (!isWithin(promptOf(prompt, bad), await sizeOf())) throw bad('is not within the frame');
+    if (prompts.some((other) => other.frame === frame && other.object === prompt['object'])) throw bad(`is the second one of object ${String(prompt['object'])} in its frame`);
+    prompts.push(prompt as unknown as FullPrompt);
   }
   const outlines = new Map<string, Outline>();
   for (const { entry: { object, points }, frame, bad } of entriesOf('polygons', polygons, ['points'])) {
@@ -270,16 +264,6 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
     // Several are parts of one.
     const before = outlines.get(`${frame} ${object}`)?.labels;
     outlines.set(`${frame} ${object}`, { frame, object, labels: canvas.labels.map((label, p) => label || (before?.[p] ?? 0)) });
-  }
-  for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
-    if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
-    for (const [name, objects] of Object.entries(value)) {
-      const frame = frameOf(list, name);
-      if (!isObject(objects)) throw wrong(`'${list}' must have an object for '${name}', from numbers of objects to a ${key} of each`);
-      for (const [number, at] of Object.entries(objects)) {
-        await add({ frame, label: Number(number), [key]: at ?? [] }, (reason) => wrong(`'${list}' of '${name}', object ${number}: ${reason}`));
-      }
-    }
   }
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (accepted !== undefined && !isListOf(accepted, isName)) throw wrong("'accepted' must be a list of names of frames");
@@ -295,7 +279,7 @@ function isPoint(value: unknown): value is [x: number, y: number] {
   return isListOf(value, (side): side is number => typeof side === 'number' && Math.abs(side) <= FARTHEST) && value.length === 2;
 }
 
-/** By how much what is said in pixels of a size is scaled down, as the frames are. */
+/** The factor by which annotations in pixels of a size are scaled, as the frames are. */
 async function scaleOf(own: unknown, frames: ClipFrames, maxSize: number | undefined, wrong: (reason: string) => VeroneseError): Promise<number> {
   const isSide = (side: unknown): side is number => isWhole(side, 1, Number.MAX_SAFE_INTEGER);
   if (!isListOf(own, isSide) || own.length !== 2) throw wrong("'size' must be a width and a height");
@@ -308,7 +292,7 @@ async function scaleOf(own: unknown, frames: ClipFrames, maxSize: number | undef
 
 function scaledPrompt(entry: Record<string, unknown>, scale: number): Record<string, unknown> {
   if (scale === 1) return entry;
-  const { box, click, clicks } = entry;
+  const { box, clicks } = entry;
   const number = (value: unknown) => (isNumber(value) ? value : NaN);
   const point = (at: unknown) => (Array.isArray(at) ? at.map((value, k) => (k < 2 ? Math.floor(scale * number(value)) : value)) : at);
   const [x = 0, y = 0, width = 0, height = 0] = Array.isArray(box) ? box.map((value) => scale * number(value)) : [];
@@ -316,7 +300,6 @@ function scaledPrompt(entry: Record<string, unknown>, scale: number): Record<str
   return {
     ...entry,
     ...(box !== undefined && { box: [left, top, Math.ceil(x + width) - left, Math.ceil(y + height) - top] }),
-    ...(click !== undefined && { click: point(click) }),
     ...(clicks !== undefined && { clicks: Array.isArray(clicks) ? clicks.map(point) : clicks }),
   };
 }

@@ -99,9 +99,9 @@ function checkPixels(labels: Uint8Array, known: ReadonlyMap<number, Sighting>, p
   const counts = new Uint32Array(UNLABELLED + 1);
   for (const label of labels) counts[label] = (counts[label] as number) + 1;
   for (let label = 1; label < UNLABELLED; label++) {
-    const [found, said] = [counts[label], known.get(label)?.pixels ?? 0];
-    if (found === said) continue;
-    const sentence = `object ${label} has ${found} pixels in '${path}' and ${said} by '${TRACKS}': they are not of the same result`;
+    const [found, listed] = [counts[label], known.get(label)?.pixels ?? 0];
+    if (found === listed) continue;
+    const sentence = `object ${label} has ${found} pixels in '${path}' and ${listed} by '${TRACKS}': they are not of the same result`;
     throw new VeroneseError('invalid-input', sentence);
   }
 }

@@ -8,7 +8,7 @@ import { VeroneseError } from '../common/errors.js';
 import type { ClipCommand } from './arguments.js';
 import type { FrameFile } from './clip-store.js';
 import { readInput, sha256 } from './files.js';
-import { findFrames, isVideo, leftOutNotes, readList } from './frames.js';
+import { findFrames, leftOutNotes, readList, videoIn } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
 import { decoded, narrowRange, type Range, rangeNote } from './pair.js';
@@ -20,9 +20,6 @@ interface Seen extends FrameFile {
   name: string;
   failure?: { thrown: unknown };
 }
-
-/** Within how many bytes from the beginning an animation says that it is one. */
-const ANIMATED = 65_536;
 
 interface Times {
   frameRate?: number;
@@ -111,8 +108,8 @@ export class ClipFrames {
 
 /** Throws where there are too few frames, or two of one name. */
 export async function clipFrames({ frames: names, list, every, allowDamaged, maxSize }: ClipCommand, io: Io): Promise<ClipFrames> {
-  const [name = ''] = names;
-  if (names.length === 1 && list === undefined && (isVideo(name) || (await isAnimation(name)))) return framesOfVideo({ file: name, every, allowDamaged }, maxSize, io);
+  const video = await videoIn({ frames: names, list });
+  if (video !== undefined) return framesOfVideo({ file: video, every, allowDamaged }, maxSize, io);
   const paths = findFrames(names, await readList(list, io.stdin)).filter((_, index) => index % every === 0);
   checkStems(paths);
   const files: Seen[] = [];
@@ -128,16 +125,6 @@ export async function clipFrames({ frames: names, list, every, allowDamaged, max
     }
   }
   return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, maxSize, range: narrowRange(ranges), notes: leftOutNotes(names) });
-}
-
-/** Whether an image has several frames: a PNG with the control of an animation, a WebP with its flag. */
-async function isAnimation(name: string): Promise<boolean> {
-  if (!/\.(png|webp)$/i.test(name)) return false;
-  const bytes = await readInput(name).catch(() => new Uint8Array());
-  const text = Buffer.from(bytes.subarray(0, ANIMATED)).toString('latin1');
-  if (text.startsWith('RIFF')) return text.slice(8, 16) === 'WEBPVP8X' && ((bytes[20] ?? 0) & 2) > 0;
-  const control = text.indexOf('acTL');
-  return control > 0 && control < `${text}IDAT`.indexOf('IDAT');
 }
 
 /** The range of the samples in a file that has 16 bits of each. What cannot be read is an error when it is. */

@@ -32,11 +32,6 @@ export class KeptClip {
     for (const frame of frames) this.#keys.push((key = sha256(key + frame.sha256)));
   }
 
-  /** Throws `file-exists` where files of another are in the places of these. */
-  check(): Promise<void> {
-    return writing(this.#output.folder, () => this.#output.checkFolder(HIDDEN, OURS));
-  }
-
   pairs(index: number): Uint8Array | undefined {
     return this.#read(nameOf(index, PAIRS), this.#keys[index]);
   }
@@ -83,10 +78,7 @@ export class KeptClip {
   }
 
   #write(name: string, key: string | undefined, content: Uint8Array): Promise<void> {
-    return writing(this.#output.folder, () => {
-      this.#output.manifest.addFolder(HIDDEN);
-      this.#output.keep(`${HIDDEN}/${name}`, Buffer.concat([hashOf(key, content), content]));
-    });
+    return writing(this.#output.folder, () => this.#output.write(`${HIDDEN}/${name}`, Buffer.concat([hashOf(key, content), content]), HIDDEN));
   }
 
   #remove(isOld: RegExp, kept: ReadonlySet<string> = new Set()): Promise<void> {

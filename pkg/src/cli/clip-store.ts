@@ -1,17 +1,16 @@
-// The results of a clip in a folder: the images of each frame, and last tracks.json, which records what they were made from.
+// The results of a clip in a folder: the images of each frame, and last tracks.json, which has what they were made from.
 
 import { join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipChange, ClipTracks } from '../../types/index.js';
 import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { lookAt, readWritten, sha256, writing } from './files.js';
-import { hashOf } from './manifest.js';
-import { idsOf, type Output, removeIfEmpty } from './output.js';
+import { type Output, removeIfEmpty } from './output.js';
 import { jsonLine } from './pair.js';
 import { isShown, pathsOf } from './showing.js';
 
 /** The content of tracks.json. */
-export interface Record extends Omit<ClipTracks, 'notes'> {
+export interface ClipManifest extends Omit<ClipTracks, 'notes'> {
   version: 1;
   width: number;
   height: number;
@@ -42,40 +41,40 @@ const OVERLAY = 'overlay';
 
 export class ClipStore {
   readonly #output: Output;
-  readonly #settings: Record['settings'];
+  readonly #settings: ClipManifest['settings'];
 
-  constructor(output: Output, settings: Record['settings']) {
+  constructor(output: Output, settings: ClipManifest['settings']) {
     this.#output = output;
     this.#settings = settings;
   }
 
-  /** The record of a finished run on the same frames with the same settings, if nothing of it has changed. */
-  finished(frames: readonly FrameFile[]): Record | undefined {
+  /** The manifest of a finished run on the same frames with the same settings, if all files are there. */
+  finished(frames: readonly FrameFile[]): ClipManifest | undefined {
     return this.before(frames, this.#settings);
   }
 
-  /** The record of a finished run on the same frames, with any settings or these, if nothing of it has changed. */
-  before(frames: readonly FrameFile[], settings?: Record['settings']): Record | undefined {
-    const { folder, manifest } = this.#output;
+  /** The manifest of a finished run on the same frames, with any settings or these, if all files are there. */
+  before(frames: readonly FrameFile[], settings?: ClipManifest['settings']): ClipManifest | undefined {
+    const isThere = (path: string) => lookAt(join(this.#output.folder, path))?.isFile();
     try {
-      const record = JSON.parse(readWritten(join(folder, TRACKS))?.toString() ?? '') as Record;
-      if (record.job !== jobOf(settings ?? record.settings, frames)) return undefined;
-      return [TRACKS, ...imagesOf(frames, record.settings)].every((path) => manifest.isCurrent(path)) ? record : undefined;
+      const manifest = JSON.parse(readWritten(join(this.#output.folder, TRACKS))?.toString() ?? '') as ClipManifest;
+      if (manifest.job !== jobOf(settings ?? manifest.settings, frames)) return undefined;
+      return imagesOf(frames, manifest.settings).every(isThere) ? manifest : undefined;
     } catch {
       return undefined; // Missing or foreign.
     }
   }
 
-  /**
-   * Checks the places of all files and marks the folder as unfinished. Throws `file-exists`, or `write-failed`, as all methods that
-   * write do.
-   */
-  async begin(frames: readonly FrameFile[], inputs: readonly string[]): Promise<void> {
-    await writing(this.#output.folder, async () => {
-      await this.#output.check([TRACKS, ...imagesOf(frames, this.#settings)], idsOf(inputs));
+  /** Checks the places of all files. Throws `file-exists`. */
+  check(frames: readonly FrameFile[], inputs: readonly string[]): void {
+    this.#output.check([TRACKS, ...imagesOf(frames, this.#settings), HIDDEN], inputs);
+  }
+
+  /** Marks the folder as unfinished. Throws `write-failed`, as all methods that write do. */
+  async begin(): Promise<void> {
+    await writing(this.#output.folder, () => {
       this.#output.removeLeftovers();
       this.#output.removeOld((path) => path === TRACKS);
-      if (lookAt(join(this.#output.folder, HIDDEN))) this.#output.manifest.addFolder(HIDDEN);
     });
   }
 
@@ -90,27 +89,26 @@ export class ClipStore {
   async show(films: readonly string[], sheet: Uint8Array | undefined): Promise<void> {
     await writing(this.#output.folder, () => {
       if (sheet) this.#output.write('sheet.png', sheet);
-      const part = this.#output.begin();
-      this.#output.place(part, new Map(films.map((name) => [name, hashOf(join(part, name))])), () => false);
+      this.#output.place(this.#output.begin(), films, () => false);
     });
   }
 
-  /** Removes images of frames that do not belong to the clip, and writes the record. */
-  async end(frames: readonly FrameFile[], about: Pick<Record, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
+  /** Removes images of frames that do not belong to the clip, and writes the manifest. */
+  async end(frames: readonly FrameFile[], about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
-    const record: Record = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };
+    const manifest: ClipManifest = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };
     await writing(this.#output.folder, () => {
       this.#output.removeOld((path) => /^(labels|overlay)\//.test(path) || isShown(path), imagesOf(frames, settings));
-      this.#output.write(TRACKS, jsonLine(record));
+      this.#output.write(TRACKS, jsonLine(manifest));
       removeIfEmpty(join(this.#output.folder, HIDDEN));
-      this.#output.manifest.settle();
+      this.#output.settle();
     });
   }
 }
 
 /** The paths of the images of all frames, and of what is shown of them. */
-function imagesOf(frames: readonly FrameFile[], { overlay, show = [] }: Record['settings']): string[] {
+function imagesOf(frames: readonly FrameFile[], { overlay, show = [] }: ClipManifest['settings']): string[] {
   const images = (overlay ? [LABELS, OVERLAY] : [LABELS]).flatMap((folder) => frames.map(({ stem }) => `${folder}/${stem}.png`));
   return [...images, ...pathsOf(show, frames.map(({ stem }) => stem))];
 }

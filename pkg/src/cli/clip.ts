@@ -13,7 +13,7 @@ import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
-import { ClipStore, type Record } from './clip-store.js';
+import { type ClipManifest, ClipStore } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
@@ -36,28 +36,28 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const rate = command.frameRate ?? frames.times.frameRate;
   const showing = new Showing(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
   try {
-    const said = await readCorrections(command, frames);
-    for (const each of said?.notes ?? []) note(io, each);
+    const corrections = await readCorrections(command, frames);
+    for (const each of corrections?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
-    const store = new ClipStore(output, { ...options, every, maxSize, ...said?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
-    const record = store.finished(frames.files);
-    if (record) {
+    const store = new ClipStore(output, { ...options, every, maxSize, ...corrections?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
+    const before = store.finished(frames.files);
+    if (before) {
       // Masks may be the same ones in other files by now: of those the note above is right.
-      for (const each of record.notes ?? []) if (!each.code.startsWith('mask-')) note(io, each);
-      return await report(record, io);
+      for (const each of before.notes ?? []) if (!each.code.startsWith('mask-')) note(io, each);
+      return await report(before, io);
     }
+    store.check(frames.files, [...frames.paths, ...(corrections?.paths ?? [])]);
 
     const kept = new KeptClip(output, { ...options, markUnknown: undefined, maxSize, software, range: frames.range }, frames.files);
-    await kept.check();
-    const accepted = await acceptedAsSeen(out, said, frames, { store, kept });
+    const accepted = await acceptedAsSeen(out, corrections, frames, { store, kept });
     // If this run is interrupted, the next one has them.
     await kept.keepAccepted(accepted);
-    await store.begin(frames.files, [...frames.paths, ...(said?.paths ?? [])]);
-    const streams = options.lookAhead !== 'all' && !said;
+    await store.begin();
+    const streams = options.lookAhead !== 'all' && !corrections;
     const onProgress = progress.listener;
     const segmented = streams
       ? segmenter.segmentClip(frames, { ...options, onProgress })
-      : await corrected(segmenter, frames, command, said && { ...said, seen: accepted }, kept, onProgress);
+      : await corrected(segmenter, frames, command, corrections && { ...corrections, seen: accepted }, kept, onProgress);
     for await (const frame of segmented) {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted, show.length > 0 ? showing : undefined));
@@ -72,7 +72,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const changes = await segmented.changes();
     if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
     const found = [...frames.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
-    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(said?.notes ?? []), ...found]);
+    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(corrections?.notes ?? []), ...found]);
     for (const each of found) note(io, each);
     for (const { name, object } of show) {
       const isThere = !name.startsWith('cutout') || object === 0 || tracks.objects.some(({ id }) => id === object);
@@ -96,17 +96,17 @@ async function corrected(
   segmenter: SegmenterType,
   frames: ClipFrames,
   { options }: ClipCommand,
-  said: (Corrections & { seen: ReadonlyMap<number, Uint8Array> }) | undefined,
+  given: (Corrections & { seen: ReadonlyMap<number, Uint8Array> }) | undefined,
   kept: KeptClip,
   onProgress: (progress: ClipProgress) => void,
 ): Promise<Clip> {
   const state = kept.state() ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
   const isThere = ({ frame }: { frame: number }) => frame < length;
-  const [masks, corrections, prompts] = [said?.masks.filter(isThere), said?.corrections.filter(isThere), said?.prompts.filter(isThere)];
-  const accepted = said?.accepted.map((frame) => ({ frame, labels: said.seen.get(frame) })).filter(isThere);
+  const [masks, corrections, prompts] = [given?.masks.filter(isThere), given?.corrections.filter(isThere), given?.prompts.filter(isThere)];
+  const accepted = given?.accepted.map((frame) => ({ frame, labels: given.seen.get(frame) })).filter(isThere);
   const { markUnknown } = options;
-  const all = { masks, corrections, prompts, accepted, edits: said?.edits };
+  const all = { masks, corrections, prompts, accepted, edits: given?.edits };
   return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, ...all, onProgress });
 }
 
@@ -116,17 +116,17 @@ async function corrected(
  */
 async function acceptedAsSeen(
   out: string,
-  said: Corrections | undefined,
+  corrections: Corrections | undefined,
   frames: ClipFrames,
   { store, kept }: { store: ClipStore; kept: KeptClip },
 ): Promise<Map<number, Uint8Array>> {
   const seen = new Map<number, Uint8Array>();
-  if (!said || said.accepted.length === 0) return seen;
+  if (!corrections || corrections.accepted.length === 0) return seen;
   const before = store.before(frames.files);
-  for (const frame of said.accepted) {
+  for (const frame of corrections.accepted) {
     const stem = before?.frames[frame];
     const labels = stem === undefined ? kept.accepted(frame) : (await readLabels(join(out, LABELS, `${stem}.png`))).labels;
-    const mask = said.masks.find((mask) => mask.frame === frame);
+    const mask = corrections.masks.find((mask) => mask.frame === frame);
     if (labels) seen.set(frame, mask ? labelsUnder(mask.labels, labels) : labels);
   }
   return seen;
@@ -199,8 +199,8 @@ function rateNote({ frames }: ClipCommand): Note {
   return { code: 'frame-rate-assumed', message };
 }
 
-/** Prints what the run that wrote the record printed. */
-async function report({ frames, objects, changes = [] }: Record, io: Io): Promise<void> {
+/** Prints what the run that wrote the manifest printed. */
+async function report({ frames, objects, changes = [] }: ClipManifest, io: Io): Promise<void> {
   for (const [frame, name] of frames.entries()) {
     const seen = objects.filter((object) => object.frames.some((entry) => entry.frame === frame));
     await print(io, jsonLine({ frame, name, objects: seen.map(({ id }) => id) }));
@@ -209,14 +209,14 @@ async function report({ frames, objects, changes = [] }: Record, io: Io): Promis
 }
 
 /** With the frames that corrections have changed, and what each object has gained and lost in all of them, if they have. */
-function lastLine(objects: Record['objects'], changes: readonly ClipChange[]): string {
+function lastLine(objects: ClipManifest['objects'], changes: readonly ClipChange[]): string {
   const done = { done: true, objects: objects.length };
   if (changes.length === 0) return jsonLine(done);
-  const of = new Map<number, { id: number; gained: number; lost: number }>();
+  const sums = new Map<number, { id: number; gained: number; lost: number }>();
   for (const { object: id, gained, lost } of changes) {
-    const before = of.get(id) ?? { id, gained: 0, lost: 0 };
-    of.set(id, { id, gained: before.gained + gained, lost: before.lost + lost });
+    const before = sums.get(id) ?? { id, gained: 0, lost: 0 };
+    sums.set(id, { id, gained: before.gained + gained, lost: before.lost + lost });
   }
   const frames = [...new Set(changes.map(({ frame }) => frame))];
-  return jsonLine({ ...done, changed: { frames, objects: [...of.values()].sort((one, other) => one.id - other.id) } });
+  return jsonLine({ ...done, changed: { frames, objects: [...sums.values()].sort((one, other) => one.id - other.id) } });
 }

@@ -1,15 +1,13 @@
-// The commands and options of the program, once: what is parsed, and what help, completion and the site say about it.
+// The commands and options of the program, once: what is parsed, and what help and the site say about it.
 
 import { isFormatName } from './formats.js';
 import { SEQUENCE_FORMATS } from './sequence-formats.js';
-import { SHOWN } from './showing.js';
 
 /** As parseArgs takes it, with the word for its value and what it is for. */
 export interface Option {
   type: 'string' | 'boolean';
   short?: string;
   default?: string | boolean;
-  /** Words between bars can be completed, FILE and DIR are places. */
   value?: string;
   text: string;
 }
@@ -19,8 +17,6 @@ const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
   Object.entries(SEQUENCE_FORMATS)
     .flatMap(([name, { tracks }]) => (tracks === ofTracks && isFormatName(name) === ofPair ? [name] : []))
     .join(', ');
-
-export const SHELLS = ['bash', 'zsh', 'fish'] as const;
 
 /** The format of `convert` that reads masks back. */
 export const BACK = 'corrections';
@@ -38,15 +34,15 @@ export const OPTIONS = {
     type: 'string',
     value: 'DIR',
     text:
-      'masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background, 255: nothing said; alone it is the object), ' +
+      'masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background, 255: not annotated; alone it is the object), ' +
       'a colour for each object on black, or what is not transparent; DIR/3/NAME.png for object 3 alone; and DIR/edits.json',
   },
   corrections: {
     type: 'string',
     value: 'DIR',
     text:
-      'what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said), and DIR/edits.json: ' +
-      '{"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}, "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"',
+      'what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: not annotated), and DIR/edits.json: ' +
+      '{"merge": [[2, 5]], "delete": [3], "names": {"1": "car"}, "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"',
   },
   levels: {
     type: 'string',
@@ -86,7 +82,7 @@ export const OPTIONS = {
   'frame-rate': { type: 'string', value: 'N', text: "of clip: frames per second, for formats that need it (default: the clip's, else 25)" },
   clip: { type: 'string', value: 'DIR', text: `with ${BACK}: the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)` },
   'allow-damaged': { type: 'boolean', default: false, text: 'take a damaged JPEG file or video as far as it can be read, with a note; otherwise that is an error' },
-  force: { type: 'boolean', default: false, text: 'overwrite files in DIR that are not of this program; without it they are an error' },
+  force: { type: 'boolean', default: false, text: 'write to DIR even if it has files that veronese did not write there, and overwrite those in the way; without it they are an error' },
   quiet: { type: 'boolean', short: 'q', default: false, text: 'no progress, notes and warnings; results and errors stay' },
   help: { type: 'boolean', short: 'h', text: 'show this help' },
   version: { type: 'boolean', short: 'v', text: 'show the version' },
@@ -110,9 +106,7 @@ export interface CommandText {
 export const ALWAYS: readonly OptionName[] = ['quiet', 'help', 'version'];
 
 const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'subject', 'mark-unknown', 'confidence', 'overlay', 'max-size'];
-const OF_SEQUENCES: readonly OptionName[] = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 const AT_THE_END: readonly OptionName[] = ['allow-damaged', 'force'];
-const FOLDERS = { out: 'write a folder for each pair to DIR, with the files of pair; skip finished pairs' };
 
 export const COMMANDS = {
   pair: {
@@ -127,23 +121,16 @@ export const COMMANDS = {
     ],
   },
   batch: {
-    usage: ['FRAMES... [options]'],
+    usage: ['FRAMES... [options]', 'VIDEO [options]'],
     about: 'segment every pair of consecutive frames',
-    more: "FRAMES are folders, files or 'quoted patterns*.png'. Prints one line of JSON for each pair.",
-    options: ['list', ...OF_SEQUENCES, ...AT_THE_END],
-    texts: FOLDERS,
+    more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each pair.",
+    options: ['list', ...OF_PAIRS, 'every', 'jobs', 'shard', ...AT_THE_END],
+    texts: { out: 'write a folder for each pair to DIR, with the files of pair; skip finished pairs' },
     examples: [
       ['A folder of frames, four pairs at once', 'veronese batch frames -o pairs -j 4 > pairs.jsonl'],
       ['Every fifth frame, the first of three machines', 'veronese batch frames -o pairs --every 5 --shard 1/3'],
+      ['Every tenth frame of a video, fast', 'veronese batch film.mp4 -o pairs --every 10 --quality fast'],
     ],
-  },
-  video: {
-    usage: ['FILE [options]'],
-    about: 'segment every pair of consecutive frames of a video',
-    more: 'Needs the program ffmpeg. Prints one line of JSON for each pair.',
-    options: [...OF_SEQUENCES, ...AT_THE_END],
-    texts: FOLDERS,
-    examples: [['Every tenth frame, fast', 'veronese video film.mp4 -o pairs --every 10 --quality fast']],
   },
   clip: {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
@@ -183,16 +170,6 @@ export const COMMANDS = {
     texts: { motions: 'number of motions' },
     examples: [["The paper's algorithm, with two motions", 'veronese points points.json --method paper --motions 2']],
   },
-  completion: {
-    usage: [SHELLS.join('|')],
-    about: 'print what makes a shell complete commands and options',
-    options: [],
-    examples: [
-      ['bash, in ~/.bashrc', 'source <(veronese completion bash)'],
-      ['zsh, at the end of ~/.zshrc', 'source <(veronese completion zsh)'],
-      ['fish', 'veronese completion fish > ~/.config/fish/completions/veronese.fish'],
-    ],
-  },
 } as const satisfies Record<string, CommandText>;
 
 export type CommandName = keyof typeof COMMANDS;
@@ -203,13 +180,6 @@ export const isCommand = (name: string): name is CommandName => Object.hasOwn(CO
 export function optionsOf(command: CommandName): (Option & { name: OptionName })[] {
   const { options, texts = {} }: CommandText = COMMANDS[command];
   return [...options, ...ALWAYS].map((name) => ({ ...OPTIONS[name], name, text: texts[name] ?? OPTIONS[name].text }));
-}
-
-/** The words that an option's value can be, if they can be listed. */
-export function valuesOf({ value = '' }: Option): readonly string[] {
-  if (value === 'FILES') return SHOWN.filter((name) => !name.includes('N'));
-  if (value === 'FORMATS') return [...Object.keys(SEQUENCE_FORMATS), BACK];
-  return value.includes('|') ? value.split('|').filter((word) => !word.includes('..')) : [];
 }
 
 /** The word of these that was probably meant. */

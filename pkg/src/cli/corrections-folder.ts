@@ -21,7 +21,7 @@ const HEAD = 2 ** 18;
 
 /** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
 export async function convertBack({ source, clip, levels, firstFrame }: CorrectionsCommand, output: Output, io: Io): Promise<string> {
-  await output.check([EDITS]);
+  output.check([EDITS]);
   const known = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
   for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path, /\.jpe?g$/i.test(path) ? HEAD : undefined) });

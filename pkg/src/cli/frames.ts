@@ -7,7 +7,7 @@ import { basename, extname, join, parse, sep } from 'node:path';
 import { text } from 'node:stream/consumers';
 import type { Note } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
-import { notFound } from './files.js';
+import { notFound, readInput } from './files.js';
 import { isFileName } from './sequence.js';
 
 const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
@@ -15,6 +15,8 @@ const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
 export const UNREAD_IMAGE = /\.(tiff?|avif|jp2|j2k|jxl|heic|heif|gif|exr|dng)$/i;
 const READ = 'PNG, JPEG, WebP, BMP or PNM';
 const MAGIC = /[*?[\]]/;
+/** An animation declares that it is one within so many bytes from the beginning. */
+const ANIMATED = 65_536;
 /** Folders below each other that `**` follows. */
 const DEPTH = 32;
 
@@ -47,10 +49,25 @@ export function checkName(path: string): void {
   throw new VeroneseError('invalid-input', `${JSON.stringify(path)} cannot name results: it has control characters, a backslash or only dots`);
 }
 
-/** Whether a name is that of a file which is not an image: a video, for commands that take both. */
-export function isVideo(name: string): boolean {
+/** The video that is given instead of frames: the one file that is not an image, or that is an animation. */
+export async function videoIn({ frames, list }: { frames: readonly string[]; list: string | undefined }): Promise<string | undefined> {
+  const [name = ''] = frames;
+  return frames.length === 1 && list === undefined && (isVideo(name) || (await isAnimation(name))) ? name : undefined;
+}
+
+function isVideo(name: string): boolean {
   const kind = kindOf(name);
   return kind === undefined ? !MAGIC.test(name) && !IMAGE.test(name) : kind === 'file' && !IMAGE.test(name);
+}
+
+/** Whether an image has several frames: a PNG with the control of an animation, a WebP with its flag. */
+async function isAnimation(name: string): Promise<boolean> {
+  if (!/\.(png|webp)$/i.test(name)) return false;
+  const bytes = await readInput(name, ANIMATED).catch(() => new Uint8Array());
+  const text = Buffer.from(bytes).toString('latin1');
+  if (text.startsWith('RIFF')) return text.slice(8, 16) === 'WEBPVP8X' && ((bytes[20] ?? 0) & 2) > 0;
+  const control = text.indexOf('acTL');
+  return control > 0 && control < `${text}IDAT`.indexOf('IDAT');
 }
 
 /** Says which pictures in folders of frames are not read. */

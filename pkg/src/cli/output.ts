@@ -1,15 +1,14 @@
-// An output folder: files are written in a folder of their own in it and take their places when they are complete. Nothing is replaced or
-// deleted that is not ours by the manifest, unless that is asked for.
+// An output folder. Its list, `.veronese`, names the files that this program wrote there. Those are replaced and deleted by later runs; other
+// files never are, unless that is asked for. New files are written into a folder of their own, and take their places when they are complete.
 
-import { createHash, type Hash } from 'node:crypto';
-import { readdirSync, renameSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { appendFileSync, readdirSync, renameSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { writeFile } from 'node:fs/promises';
+import { hostname } from 'node:os';
 import { dirname, join } from 'node:path';
-import { setImmediate } from 'node:timers/promises';
 import { keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
-import { checkFolder, lookAt, makeFolder, type OutputFile, sha256, taken, writeFailed, writing } from './files.js';
-import { HOST, Manifest, RUN } from './manifest.js';
+import { checkFolder, lookAt, makeFolder, type OutputFile, readWritten, sha256, taken, writing } from './files.js';
+import { isFileName } from './sequence.js';
 
 /** The content of a file, at once or piece by piece. */
 export type Content = Uint8Array | string | AsyncIterable<string>;
@@ -17,118 +16,133 @@ export type Content = Uint8Array | string | AsyncIterable<string>;
 /** Writes a file. Folders in its path, which is divided by `/`, are made. */
 export type Write = (path: string, content: Content) => Promise<void>;
 
-/** The folder of a run for what is not complete. */
+const LIST = '.veronese';
+const HEADER = '# Files that veronese wrote here. It replaces and deletes no others.';
+/** A mark of this machine, so that two of them may write into one shared folder. */
+const HOST = sha256(hostname()).slice(0, 8);
+/** The name of this run for what is not complete. */
+const RUN = `${LIST}-${HOST}-${process.pid}`;
 const PART = `${RUN}.part`;
-const PARTS = /^\.veronese-([0-9a-f]{8})-(\d+)\.(?:part|list)$/;
-/** Age from which files of another machine were left behind, milliseconds. */
-const LEFT = 86_400_000;
+const PARTS = new RegExp(`^${LIST}-${HOST}-(\\d+)\\.(?:part|file)$`);
 
 export class Output {
   readonly folder: string;
-  readonly manifest: Manifest;
   readonly #force: boolean;
+  readonly #isInput: boolean;
+  /** Listed paths by their keys. */
+  readonly #listed = new Map<string, string>();
+  #hasList: boolean;
 
-  /** `force`: files of others may be replaced. Throws `file-exists`, or `write-failed` where the folder cannot be one, as all methods do. */
-  constructor(folder: string, { force, signal }: { force: boolean; signal?: AbortSignal }) {
+  /**
+   * `force`: files of others may be replaced. `isInput`: the folder is also what is read, whoever wrote it. Throws `write-failed` where the
+   * folder cannot be one, as all methods do.
+   */
+  constructor(folder: string, { force, isInput = false, signal }: { force: boolean; isInput?: boolean; signal?: AbortSignal }) {
     checkFolder(folder);
     this.folder = folder;
-    this.manifest = new Manifest(folder, force);
     this.#force = force;
+    this.#isInput = isInput;
+    this.#hasList = this.#readList();
     signal?.addEventListener('abort', () => this.discard());
   }
 
-  /** Throws unless each of the places may be taken: by nothing, or by a file of our own that is not among the `inputs` ({@link idsOf}). */
-  async check(paths: Iterable<string>, inputs?: ReadonlySet<string>): Promise<void> {
+  /**
+   * Throws `file-exists` where one of these places has a file that is not listed, or that is among the `inputs`, and where the folder has
+   * files and no list.
+   */
+  check(paths: Iterable<string>, inputs: readonly string[] = []): void {
+    const read = new Set(inputs.flatMap(idOf));
     for (const path of paths) {
-      // Between two files a signal is heeded.
-      if (this.#isFree(path, inputs)) continue;
-      await setImmediate();
-      this.#checkOwn(path);
+      const place = join(this.folder, path);
+      if (read.size > 0 && idOf(place).some((id) => read.has(id))) throw taken(place, 'is an input, and would be overwritten');
+      this.#checkFree(path);
     }
+    if (this.#hasList || this.#force || !lookAt(this.folder)) return;
+    // Hidden files, such as those of file managers, are no content.
+    const isContent = (name: string) => name === LIST || !(this.#isInput || /^\.|^Thumbs\.db$/.test(name));
+    const other = readdirSync(this.folder).sort().find(isContent);
+    if (other !== undefined) throw foreign(join(this.folder, other));
   }
 
-  /** As {@link check}, of files with these names in a folder below that {@link Manifest.ownsFolder | is ours} or not. */
-  checkFolder(path: string, names: RegExp): void {
-    const place = join(this.folder, path);
-    if (this.#force || this.manifest.ownsFolder(path) || !lookAt(place)?.isDirectory()) return;
-    const name = readdirSync(place).find((name) => names.test(name));
-    if (name !== undefined) throw foreign(join(place, name));
+  /** Lists paths. This comes before files take their places: whenever the process ends, what is there is known. */
+  add(paths: readonly string[]): void {
+    const fresh = paths.filter((path) => this.#listed.get(keyOf(path)) !== path);
+    if (this.#hasList && fresh.length === 0) return;
+    for (const path of fresh) this.#listed.set(keyOf(path), path);
+    if (this.#hasList) appendFileSync(join(this.folder, LIST), fresh.map((path) => `\n${path}`).join(''));
+    else this.#move(LIST, [HEADER, ...fresh].join('\n'));
+    this.#hasList = true;
   }
 
-  /** Writes a file of our own, at once: no signal comes in between. */
-  write(path: string, content: Uint8Array | string): void {
-    if (!this.#isFree(path)) this.#checkOwn(path);
-    this.manifest.add(new Map([[path, sha256(content)]]));
-    this.keep(path, content);
+  /** Lists what is there, sorted. Other processes may have added to it. */
+  settle(): void {
+    this.#readList();
+    const there = [...this.#listed.values()].filter((path) => lookAt(join(this.folder, path)));
+    this.#move(LIST, [HEADER, ...there.sort()].join('\n'));
   }
 
-  /** As {@link write}, in a folder that is our own. */
-  keep(path: string, content: Uint8Array | string): void {
-    const [part, place] = [join(this.begin(), 'file'), join(this.folder, path)];
-    writeFileSync(part, content);
-    makeFolder(dirname(place));
-    renameSync(part, place);
+  /** Writes a file at once: no signal comes in between. `listed`: a folder that is listed as a whole, with the file in it. */
+  write(path: string, content: Uint8Array | string, listed = path): void {
+    this.#checkFree(listed);
+    this.add([listed]);
+    this.#move(path, content);
   }
 
   /** As {@link stage}; the last file is the last to take its place. */
-  async writeAll(files: readonly OutputFile[], isOld: (path: string) => boolean = () => false): Promise<void> {
+  async writeAll(files: readonly OutputFile[], isOld?: (path: string) => boolean): Promise<void> {
     await this.stage(async (write) => {
       for (const { name, bytes } of files) await write(name, bytes);
     }, isOld);
   }
 
   /**
-   * Writes what `work` writes: all of it, and nothing before that is done. Files of an earlier run go if `isOld` is true of them, otherwise those
-   * in folders that are written. Returns names, those of folders with a `/`. Rejects with what `work` rejects with, leaving nothing
-   * half-written.
+   * Writes what `work` writes: all of it, and nothing before that is done. Listed files of an earlier run go if `isOld` is true of them;
+   * without `isOld`, those in folders that are written. Returns names, those of folders with a `/`. Rejects with what `work` rejects with,
+   * leaving nothing half-written.
    */
   async stage(work: (write: Write) => Promise<void>, isOld?: (path: string) => boolean): Promise<string[]> {
-    const hashes = new Map<string, string>();
-    const known = new Map<string, string>();
-    const tops = new Set<string>();
+    const paths = new Map<string, string>();
+    this.check([]);
     this.removeLeftovers();
     try {
       await work((path, content) =>
         writing(this.folder, async () => {
-          const other = known.get(keyOf(path));
+          const other = paths.get(keyOf(path));
           if (other !== undefined) throw new VeroneseError('invalid-input', `'${other}' and '${path}' would be one file`);
-          known.set(keyOf(path), path);
-          await this.check([path]);
+          paths.set(keyOf(path), path);
+          this.#checkFree(path);
           const place = join(this.begin(), path);
           makeFolder(dirname(place));
-          const hash = createHash('sha256');
-          await writeFile(place, hashed(content, hash));
-          hashes.set(path, hash.digest('hex'));
-          tops.add(topOf(path));
+          await writeFile(place, content);
         }),
       );
-      await writing(this.folder, () => this.place(this.begin(), hashes, isOld ?? ((path) => tops.has(topOf(path)))));
+      const tops = new Set([...paths.values()].map(topOf));
+      await writing(this.folder, () => this.place(this.begin(), [...paths.values()], isOld ?? ((path) => tops.has(topOf(path)))));
       return [...tops];
     } finally {
       this.discard();
     }
   }
 
-  /** Moves files, whose hashes are given, from another folder to their places, in one turn: a signal comes before or after. */
-  place(part: string, hashes: ReadonlyMap<string, string>, isOld: (path: string) => boolean): void {
-    for (const path of hashes.keys()) if (!this.#isFree(path)) this.#checkOwn(path);
-    this.removeOld(isOld, hashes.keys());
-    this.manifest.add(hashes);
-    for (const path of hashes.keys()) {
+  /** Moves files from another folder to their places, in one turn: a signal comes before or after. */
+  place(part: string, paths: readonly string[], isOld: (path: string) => boolean): void {
+    for (const path of paths) this.#checkFree(path);
+    this.removeOld(isOld, paths);
+    this.add(paths);
+    for (const path of paths) {
       makeFolder(dirname(join(this.folder, path)));
       renameSync(join(part, path), join(this.folder, path));
     }
-    this.manifest.settle();
+    this.settle();
   }
 
-  /** Deletes files of an earlier run that are neither changed since nor among `kept`, and folders that are empty then. */
+  /** Deletes listed files that are not among `kept`, and folders that are empty then. */
   removeOld(isOld: (path: string) => boolean, kept: Iterable<string> = []): void {
     const keys = new Set([...kept].map(keyOf));
-    for (const path of this.manifest.paths) {
-      if (!isOld(path) || keys.has(keyOf(path)) || !this.manifest.owns(path)) continue;
+    for (const path of this.#listed.values()) {
+      if (!isOld(path) || keys.has(keyOf(path)) || !lookAt(join(this.folder, path))) continue;
       rmSync(join(this.folder, path));
-      const parts = path.split('/');
-      while (parts.pop() && parts.length > 0) removeIfEmpty(join(this.folder, ...parts));
+      for (let folder = dirname(path); folder !== '.'; folder = dirname(folder)) removeIfEmpty(join(this.folder, folder));
     }
   }
 
@@ -145,27 +159,33 @@ export class Output {
     rmSync(join(this.folder, PART), { recursive: true, force: true, maxRetries: 10 });
   }
 
-  /** Removes what runs that were killed left behind, nothing of one that may still go on. */
+  /** Removes what runs on this machine left behind when they were killed. */
   removeLeftovers(): void {
     for (const name of lookAt(this.folder) ? readdirSync(this.folder) : []) {
-      const [, host, pid] = PARTS.exec(name) ?? [];
-      if (host === undefined || (host === HOST && Number(pid) !== process.pid && isAlive(Number(pid)))) continue;
-      const path = join(this.folder, name);
-      if (host === HOST || Date.now() - (lookAt(path)?.mtimeMs ?? 0) > LEFT) rmSync(path, { recursive: true, force: true });
+      const [, pid] = PARTS.exec(name) ?? [];
+      if (pid !== undefined && !isAlive(Number(pid))) rmSync(join(this.folder, name), { recursive: true, force: true });
     }
   }
 
-  #isFree(path: string, inputs?: ReadonlySet<string>): boolean {
+  #checkFree(path: string): void {
     const place = join(this.folder, path);
-    const status = lookAt(place);
-    if (status?.isDirectory()) throw writeFailed(this.folder, `'${place}' is a folder`);
-    const id = status && inputs && idOf(place);
-    if (id !== undefined && inputs?.has(id)) throw taken(place, 'is an input, and would be overwritten');
-    return !status || this.#force;
+    if (!this.#force && !this.#listed.has(keyOf(path)) && lookAt(place)) throw foreign(place);
   }
 
-  #checkOwn(path: string): void {
-    if (!this.manifest.owns(path)) throw foreign(join(this.folder, path));
+  #move(path: string, content: Uint8Array | string): void {
+    const [part, place] = [join(this.folder, `${RUN}.file`), join(this.folder, path)];
+    makeFolder(dirname(place));
+    writeFileSync(part, content);
+    renameSync(part, place);
+  }
+
+  /** Reads the list; false where there is none, or something else in its place. */
+  #readList(): boolean {
+    const [header, ...paths] = readWritten(join(this.folder, LIST))?.toString().split('\n') ?? [];
+    if (header !== HEADER) return false;
+    // A path may not lead out of the folder.
+    for (const path of paths) if (path.split('/').every(isFileName)) this.#listed.set(keyOf(path), path);
+    return true;
   }
 }
 
@@ -177,49 +197,27 @@ export function removeIfEmpty(folder: string): void {
   }
 }
 
-/** The file or folder that it is in. */
-function topOf(path: string): string {
-  return path.includes('/') ? path.slice(0, path.indexOf('/') + 1) : path;
-}
+/** The file, or the folder that it is in, with a `/`. */
+const topOf = (path: string): string => path.replace(/\/.*/s, '/');
 
 function isAlive(pid: number): boolean {
   try {
-    process.kill(pid, 0);
-    return true;
+    return process.kill(pid, 0);
   } catch (thrown) {
     return (thrown as NodeJS.ErrnoException).code === 'EPERM';
   }
 }
 
-/** The identity of a file, whatever path leads to it. */
-export function idsOf(paths: readonly string[]): Set<string> {
-  return new Set(paths.map(idOf).filter((id) => id !== undefined));
-}
-
-/** Undefined where nothing can be found: reading it gives the error. */
-function idOf(path: string): string | undefined {
+/** The identity of a file, whatever path leads to it. None where nothing can be found: reading it gives the error. */
+function idOf(path: string): string[] {
   try {
     const { dev, ino } = statSync(path, { bigint: true });
-    return `${dev}:${ino}`;
+    return [`${dev}:${ino}`];
   } catch {
-    return undefined;
+    return [];
   }
 }
 
 function foreign(place: string): VeroneseError {
-  return taken(place, "is not of this program, or was changed since, and is replaced only with '--force'");
-}
-
-/** The content as it is, while its hash is found. */
-function hashed(content: Content, hash: Hash): Content {
-  if (typeof content === 'string' || content instanceof Uint8Array) {
-    hash.update(content);
-    return content;
-  }
-  return (async function* pieces() {
-    for await (const piece of content) {
-      hash.update(piece);
-      yield piece;
-    }
-  })();
+  return taken(place, "was not written by veronese, which writes here only with '--force'");
 }

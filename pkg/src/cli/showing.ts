@@ -10,7 +10,7 @@ import { scaled } from '../common/scaling.js';
 import { encodeColourPng } from '../entries/codecs.js';
 import { overlay } from './overlay.js';
 
-/** For help and completion; N is the number of an object. */
+/** N is the number of an object. */
 export const SHOWN = ['overlay.mp4', 'overlay.webm', 'overlay.gif', 'beside.mp4', 'beside.webm', 'beside.gif', 'sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'];
 
 /** A file, or a folder of a picture for each frame. */
@@ -143,7 +143,7 @@ class Film {
   readonly #name: string;
   readonly #ffmpeg: ChildProcess;
   readonly #ended: Promise<unknown>;
-  #said = '';
+  #messages = '';
 
   constructor({ name, kind, format }: Shown, path: string, { width, height, rate }: { width: number; height: number; rate: number }) {
     this.#name = name;
@@ -152,7 +152,7 @@ class Film {
     const input = ['-f', 'rawvideo', '-pix_fmt', cut ? 'rgba' : 'rgb24', '-s', `${width}x${height}`, '-framerate', String(rate), '-i', 'pipe:0'];
     const args = ['-v', 'error', '-y', ...input, ...(cut ? transparent : opaque), `file:${path}`];
     this.#ffmpeg = spawn('ffmpeg', args, { stdio: ['pipe', 'ignore', 'pipe'] });
-    this.#ffmpeg.stderr?.on('data', (piece) => (this.#said += String(piece)));
+    this.#ffmpeg.stderr?.on('data', (piece) => (this.#messages += String(piece)));
     // Why it takes no more shows when it ends.
     this.#ffmpeg.stdin?.on('error', () => undefined);
     this.#ended = once(this.#ffmpeg, 'close').catch(() => undefined);
@@ -169,7 +169,7 @@ class Film {
     this.#ffmpeg.stdin?.end();
     await this.#ended;
     if (this.#ffmpeg.exitCode === 0) return;
-    const reason = this.#said.trim().split('\n')[0] || `it ended with ${this.#ffmpeg.signalCode ?? `code ${this.#ffmpeg.exitCode}`}`;
+    const reason = this.#messages.trim().split('\n')[0] || `it ended with ${this.#ffmpeg.signalCode ?? `code ${this.#ffmpeg.exitCode}`}`;
     throw new VeroneseError('write-failed', `'${this.#name}' cannot be written by this ffmpeg: ${reason}`);
   }
 

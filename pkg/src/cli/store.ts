@@ -1,16 +1,15 @@
 // Results of many pairs in one folder: a folder for each pair, which is there as a whole or not at all, and names its inputs.
 
-import { readdirSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { version } from '../calls/version.js';
-import { makeFolder, type OutputFile, readWritten, sha256, writing } from './files.js';
-import { Manifest } from './manifest.js';
-import { idsOf, Output } from './output.js';
-import { filesOfPair, isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
+import { lookAt, makeFolder, type OutputFile, readWritten, sha256, writing } from './files.js';
+import { Output } from './output.js';
+import { filesOfPair, isImageOfPair, RESULT } from './pair-folder.js';
 import { type InputFile, jsonLine, type PairSettings, type Report } from './pair.js';
 
-/** The entries of a pair's result.json besides the report; the report's times are left out, since they differ between two runs. */
-export interface Record extends Omit<Report, 'milliseconds'> {
+/** The content of a pair's result.json: the report without its times, since they differ between two runs, and what it was made from. */
+export interface PairManifest extends Omit<Report, 'milliseconds'> {
   inputs: { name: string; sha256: string }[];
   /** Hash of everything that decides what the files hold. */
   job: string;
@@ -22,25 +21,24 @@ export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay,
   return sha256(JSON.stringify({ software: `veronese ${version}`, options, grouped, overlay, maxSize, contents }));
 }
 
-/** The record in a pair's folder if it is of this job, and it and its images are as they were written. */
-export function finished(folder: string, job: string, { options, grouped, overlay }: PairSettings): Record | undefined {
+/** The manifest in a pair's folder if it is of this job, and all images are there. */
+export function finished(folder: string, job: string, { options, grouped, overlay }: PairSettings): PairManifest | undefined {
   try {
-    const record = JSON.parse(readWritten(join(folder, RESULT))?.toString() ?? '') as Record;
-    if (record.job !== job) return undefined;
-    const labels = record.motions.map(({ label, group }) => (grouped ? group : label));
-    const manifest = new Manifest(folder, false);
-    const isWhole = filesOfPair(labels, { overlay, confidence: options.confidence }).every((name) => manifest.isCurrent(name));
-    return isWhole ? record : undefined;
+    const manifest = JSON.parse(readWritten(join(folder, RESULT))?.toString() ?? '') as PairManifest;
+    if (manifest.job !== job) return undefined;
+    const labels = manifest.motions.map(({ label, group }) => (grouped ? group : label));
+    const isWhole = filesOfPair(labels, { overlay, confidence: options.confidence }).every((name) => lookAt(join(folder, name))?.isFile());
+    return isWhole ? manifest : undefined;
   } catch {
     return undefined; // Not there, or not ours: to be done.
   }
 }
 
-export function recordFiles(report: Report, job: string, inputs: readonly InputFile[], images: readonly OutputFile[]): OutputFile[] {
+export function manifestFiles(report: Report, job: string, inputs: readonly InputFile[], images: readonly OutputFile[]): OutputFile[] {
   const { milliseconds: _, ...lasting } = report;
   const names = inputs.map(({ name, bytes }) => ({ name: name.split(/[\\/]/).at(-1) ?? name, sha256: sha256(bytes) }));
-  const record: Record = { ...lasting, inputs: names, job };
-  return [...images, { name: RESULT, bytes: Buffer.from(jsonLine(record)) }];
+  const manifest: PairManifest = { ...lasting, inputs: names, job };
+  return [...images, { name: RESULT, bytes: Buffer.from(jsonLine(manifest)) }];
 }
 
 /**
@@ -51,33 +49,23 @@ export function recordFiles(report: Report, job: string, inputs: readonly InputF
 export async function writePair(out: Output, name: string, files: readonly OutputFile[], force: boolean): Promise<void> {
   const folder = join(out.folder, name);
   await writing(folder, () => {
+    out.add([]);
     const part = join(out.begin(), name);
-    const hashes = new Map(files.map(({ name, bytes }) => [name, sha256(bytes)]));
+    const names = files.map(({ name }) => name);
     makeFolder(part);
     for (const { name, bytes } of files) writeFileSync(join(part, name), bytes);
-    const replace = () => {
-      new Output(folder, { force }).place(part, hashes, isImageOfPair);
-      rmSync(part, { recursive: true });
-    };
-    if (statSync(folder, { throwIfNoEntry: false })) return replace();
-    const manifest = new Manifest(part, false);
-    manifest.add(hashes);
-    manifest.settle();
-    try {
-      renameSync(part, folder);
-    } catch (thrown) {
-      // Another run has just given its folder this name: that one is there now.
-      if (!['ENOTEMPTY', 'EEXIST'].includes(String((thrown as NodeJS.ErrnoException).code))) throw thrown;
-      replace();
+    if (!statSync(folder, { throwIfNoEntry: false })) {
+      const whole = new Output(part, { force });
+      whole.add(names);
+      whole.settle();
+      try {
+        return renameSync(part, folder);
+      } catch (thrown) {
+        // Another run has just given its folder this name.
+        if (!['ENOTEMPTY', 'EEXIST'].includes(String((thrown as NodeJS.ErrnoException).code))) throw thrown;
+      }
     }
+    new Output(folder, { force }).place(part, names, isImageOfPair);
+    rmSync(part, { recursive: true });
   });
-}
-
-/** Throws `file-exists` where the folder of a pair that is `mine` has a file of another in a place that may be needed. */
-export async function checkPairs(out: string, mine: (name: string) => boolean, settings: PairSettings & { force: boolean }, inputs: readonly string[]): Promise<void> {
-  if (!statSync(out, { throwIfNoEntry: false })) return;
-  const ids = idsOf(inputs);
-  for (const entry of readdirSync(out, { withFileTypes: true })) {
-    if (mine(entry.name) && entry.isDirectory()) await new Output(join(out, entry.name), settings).check(possibleFiles(settings), ids);
-  }
 }

@@ -31,7 +31,7 @@ export interface Video {
   quiet?: boolean;
 }
 
-/** What ffmpeg says of a video while it is read. */
+/** What ffmpeg reports about a video while it is read. */
 export interface VideoInfo {
   /** Of each frame that is taken, seconds; NaN where there is none. */
   times: number[];
@@ -78,8 +78,8 @@ export function notesOnVideo(file: string, { light, aspect, isInterlaced, size, 
   return notes;
 }
 
-/** Takes down what a line of ffmpeg says of the video. */
-export function hear(about: VideoInfo, line: string): void {
+/** Enters what a line of ffmpeg reports about the video. */
+export function enter(about: VideoInfo, line: string): void {
   const [, time, size, fields] = /\bn: *\d+ pts: *\S+ pts_time: *(\S+)(?:.*?\bs:(\d+x\d+) i:(\w))?/.exec(line) ?? [];
   if (time !== undefined) {
     const index = about.times.push(Number(time)) - 1;
@@ -115,11 +115,11 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
   });
   const end = () => void ffmpeg.kill('SIGKILL');
   io.signal.addEventListener('abort', end);
-  let said = '';
+  let messages = '';
   createInterface(ffmpeg.stderr).on('line', (line) => {
     const [, problem] = /\[(?:panic|fatal|error)\] (.*)$/.exec(line) ?? [];
-    if (problem !== undefined) said = `${said}${problem}\n`.slice(-KEPT);
-    else if (about) hear(about, line);
+    if (problem !== undefined) messages = `${messages}${problem}\n`.slice(-KEPT);
+    else if (about) enter(about, line);
   });
   const ended = new Promise<string | undefined>((resolve) => {
     ffmpeg.once('error', (error) => resolve(error.message));
@@ -132,8 +132,8 @@ export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, 
       number += every;
     }
     const problem = await ended;
-    if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(said, file) ?? problem}`);
-    const damage = lastLine(said) ?? (await missingEnd(file, status.size));
+    if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(messages, file) ?? problem}`);
+    const damage = lastLine(messages) ?? (await missingEnd(file, status.size));
     if (damage === undefined || (allowDamaged && quiet)) return;
     const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
     if (!allowDamaged) throw new VeroneseError('unreadable-video', `${sentence}; '--allow-damaged' takes them as they are`);
@@ -226,7 +226,7 @@ function statusOf(file: string): Stats | undefined {
 /** The option has had this name since 5.1; the older one went later. */
 async function framesAsTheyAre(): Promise<string[]> {
   const { stdout } = await promisify(execFile)('ffmpeg', ['-version']).catch((error: Error) => {
-    const sentence = 'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out otherwise and use batch';
+    const sentence = 'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out by other means';
     throw new VeroneseError('ffmpeg-missing', sentence, { cause: error });
   });
   const [, major, minor] = (/^ffmpeg version n?(\d+)\.(\d+)/.exec(stdout) ?? []).map(Number);
@@ -235,11 +235,11 @@ async function framesAsTheyAre(): Promise<string[]> {
 }
 
 /** The message of ffmpeg when it ends with an error, as the end of a sentence that begins with the file. */
-function reasonIn(said: string, file: string): string | undefined {
-  if (/matches no streams/.test(said)) return 'has no pictures: there is no video stream in it';
+function reasonIn(messages: string, file: string): string | undefined {
+  if (/matches no streams/.test(messages)) return 'has no pictures: there is no video stream in it';
   // Versions that read WebP read no animated ones at first.
-  if (/\.webp$/i.test(file)) return `cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file (${lastLine(said)})`;
-  const line = lastLine(said);
+  if (/\.webp$/i.test(file)) return `cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file (${lastLine(messages)})`;
+  const line = lastLine(messages);
   return line && `cannot be read: ${line}`;
 }
 

@@ -7,7 +7,7 @@ import { api } from '../entries/codecs.js';
 import type { PointsCommand } from './arguments.js';
 import { type OutputFile, readInput } from './files.js';
 import { type InputFile, type PairSettings, segmentFiles } from './pair.js';
-import { finished, jobOf, recordFiles } from './store.js';
+import { finished, jobOf, manifestFiles } from './store.js';
 
 export interface PairTask {
   kind: 'pair';
@@ -54,10 +54,10 @@ async function pair({ frames, settings, withImages, folder }: PairTask): Promise
     return { done: true, report, files: images };
   }
   const job = jobOf(inputs, settings);
-  const record = finished(folder, job, settings);
-  if (record) return { done: false, report: record, files: [] };
+  const manifest = finished(folder, job, settings);
+  if (manifest) return { done: false, report: manifest, files: [] };
   const { report, images } = await segmentFiles(inputs, settings, withImages);
-  return { done: true, report, files: recordFiles(report, job, inputs, images) };
+  return { done: true, report, files: manifestFiles(report, job, inputs, images) };
 }
 
 async function points({ file, options }: PointsTask): Promise<TaskResult> {

@@ -34,7 +34,7 @@ export async function veronese(args, { stdin = '', onLine } = {}) {
 
 function withJobs(args) {
   const [command, ...rest] = args;
-  const isSilent = ['batch', 'clip', 'video'].includes(command) && !rest.some((arg) => /^(-j|--jobs)/.test(arg));
+  const isSilent = ['batch', 'clip'].includes(command) && !rest.some((arg) => /^(-j|--jobs)/.test(arg));
   return isSilent ? [command, '--jobs', '1', ...rest] : args;
 }
 
