@@ -6,7 +6,8 @@ import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
-import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette, segmentClip as segmentFrames, segmentPair } from 'veronese';
+import { type Segmentation, type SegmentOptions, Segmenter, davisPalette, segmentPair } from 'veronese';
+import type { ClipOptions } from '../src/segmented.js';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
@@ -499,7 +500,12 @@ export const segmentedInNode = once(
 export const clipInNode = once(async (files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> => {
   const labels: Uint8Array[] = [];
   const frames = { length: files.length, read: async (index: number) => decodeImage(files[index]!.buffer) };
-  for await (const frame of segmentFrames(frames, options)) labels.push(frame.labels);
+  const segmenter = new Segmenter();
+  try {
+    for await (const frame of segmenter.segmentClip(frames, options)) labels.push(frame.labels);
+  } finally {
+    segmenter.close();
+  }
   return labels;
 }, keyOf);
 
