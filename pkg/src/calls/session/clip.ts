@@ -62,6 +62,8 @@ export class OpenedClip implements Clip, StepClip {
   /** Settled when all calls so far have been answered: they are made one after another. */
   #turn: Promise<unknown> = Promise.resolve();
   #isRunning = false;
+  /** The steps that are not settled: all, and by number those that the core has. */
+  readonly #given = new Set<Step>();
   readonly #pending = new Map<number, Step>();
   #requests: Request[] = [];
   /** The frames of the range that is being segmented. */
@@ -213,7 +215,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   cancel(): void {
-    for (const step of this.#pending.values()) step.cancel();
+    for (const step of this.#given) step.cancel();
   }
 
   cancelStep(step: Step): void {
@@ -299,7 +301,8 @@ export class OpenedClip implements Clip, StepClip {
     this.#closed = reason;
     this.#poke();
     this.#leave();
-    for (const step of this.#pending.values()) step.reject(reason);
+    for (const step of this.#given) step.reject(reason);
+    this.#given.clear();
     this.#pending.clear();
     for (const { reject } of [...this.#requests]) reject(reason);
     const { writer, journal } = this.#parts;
@@ -335,13 +338,20 @@ export class OpenedClip implements Clip, StepClip {
     this.#poke();
     // A copy: it is given again if the home is lost.
     const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
-    this.#send<ClipAnswer>(task).then((answer) => {
-      step.number = answer.step as number;
-      this.#pending.set(step.number, step);
-      this.#answered(answer, step);
-      if (step.isCancelled) this.#end(step, 'cancel');
-      void this.#run();
-    }, step.reject);
+    this.#given.add(step);
+    this.#send<ClipAnswer>(task).then(
+      (answer) => {
+        step.number = answer.step as number;
+        this.#pending.set(step.number, step);
+        void this.#answered(answer, step);
+        if (step.isCancelled) this.#end(step, 'cancel');
+        void this.#run();
+      },
+      (thrown) => {
+        this.#given.delete(step);
+        step.reject(thrown);
+      },
+    );
     return step;
   }
 
@@ -441,6 +451,7 @@ export class OpenedClip implements Clip, StepClip {
     this.#pending.delete(number);
     if (this.#ahead?.step === step) this.#ahead = undefined;
     if (!step) return undefined;
+    this.#given.delete(step);
     const { range } = step;
     const isIn = (index: number) => range !== undefined && index >= range.first && index <= range.last;
     step.frames = range ? this.frames.flatMap(({ hasMasks }, index) => (hasMasks && isIn(index) ? [index] : [])) : frames;
