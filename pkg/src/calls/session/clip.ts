@@ -72,6 +72,8 @@ export class OpenedClip implements Clip, StepClip {
   #poke = () => {};
   /** What tracks need of the labels of each frame. */
   readonly #seen = new Map<number, Seen>();
+  /** Whether one motion was asked for: then nobody asks why there is no object. */
+  #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
   #closed: VeroneseError | undefined;
   isDamaged = false;
@@ -158,6 +160,7 @@ export class OpenedClip implements Clip, StepClip {
     }
     const { range, signal } = asked;
     const { first, last, options: settings } = range;
+    this.#isOneMotion = settings['motions'] === 1;
     const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
     if (signal) {
       const cancel = () => step.cancel();
@@ -270,7 +273,7 @@ export class OpenedClip implements Clip, StepClip {
     tracks.names = new Map(objects.flatMap(({ number, name }) => (name === '' ? [] : [[number, name]])));
     const isComplete = frames.length > 1 && frames.every(({ hasMasks }) => hasMasks);
     const isAnnotated = frames.some(({ annotated }) => annotated) || objects.some(({ number, became }) => number !== became);
-    if (isComplete && !isAnnotated && (tracks.isEmpty || tracks.grounds().length > 0)) {
+    if (isComplete && !isAnnotated && !this.#isOneMotion && (tracks.isEmpty || tracks.grounds().length > 0)) {
       const { notesOn } = await import('../clip/notes.js');
       const segment = (first: Pixels, second: Pixels) => this.#segmentPair(first, second);
       tracks.notes = await notesOn(tracks, { length: this.length, read: (index) => this.#parts.frames.read(index), segment });
