@@ -2,7 +2,7 @@
 
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
-import { encodeLabelStudioVideo, readAnnotations } from 'veronese/formats';
+import { encode, readMask } from 'veronese/formats';
 import { Refusal } from './http.mjs';
 
 /** Frames per second of a `<Video>` that does not say. */
@@ -30,9 +30,9 @@ export async function boxesOf({ folder, tracks, frameRate }, rate, { fromName, t
     throw new Refusal(422, 'invalid-input', `at ${rate} per second the video has ${length} frames: at most ${LONGEST} are possible`);
   }
   const names = Object.fromEntries(tracks.objects.map(({ id }, index) => [id, labels[Math.min(index, labels.length - 1)]]));
-  const meta = { clip: 'video', tracked: true, names, labels: tracks.objects.map(({ id }) => id), frameRate: rate };
-  const { predictions: [{ result }] } = await encodeLabelStudioVideo(shown(), meta, { fromName, toName, modelVersion });
-  return { result, score: scoreOf(tracks) };
+  const metadata = { clip: 'video', names, labels: tracks.objects.map(({ id }) => id), frameRate: rate, fromName, toName, modelVersion };
+  const [{ content }] = await encode('label-studio-video', shown(), metadata);
+  return { result: JSON.parse(content)[0].predictions[0].result, score: scoreOf(tracks) };
 
   async function* shown() {
     let [last, frame] = [-1];
@@ -45,9 +45,7 @@ export async function boxesOf({ folder, tracks, frameRate }, rate, { fromName, t
   }
 
   async function read(name) {
-    const bytes = await readFile(join(folder, 'labels', `${name}.png`));
-    const labels = readAnnotations([{ name: `${name}.png`, bytes }]).frames.get(name);
-    return { labels: labels.read(), width: labels.width, height: labels.height, image: name };
+    return { ...readMask({ png: await readFile(join(folder, 'labels', `${name}.png`)) }), image: name };
   }
 }
 

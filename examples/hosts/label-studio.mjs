@@ -5,7 +5,7 @@
 //                       [--frames N] [--seconds N]
 
 import { fileURLToPath } from 'node:url';
-import { encodeLabelStudio } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { version } from 'veronese';
 import { boxesOf, rateOf } from './boxes.mjs';
 import { run } from './command-line.mjs';
@@ -69,9 +69,9 @@ export async function startBackend({
     // The dominant motion, usually the background, is nobody's mask; the others take the labels of the configuration in order.
     const motions = found.motions.slice(1, 1 + labels.length);
     const names = Object.fromEntries(motions.map(({ label }, index) => [label, labels[index]]));
-    const meta = { names, labels: motions.map(({ label }) => label), motions: found.motions };
-    const task = encodeLabelStudio(found.labels, found.width, found.height, meta, { fromName, toName, modelVersion: MODEL });
-    return { result: task.predictions[0].result, score: score(found), model_version: MODEL };
+    const metadata = { names, labels: motions.map(({ label }) => label), fromName, toName, modelVersion: MODEL };
+    const [{ content }] = await encode('label-studio', found, metadata);
+    return { result: JSON.parse(content)[0].predictions[0].result, score: score(found), model_version: MODEL };
   }
 
   /** Of a video: Label Studio has no masks there. */

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { davisPalette, segmentClip } from 'veronese';
-import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { pngOf } from './support/chunks.mjs';
 import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
@@ -36,7 +36,7 @@ const LABELS = Uint8Array.from({ length: PIXELS }, (_, p) => {
   const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
   return x >= 27 && x < 63 && y >= 20 && y < 56 ? 9 : 0;
 });
-const mask = (labels = LABELS, { width, height } = SIZE) => encodeIndexedPng(width, height, labels, davisPalette());
+const mask = (labels = LABELS, { width, height } = SIZE) => encodePng(width, height, labels, { palette: davisPalette() });
 
 async function run(args, { code = 0, ...options } = {}) {
   const done = await veronese(['clip', '--quality', 'fast', ...args], options);
@@ -151,7 +151,7 @@ describe('veronese clip --corrections', () => {
       await run([frames, '--corrections', corrections, '--out', out]);
       return labelsOf(out, 3);
     };
-    said('f3.PNG', await encodeGreyPng(SIZE.width, SIZE.height, LABELS));
+    said('f3.PNG', await encodePng(SIZE.width, SIZE.height, LABELS));
     assert.deepEqual(await straight(), LABELS);
     // One bit: object 1 on the background.
     const bits = LABELS.map((label) => Number(label > 0));
@@ -230,7 +230,7 @@ describe('veronese clip --corrections', () => {
   test('--levels says what smoothed levels are', async (t) => {
     const { frames, given, masks, out } = clip(t);
     const soft = LABELS.map((_, p) => Math.min(200, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36)))));
-    given('f3.png', await encodeGreyPng(SIZE.width, SIZE.height, soft));
+    given('f3.png', await encodePng(SIZE.width, SIZE.height, soft));
     await run([frames, '--masks', masks, '--out', out], { code: 1 });
     await run([frames, '--masks', masks, '--levels', '100', '--out', out]);
     assert.deepEqual(labelsOf(out, 3), soft.map((level) => Number(level >= 100)));
@@ -240,8 +240,8 @@ describe('veronese clip --corrections', () => {
 
   test('names what is wrong before anything is written', async (t) => {
     const { frames, corrections, said, out, path } = clip(t);
-    const colours = await encodeColourPng(SIZE.width, SIZE.height, Uint8Array.from({ length: 3 * PIXELS }, (_, at) => at * 7919));
-    const soft = await encodeGreyPng(SIZE.width, SIZE.height, LABELS.map((_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36))))));
+    const colours = await encodePng(SIZE.width, SIZE.height, Uint8Array.from({ length: 3 * PIXELS }, (_, at) => at * 7919));
+    const soft = await encodePng(SIZE.width, SIZE.height, LABELS.map((_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36))))));
     const small = await mask(new Uint8Array(64), { width: 8, height: 8 });
     const cases = [
       ['g1.png', await mask(), 'invalid-input', /g1\.png' has the name of no frame/],

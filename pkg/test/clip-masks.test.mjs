@@ -3,8 +3,9 @@
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { davisPalette, segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
-import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
-import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
+import { encodePng } from 'veronese/codecs';
+import { davisPng } from '../build/formats/pictures.js';
+import { rleOf as runs } from './support/masks.mjs';
 import { checkedOptions } from '../build/calls/clip/options.js';
 import { frame } from './support/frames.mjs';
 import { all, failure } from './support/shapes.mjs';
@@ -169,16 +170,16 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
       const davis = { ...SIZE, data: Uint8ClampedArray.from([...coloured].flatMap((label) => [...davisPalette()[label], 255])) };
       assert.deepEqual(await said({ labels: davis }), await said({ labels: coloured }), 'in colours');
       const mask = labels.map(Number);
-      assert.deepEqual(await said({ id: 7, rle: encodeCocoRle(mask, width, height) }), expected, 'compressed run lengths');
-      assert.deepEqual(await said({ id: 7, rle: encodeCocoRleCounts(mask, width, height) }), expected, 'run lengths');
-      assert.deepEqual(await said({ png: encodeDavis(labels, width, height) }), expected, 'an indexed PNG');
-      assert.deepEqual(await said({ png: await encodeGreyPng(width, height, labels) }), expected, 'a grey PNG');
+      assert.deepEqual(await said({ id: 7, rle: runs(mask, width, height) }), expected, 'compressed run lengths');
+      assert.deepEqual(await said({ id: 7, rle: runs(mask, width, height, { compressed: false }) }), expected, 'run lengths');
+      assert.deepEqual(await said({ png: davisPng(labels, width, height) }), expected, 'an indexed PNG');
+      assert.deepEqual(await said({ png: await encodePng(width, height, labels) }), expected, 'a grey PNG');
       // Where a picture is transparent, it is unlabelled.
       const open = { ...SIZE, data: Uint8ClampedArray.from([...labels].flatMap((label) => (label ? [7, 7, 7, 255] : [1, 2, 3, 0]))) };
       assert.deepEqual(await said({ labels: open }), await said({ labels: labelled(3, 7, 255) }), 'transparent');
       // Two objects of one frame.
       const halves = labels.map((label, p) => (label > 0 && p % width < 45 ? 9 : label));
-      const rleOf = (id) => encodeCocoRle(halves.map((label) => Number(label === id)), width, height);
+      const rleOf = (id) => runs(halves.map((label) => Number(label === id)), width, height);
       const expectedHalves = await said({ labels: halves });
       const masks = [{ ...own, id: 7, rle: rleOf(7) }, { ...own, id: 9, rle: rleOf(9) }];
       assert.deepEqual(await run(segment, { ...alone, masks }), expectedHalves);
@@ -210,7 +211,7 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
 
     test('refuses what it cannot use before any pair is solved', async () => {
       const mask = (rest) => ({ masks: [{ frame: 0, ...rest }] });
-      const colours = await encodeColourPng(4, 3, new Uint8Array(36));
+      const colours = await encodePng(4, 3, new Uint8Array(36));
       const soft = Uint8Array.from({ length: PIXELS }, (_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36)))));
       const rle = { size: [72, 96], counts: [PIXELS] };
       const pixel = (...rgba) => ({ ...SIZE, data: new Uint8ClampedArray(4 * PIXELS).fill(255).map((value, at) => (at < 4 ? rgba[at] : value)) });
@@ -225,9 +226,9 @@ for (const [way, segment] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
         [mask({ labels: labelled(0, 1), propagate: 'left' }), /number 0 must propagate 'both', 'forward', 'backward' or 'none'/],
         [{ masks: [{ frame: 0, labels: labelled(0, 1) }, { frame: 0, labels: labelled(0, 1) }] }, /number 1 is of frame 0, as one before is/],
         [mask({ png: new Uint8Array(99) }), /number 0 has a png that is not a PNG/],
-        [mask({ png: encodeDavis(new Uint8Array(12), 4, 3) }), /'masks': that of frame 0 has 12 labels/],
+        [mask({ png: davisPng(new Uint8Array(12), 4, 3) }), /'masks': that of frame 0 has 12 labels/],
         [mask({ png: colours }), /number 0 has a png that has no labels: it is not an indexed or grey PNG/],
-        [mask({ png: await encodeGreyPng(SIZE.width, SIZE.height, soft) }), /number 0 has a png that has \d+ levels only between others, as smoothed edges/],
+        [mask({ png: await encodePng(SIZE.width, SIZE.height, soft) }), /number 0 has a png that has \d+ levels only between others, as smoothed edges/],
         [mask({ labels: { ...SIZE, data: Uint8ClampedArray.from([...soft].flatMap((level) => [level, level, level, 255])) } }), /number 0 has \d+ levels only between others/],
         [mask({ rle }), /number 0 must have an id, numbers from 1 to 254/],
         [mask({ id: 1, rle: { size: [96], counts: [] } }), /number 0 must have an rle with a size/],

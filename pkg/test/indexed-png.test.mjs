@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
-import { encodeIndexedPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 import { encodeDavis } from 'veronese/formats';
 import { decodeIndices } from '../build/formats/indexed-png.js';
 import { random } from '../../scripts/lib/random.mjs';
@@ -52,7 +52,7 @@ test('every filter', () => {
 test('what the encoders of the package write', async () => {
   const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
   for (const { labels, width, height } of [noise, ...labelImages(20)]) {
-    assert.deepEqual(decodeIndices(await encodeIndexedPng(width, height, labels, palette)).indices, labels);
+    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).indices, labels);
     assert.deepEqual(decodeIndices(encodeDavis(labels, width, height)).indices, labels);
   }
 });

@@ -1,7 +1,7 @@
 //! Masks of annotation tools, imported into a clip as corrections of its frames.
 
 import { type Page } from '@playwright/test';
-import { encodeGreyPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeMots, encodeYolo } from 'veronese/formats';
 
 import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, said, test, upload } from './support.js';
@@ -79,7 +79,7 @@ test('masks of which nobody knows how to read them are read as a person chooses'
   const [sentence, choices, close] = [page.locator('#notice-sentence'), page.locator('#notice-choices button'), page.locator('#notice-close')];
   const shareAt = (p: number): number => Math.min(1, Math.max(0, (14 - Math.hypot((p % SIZE.width) - 70, Math.floor(p / SIZE.width) - 40)) / 4 + 0.5));
   const soft = Uint8Array.from({ length: SIZE.width * SIZE.height }, (_, p) => Math.round(255 * shareAt(p)));
-  const grey = { name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodeGreyPng(SIZE.width, SIZE.height, soft)) };
+  const grey = { name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodePng(SIZE.width, SIZE.height, soft)) };
   await openExport(page);
   await expect(page.locator('#import-masks')).toBeEnabled();
   const choose = async (file: Upload, name: string): Promise<void> => {

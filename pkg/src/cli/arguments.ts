@@ -8,7 +8,8 @@ import { MOST_JOBS } from '../pool/segmenter.js';
 import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf, SHELLS } from './commands.js';
 import type { Range } from './sequence.js';
 import { type Shown, SHOWN, shownOf } from './showing.js';
-import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
+import type { Format } from '../../types/formats.js';
+import { FORMATS, isFormat } from '../formats/encode.js';
 
 /** Shortest side of a frame, and largest look-ahead, as in the core. */
 const SHORTEST_SIDE = 16;
@@ -77,7 +78,7 @@ function points(values: Values, files: string[]) {
 }
 
 function convert(values: Values, files: string[], given: readonly string[]) {
-  const { to, out, clip, grouped, background, image, video, force, levels: said, 'first-frame': first } = values;
+  const { to, out, clip, grouped, background, image, video, force, levels: meaning, 'first-frame': first } = values;
   const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
   if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
   const back = to.split(',').includes(BACK);
@@ -90,7 +91,7 @@ function convert(values: Values, files: string[], given: readonly string[]) {
     if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
     const firstFrame = first === undefined ? undefined : choice('first-frame', first, '0', '1');
-    return { name: BACK, source: folder, out, clip, force, levels: levels(said), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
+    return { name: BACK, source: folder, out, clip, force, levels: levels(meaning), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
   }
   const { shapes, 'frame-rate': rate } = values;
   const settings = {
@@ -201,10 +202,10 @@ function seed(text: string): number {
   throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
 }
 
-function formats(text: string): SequenceFormatName[] {
+function formats(text: string): Format[] {
   return [...new Set(text.split(','))].map((name) => {
-    if (isSequenceFormatName(name)) return name;
-    const known = Object.keys(SEQUENCE_FORMATS);
+    if (isFormat(name)) return name;
+    const known = Object.keys(FORMATS);
     throw new VeroneseError('invalid-option', `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`);
   });
 }

@@ -6,7 +6,7 @@ import { cpSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { before, describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
-import { encodeDavis, encodeSupervisely } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
 import { policyFor as documented } from '../support/readme.mjs';
@@ -98,22 +98,24 @@ describe('a package on another origin, under a strict content security policy', 
 
   test('the formats without an import map: written, compressed, read back', async (t) => {
     const script = (dist) => `
-      import { encodeDavis, encodeSupervisely, readAnnotations } from '${dist}/formats/index.js';
+      import { encode, readAnnotations } from '${dist}/formats/index.js';
 
       const labels = Uint8Array.from(${JSON.stringify(Array.from(expected.labels))});
-      const davis = encodeDavis(labels, 64, 48);
+      const frame = { labels, width: 64, height: 48 };
+      const [{ content: davis }] = await encode('davis', frame);
       const { frames } = readAnnotations([{ name: 'f0.png', bytes: davis }]);
       globalThis.outcome = {
         davis: Array.from(davis).join(),
-        supervisely: JSON.stringify(encodeSupervisely(labels, 64, 48)),
+        coco: (await encode('coco', frame))[0].content,
         read: Array.from(frames.get('f0').read()).join(),
       };
     `;
     const { outcome, complaints } = await outcomeOf(t, browser, await page(t, script));
     assert.deepEqual(complaints, []);
-    assert.equal(outcome.davis, Array.from(encodeDavis(expected.labels, 64, 48)).join());
+    const contentOf = async (format) => (await encode(format, { labels: expected.labels, width: 64, height: 48 }))[0].content;
+    assert.equal(outcome.davis, Array.from(await contentOf('davis')).join());
     assert.equal(outcome.read, Array.from(expected.labels).join());
-    assert.equal(outcome.supervisely, JSON.stringify(encodeSupervisely(expected.labels, 64, 48)));
+    assert.equal(outcome.coco, await contentOf('coco'));
   });
 
   for (const allowed of ["'self'", 'blob:']) {

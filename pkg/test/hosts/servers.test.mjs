@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
-import { encodeLabelStudio } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { CONFIG, backend, files, frames, listen, post, recorded, task } from './asking.mjs';
 
@@ -50,7 +50,8 @@ describe('the Label Studio backend', () => {
     assert.match(version, /^veronese-/);
     const [{ from_name: from, to_name: to, type, original_width: width, original_height: height, value }] = result;
     assert.deepEqual([from, to, type, width, height, value.format, value.brushlabels], ['moving', 'before', 'brushlabels', 64, 48, 'rle', ['car & shadow']]);
-    const [expected] = encodeLabelStudio(labels, 64, 48, { labels: [1] }).predictions[0].result;
+    const [{ content }] = await encode('label-studio', { labels, width: 64, height: 48 }, { labels: [1] });
+    const [expected] = JSON.parse(content)[0].predictions[0].result;
     assert.deepEqual(value.rle, expected.value.rle);
   });
 

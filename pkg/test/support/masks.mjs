@@ -1,5 +1,6 @@
 // Label images to encode: the cases that break encoders, then random ones. Seeded: the same every time.
 
+import { compressed as compress } from '../../build/formats/coco-rle.js';
 import { random } from '../../../scripts/lib/random.mjs';
 
 /** A label image of rows of text: `.` is 255, digits are labels. */
@@ -59,4 +60,15 @@ export function labelImages(count) {
 /** The labels that are there, without 255. */
 export function present(labels) {
   return [...new Set(labels)].filter((label) => label !== 255).sort((a, b) => a - b);
+}
+
+/** COCO's run lengths of a mask of 0 and 1, column by column. */
+export function rleOf(mask, width, height, { compressed = true } = {}) {
+  const counts = [0];
+  let value = 0;
+  for (let at = 0; at < mask.length; at++) {
+    if (mask[(at % height) * width + Math.floor(at / height)] === value) counts[counts.length - 1]++;
+    else value = 1 - value, counts.push(1);
+  }
+  return { size: [height, width], counts: compressed ? compress(counts) : counts };
 }

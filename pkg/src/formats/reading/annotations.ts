@@ -1,7 +1,7 @@
 // Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
 
 import { unzipSync } from 'fflate';
-import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations } from '../../../types/formats.js';
+import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations, Levels } from '../../../types/formats.js';
 import {
   checkedBytes,
   entriesOf,
@@ -9,25 +9,21 @@ import {
   invalidOption,
   isListOf,
   isObject,
-  isWhole,
   keyOf,
   reading,
   UNLABELLED,
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import { checkPath } from '../names.js';
-import { decodeVeronese } from '../veronese-json.js';
+import { checkPath } from '../file-names.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { checkSize, type Context, isObjectNumber, type Known, isPng, known, type Levels, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
-import { readDatumaro } from './datumaro.js';
-import { readLabelMe } from './labelme.js';
+import { checkSize, type Context, type Known, isPng, naming, type ReadFrame, type Source, wrong } from './frame.js';
 import { readLabelStudio } from './label-studio.js';
+import { isLevels, wrongLevels } from './mask.js';
 import { readMasks } from './masks.js';
 import { IGNORED, isMots, numbersOfMots, readMots, readMotsPng } from './mots.js';
 import { sizeOfPicture } from './pictures.js';
-import { readSupervisely } from './supervisely.js';
 import { isYolo, namesInYaml, readYolo } from './yolo.js';
 
 /** Most bytes in an archive: more than the annotations of any clip. */
@@ -116,7 +112,7 @@ function clipOf(options: unknown): Clip {
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (frames !== undefined && !isListOf(frames, isName)) throw invalidOption('frames', 'a list of names', frames);
   if (size !== undefined && !isObject(size)) throw invalidOption('size', 'a width and a height', size);
-  if (levels !== undefined && levels !== 'exact' && !isWhole(levels, 1, 65_535)) throw invalidOption('levels', "'exact' or a level from 1 to 65535", levels);
+  if (levels !== undefined && !isLevels(levels)) throw wrongLevels(levels);
   if (firstFrame !== undefined && firstFrame !== 0 && firstFrame !== 1) throw invalidOption('firstFrame', '0 or 1', firstFrame);
   return { names: frames, size: size && checkSize(size['width'], size['height'], 'the frames'), levels, firstFrame };
 }
@@ -209,11 +205,7 @@ function recognisedJson(source: Source): Recognised[] {
   const found = (format: AnnotationFormat, read: (context: Context) => ReadFrame[]): Recognised[] => [{ source, format, read }];
   if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
   if ('annotations' in json && 'images' in json) return found('coco', (context) => readCoco(json, name, context));
-  if ('shapes' in json && 'imagePath' in json) return found('labelme', (context) => [readLabelMe(json, name, context)]);
-  if (json['format'] === 'veronese') return found('veronese', () => [readVeronese(json, name)]);
   if (isTask(json)) return found('label-studio', (context) => readLabelStudio([json], name, context));
-  if ('items' in json && 'categories' in json) return found('datumaro', (context) => readDatumaro(json, name, context));
-  if ('size' in json && 'objects' in json) return found('supervisely', (context) => [readSupervisely(json, name, context)]);
   return [];
 }
 
@@ -236,14 +228,7 @@ function parsed(text: string): unknown {
 
 function nothingIn(files: readonly Pick<Source, 'name'>[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
-  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, YOLO, PNG masks, veronese`;
-}
-
-function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
-  const { width, height, image, meta } = decodeVeronese(document);
-  const named = Object.entries(meta.names ?? {}).filter(([label]) => isObjectNumber(Number(label)));
-  const objects = named.map(([label, name]) => known(label, Number(label), name));
-  return { name: stemOf(image), file, width, height, objects, draw: ({ labels }) => labels.set(decodeVeronese(document).labels) };
+  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, Label Studio, MOTS, YOLO, PNG masks`;
 }
 
 /**

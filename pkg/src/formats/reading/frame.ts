@@ -3,7 +3,7 @@
 import type { AnnotationNote } from '../../../types/formats.js';
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import { checkPath } from '../names.js';
+import { checkPath } from '../file-names.js';
 import type { Canvas } from './canvas.js';
 
 /** Objects with the same key are one, in all frames. */
@@ -54,9 +54,6 @@ export interface Source {
   name: string;
   bytes: Uint8Array;
 }
-
-/** What levels between others mean in masks: each is an object of its own, or those from a level on are one object. */
-export type Levels = 'exact' | number;
 
 /** Information that a reader may need beside the file. */
 export interface Context {

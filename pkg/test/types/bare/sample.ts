@@ -2,7 +2,7 @@
 
 import { paintLabels, type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
-import { encodeCoco, encodeCocoVideo, type LabelFrame } from 'veronese/formats';
+import { encode, type LabelFrame } from 'veronese/formats';
 import { init, SegmenterPool } from 'veronese/slim';
 
 export type Others = [typeof import('veronese/inline'), typeof import('veronese/worker')];
@@ -11,11 +11,11 @@ export async function pair(file: Uint8Array, module: ArrayBuffer): Promise<strin
   await init(module);
   const first: Pixels = await decodeImage(file);
   const { labels, width, height, motions } = await segmentPair(first, first, { quality: 'fast', motions: 'auto' });
-  const document = encodeCoco(labels, width, height, { motions });
+  const [document] = await encode('coco', { labels, width, height, motions });
   await paintLabels({ putImageData: () => undefined }, { labels, width, height });
   // @ts-expect-error no canvas
   await paintLabels({}, { labels, width, height });
-  return `${document.annotations.length} ${new VeroneseError('cancelled', 'a sentence').code}`;
+  return `${document?.name} ${new VeroneseError('cancelled', 'a sentence').code}`;
 }
 
 export async function clip(frames: Pixels[]): Promise<number> {
@@ -26,7 +26,7 @@ export async function clip(frames: Pixels[]): Promise<number> {
   const pool = new SegmenterPool({ worker: () => ({ postMessage: () => undefined, terminate: () => undefined }) });
   pool.close();
   for await (const { segmentation } of segmentPairs([], { jobs: 2 })) print(segmentation?.count);
-  return encodeCocoVideo(found).videos.length;
+  return (await encode('youtube-vis', found)).length;
 }
 
 declare function print(value: unknown): void;
