@@ -32,6 +32,8 @@ const LARGEST = 2 ** 30;
 const BEFORE = [0xef, 0xbb, 0xbf, 0x20, 0x09, 0x0a, 0x0d];
 /** Lists of the names of YOLO's classes: of Ultralytics, of Darknet and CVAT (obj.names), of Roboflow (_darknet.labels) and of labelImg. */
 const NAMES = /\.(ya?ml|names|labels)$|(^|\/)(names|(predefined_)?classes)\.txt$/i;
+/** What stands beside annotations and is none: whatever it begins with, such as a class that is called <other>. */
+const BESIDE = /(^|\/)(labels|seqinfo)\.(txt|ini)$/i;
 /** The class of what is no object. */
 const BACKGROUND = 'background';
 
@@ -187,6 +189,7 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
 /** The format of the file, unless it is none of those known. Throws `invalid-input` where it begins like one and is damaged. */
 function recognised(source: Source): Recognised[] {
   const { name, bytes } = source;
+  if (NAMES.test(name) || BESIDE.test(name)) return [];
   const start = bytes.find((byte) => !BEFORE.includes(byte));
   if (start === 0x3c) return [{ source, format: 'cvat', read: (context) => readCvat(textOf(bytes), name, context) }];
   if (start === 0x7b || start === 0x5b) return recognisedJson(source);
