@@ -182,9 +182,8 @@ describe('files of others', () => {
 describe('convert', () => {
   const names = {
     coco: 'coco.json',
-    mot: 'mot/gt/gt.txt',
+    mots: 'mots/gt/gt.txt',
     davis: 'davis/Annotations/480p/clip/f003.png',
-    yolo: 'yolo/labels/f003.txt',
     masks: 'masks/1/f003.png',
   };
 
@@ -193,7 +192,7 @@ describe('convert', () => {
     const clip = folder.path('clip');
     clipFolder(clip, { frameRate: 25 });
     for (const [format, name] of Object.entries(names)) {
-      const args = ['convert', clip, '--to', `veronese,${format}`];
+      const args = ['convert', clip, '--to', `yolo,${format}`];
       const place = join(clip, name);
       mkdirSync(dirname(place), { recursive: true });
       writeFileSync(place, 'mine');
@@ -203,7 +202,7 @@ describe('convert', () => {
       await done(args);
       await done([...args, '--from', '3', '--until', '3']);
       assert.equal(readFileSync(join(dirname(place), 'mine.txt'), 'utf8'), 'mine');
-      assert.deepEqual(entries(join(clip, 'veronese')), ['f003.json'], 'what an earlier run wrote is gone');
+      assert.deepEqual(entries(join(clip, 'yolo', 'labels')), ['f003.txt'], 'what an earlier run wrote is gone');
       appendFileSync(place, ' ');
       await refused(args, clip, name);
       rmSync(place);
@@ -240,7 +239,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
     clipFolder(path('drawn'));
     // What convert writes, pair writes in the same way.
     const { batch, clip } = commands;
-    const all = { batch, clip, convert: ['convert', path('drawn'), '--to', 'labelme,coco', '--out', out] };
+    const all = { batch, clip, convert: ['convert', path('drawn'), '--to', 'yolo,coco', '--out', out] };
     for (const [command, args] of Object.entries(all)) {
       const other = command === 'convert' ? [...args, '--from', '2'] : [...args, '--motions', '2'];
       const expected = await straight(args, out);
@@ -298,7 +297,7 @@ test('a folder of many files is looked through in seconds', async (t) => {
   const frames = Array.from({ length: soaking ? 3000 : 60 }, () => new Uint8Array(64).fill(1, 9, 12));
   clipFolder(clip, { frames, width: 8, height: 8 });
   const seconds = async () => {
-    const run = await veronese(['convert', clip, '--to', 'labelme']);
+    const run = await veronese(['convert', clip, '--to', 'yolo']);
     assert.equal(run.code, 0, run.stderr);
     return run.seconds;
   };

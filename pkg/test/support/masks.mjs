@@ -57,18 +57,15 @@ export function labelImages(count) {
   return images;
 }
 
-/** The labels that are there, without 255. */
-export function present(labels) {
-  return [...new Set(labels)].filter((label) => label !== 255).sort((a, b) => a - b);
-}
-
-/** COCO's run lengths of a mask of 0 and 1, column by column. */
+/** COCO's run lengths of the pixels that are not 0, column by column. */
 export function rleOf(mask, width, height, { compressed = true } = {}) {
   const counts = [0];
   let value = 0;
   for (let at = 0; at < mask.length; at++) {
-    if (mask[(at % height) * width + Math.floor(at / height)] === value) counts[counts.length - 1]++;
-    else value = 1 - value, counts.push(1);
+    const pixel = Number(mask[(at % height) * width + Math.floor(at / height)] !== 0);
+    if (pixel === value) counts[counts.length - 1]++;
+    else counts.push(1);
+    value = pixel;
   }
   return { size: [height, width], counts: compressed ? compress(counts) : counts };
 }

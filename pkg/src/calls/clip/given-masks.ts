@@ -1,7 +1,7 @@
 // Given masks in the forms that they come in: labels, pictures of labels, PNG files, run lengths. Loaded when there are some.
 
 import type { LabelImage } from '../../../types/formats.js';
-import { veroneseError } from '../../common/errors.js';
+import { VeroneseError } from '../../common/errors.js';
 import { labelsOfPixels, labelsOfPng, labelsOfRle } from '../../formats/reading/mask.js';
 import { isObjectNumber, RANGE } from './edits.js';
 import { bytesOf, checkedList, type LabelledFrame, type Wrong } from './annotations.js';
@@ -30,7 +30,8 @@ function placed<T>(what: string, wrong: Wrong, read: () => T): T {
   try {
     return read();
   } catch (thrown) {
-    throw wrong(`${what}${veroneseError(thrown).message}`);
+    if (thrown instanceof VeroneseError) throw wrong(`${what}${thrown.message}`);
+    throw thrown;
   }
 }
 

@@ -20,8 +20,8 @@ export function readMask(source: MaskSource, options?: { levels?: Levels }): Lab
       if (!isWhole(id, 1, UNLABELLED - 1)) throw invalidInput(`must have an id from 1 to ${UNLABELLED - 1}, or none`);
       return labelsOfRle(rle, id);
     } catch (thrown) {
-      const { code, message } = veroneseError(thrown);
-      throw new VeroneseError(code, `the mask: ${message}`);
+      if (thrown instanceof VeroneseError) throw new VeroneseError(thrown.code, `the mask: ${thrown.message}`);
+      throw thrown;
     }
   });
 }
