@@ -207,7 +207,7 @@ describe('pictures and labels', () => {
       await everywhere((value) => codecs.encodePng(value, 4, bytes, options), four);
       await everywhere((value) => codecs.encodePng(4, value, bytes, options), four);
       await everywhere((value) => codecs.encodePng(2 ** 32 + 4, 4, value, options), []);
-      await everywhere((value) => codecs.encodePng(4, 4, value, options), channels === 1 ? ['bytes that are called something else'] : []);
+      await everywhere((value) => codecs.encodePng(4, 4, value, options), ['bytes that are called something else']);
     }
     await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), value), OPTIONS);
     await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), { nonsense: value }), ['undefined']);
