@@ -137,12 +137,13 @@ describe('masks of noise take no long time', () => {
   /** Width and height of most masks, and seconds: five times what is needed. */
   const side = soaking ? 1024 : 512;
   const PATIENCE = 30 * (side / 1024) ** 2;
-  const soon = (title, work) =>
+  const soon = (title, work) => {
     test(title, async () => {
       const seconds = stopwatch();
       await work();
       assert.ok(seconds() < PATIENCE, `${seconds()} s`);
     });
+  };
   const large = noise(side);
   // Of each way to write a mask one.
   for (const format of cases(['youtube-vis', 'coco-polygon', 'label-studio', 'cvat-mots'], Object.keys(FORMATS))) {

@@ -59,7 +59,7 @@ export function frameOf(given: unknown, extent: Extent | undefined, settings: Se
     return {
       index,
       image: image ?? (settings.one ? 'first.png' : `${String(own).padStart(5, '0')}.png`),
-      labels: labels as Uint8Array,
+      labels,
       width,
       height,
       motions,

@@ -2,7 +2,6 @@
 
 import type { FormatMotion } from '../../types/formats.js';
 import { UNLABELLED } from '../common/checks.js';
-import type { Frame } from './frames.js';
 import { nameOf, type Settings } from './metadata.js';
 
 /** One label's pixels inside their bounding box. */
@@ -24,7 +23,7 @@ export interface Mask {
 }
 
 /** The masks of the wanted labels that are there, by label; 255 is never one, and 0 only if it is asked for. */
-export function masksOf({ labels, width, motions }: Pick<Frame, 'labels' | 'width' | 'motions'>, settings: Settings): Mask[] {
+export function masksOf({ labels, width, motions }: { labels: Uint8Array; width: number; motions: readonly FormatMotion[] }, settings: Settings): Mask[] {
   const wanted = settings.labels && new Set(settings.labels);
   const masks: Mask[] = [];
   for (const [label, box] of boxesOf(labels, width).entries()) {

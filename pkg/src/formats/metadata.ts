@@ -21,9 +21,9 @@ export interface Settings extends Omit<Metadata, 'timestamps' | 'frameRate'> {
   /** How many frames have a time, if any. */
   times: number | undefined;
   /** The time of a frame in seconds. */
-  time(index: number): number;
+  time: (index: number) => number;
   /** Seconds to the end of the last of so many frames. */
-  duration(length: number): number;
+  duration: (length: number) => number;
 }
 
 const KNOWN = ['clip', 'names', 'classes', 'labels', 'tracked', 'frameRate', 'timestamps', 'tolerance', 'shape', 'fromName', 'toName', 'modelVersion'];

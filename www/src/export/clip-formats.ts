@@ -22,8 +22,8 @@ function entry(id: Format, title: string, hint: string, { counted = false } = {}
       return (await encode(id, frames, metadata)).map(({ name }) => name);
     },
     async make(exported) {
-      const { frames, meta } = counted ? exported.fromStart : exported;
-      const files = await encode(id, frames(), { ...meta, clip: counted ? exported.clip.name : meta.clip, tolerance: TOLERANCE });
+      const sequence = counted ? exported.fromStart : exported;
+      const files = await encode(id, sequence.frames(), { ...sequence.meta, ...(counted && { clip: exported.clip.name }), tolerance: TOLERANCE });
       return Object.fromEntries(files.map(({ name, content }) => [name, content]));
     },
   };
