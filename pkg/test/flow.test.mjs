@@ -1,13 +1,12 @@
-// The flow field of labels and motions, written by `convert` of a pair and of a clip, and read back by the layouts of the two formats.
+// The flow field of labels and motions, written by `convert` of a pair, and read back by the layouts of the two formats.
 
 import assert from 'node:assert/strict';
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { decode } from 'fast-png';
 import { encode } from 'veronese/formats';
-import { clip as framesOf } from './support/folders.mjs';
-import { frame, pair, png } from './support/frames.mjs';
+import { pair, png } from './support/frames.mjs';
 import { converted, temporaryFolder, veronese } from './support/program.mjs';
 
 /** As Middlebury describes it: the tag, width, height, then u and v of each pixel; a value above 1e9 is unknown. */
@@ -53,20 +52,6 @@ test('of a pair: every pixel moves as its motion says, and none that is unlabell
   assert.ok(unlabelled > 0 && expected.flow.filter(Number.isNaN).length === 2 * unlabelled);
   assert.deepEqual(flo(readFileSync(path('out', 'flow.flo'))), expected);
   assert.deepEqual(npy(readFileSync(path('out', 'flow.npy'))), expected);
-});
-
-test('of a clip: a file for each frame that has a next one', async (t) => {
-  const { frames, out } = framesOf(t, 3, (k) => frame(k / 2));
-  assert.equal((await veronese(['clip', frames, '--quality', 'fast', '--out', out])).code, 0);
-  const { files } = await converted(out, '--to', 'flo,npy');
-  assert.deepEqual(files, ['flo/', 'npy/']);
-  assert.deepEqual([readdirSync(join(out, 'flo')), readdirSync(join(out, 'npy'))], [['f0.flo', 'f1.flo'], ['f0.npy', 'f1.npy']]);
-  assert.ok(existsSync(join(out, 'labels/f2.png')));
-  const { objects, background } = JSON.parse(readFileSync(join(out, 'tracks.json')));
-  const motions = [{ label: 0, ...background[1] }, ...objects.map(({ id, frames }) => ({ label: id, ...frames.find(({ frame }) => frame === 1) }))];
-  const expected = flowOf(labelsIn(out, 'labels/f1.png'), motions);
-  assert.deepEqual(flo(readFileSync(join(out, 'flo/f1.flo'))), expected);
-  assert.deepEqual(npy(readFileSync(join(out, 'npy/f1.npy'))), expected);
 });
 
 test('the call has the same two layouts', async () => {

@@ -4,7 +4,6 @@ import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { encode } from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
-import { stopwatch } from './support/processor.mjs';
 
 /** Labels of rectangles [left, top, right, bottom, label], the later on top. */
 function image(width, height, ...rectangles) {
@@ -88,17 +87,5 @@ describe('rings of YOLO', () => {
     assert.deepEqual(first.map(Math.round), [10, 2]);
     const longest = Math.max(...points.map(([x, y], k) => Math.hypot(x - (points[k - 1] ?? first)[0], y - (points[k - 1] ?? first)[1])));
     assert.ok(longest < 31, `${longest}`);
-  });
-
-  test('a mask of noise does not take long', async () => {
-    const next = random(5);
-    const labels = Uint8Array.from({ length: 500 * 500 }, () => Number(next() < 0.3));
-    const seconds = stopwatch();
-    const [{ points }] = await ringsOf({ labels, width: 500, height: 500 });
-    assert.ok(seconds() < 10, `${seconds()} s`);
-    assert.ok(points.length > 100_000);
-    const few = { labels: labels.map((label, p) => Number(label > 0 && p % 500 < 60 && p < 120 * 500)), width: 500, height: 500 };
-    const [own] = await ringsOf(few);
-    assert.equal(iou(filled(own.points, few, { whole: false }), few.labels, 1), 1);
   });
 });

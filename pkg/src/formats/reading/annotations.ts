@@ -101,7 +101,7 @@ interface Size {
   height: number;
 }
 
-/** What is known of the clip, and said of the files. */
+/** {@link AnnotationOptions}, checked. */
 interface Clip {
   names: readonly string[] | undefined;
   size: Size | undefined;
@@ -128,12 +128,12 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-/** What is to be said of files: what was assumed, and what they have and is not read, counted. */
+/** Notes on files: what was assumed, and what they have and is not read, counted. */
 class Remarks {
   readonly #notes: AnnotationNote[] = [];
   readonly #counts = new Map<string, Map<string, number>>();
 
-  readonly say = (note: AnnotationNote): void => void this.#notes.push(note);
+  readonly note = (note: AnnotationNote): void => void this.#notes.push(note);
 
   readonly leaveOut = (file: string, kind: string): void => {
     const kinds = this.#counts.get(file) ?? new Map<string, number>();
@@ -149,7 +149,7 @@ class Remarks {
   }
 }
 
-function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, say }: Remarks): Context {
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, note }: Remarks): Context {
   const lists = all.filter(({ name }) => NAMES.test(name)).map(({ name, bytes }) => ({
     folder: folderOf(name),
     names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
@@ -180,7 +180,7 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
       return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
     },
     leaveOut,
-    say,
+    note,
     count: names?.length,
     firstFrame,
   };

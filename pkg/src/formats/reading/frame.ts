@@ -71,8 +71,8 @@ export interface Context {
   count: number | undefined;
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
   leaveOut: (file: string, kind: string) => void;
-  /** Says what was assumed of a file. */
-  say: (note: AnnotationNote) => void;
+  /** Takes what was assumed of a file. */
+  note: (note: AnnotationNote) => void;
 }
 
 /**

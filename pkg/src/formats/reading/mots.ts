@@ -60,7 +60,7 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
     else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
   }
   if (firstFrame === undefined && !frames.has(0) && !frames.has(count ?? 0)) {
-    context.say({ code: 'first-frame-assumed', message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame` });
+    context.note({ code: 'first-frame-assumed', message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame` });
   }
   const first = frames.has(0) ? 0 : (firstFrame ?? 1);
   return [...frames].sort(([a], [b]) => a - b).map(([frame, { shapes, ignored, ...size }]) => {
