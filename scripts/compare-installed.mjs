@@ -46,7 +46,7 @@ function work(tarball) {
   // Whole paths, which begin with a drive on Windows; a pattern; and paths from the current folder.
   veronese('pair', join(project, 'first.png'), join(project, 'second.png'), '--quality', 'fast', '--overlay', '--out', join(results, 'pair'));
   veronese('clip', join(frames, '*.webp'), '--quality', 'fast', '--overlay', '--out', join('the results', 'clip'));
-  veronese('convert', join('the results', 'pair'), '--to', 'coco,labelme,yolo', '--out', join(results, 'converted pair'));
+  veronese('convert', join('the results', 'pair'), '--to', 'coco,yolo', '--out', join(results, 'converted pair'));
   veronese('convert', join(results, 'clip'), '--to', 'cvat-video,mots,davis', '--out', join('the results', 'converted clip'));
   return results;
 }

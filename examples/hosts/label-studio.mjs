@@ -7,7 +7,7 @@ import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import PQueue from 'p-queue';
 import { SegmenterPool, version } from 'veronese';
-import { encodeLabelStudio } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { createFetch, originOf } from './fetch-file.mjs';
 import { Refusal, serveJson } from './http.mjs';
 import { readConfig } from './label-config.mjs';
@@ -62,10 +62,11 @@ export async function startBackend({
     // The dominant motion, usually the background, is nobody's mask; the others take the labels of the configuration in order.
     const motions = found.motions.slice(1, 1 + labels.length);
     const names = Object.fromEntries(motions.map(({ label }, index) => [label, labels[index]]));
-    const meta = { names, labels: motions.map(({ label }) => label), motions: found.motions };
-    const { predictions: [{ result }] } = encodeLabelStudio(found.labels, found.width, found.height, meta, { fromName, toName, modelVersion: MODEL });
+    const metadata = { names, labels: motions.map(({ label }) => label), fromName, toName, modelVersion: MODEL };
+    const [{ content }] = await encode('label-studio', found, metadata);
     // The mean probability that a pixel's label is right.
-    return { result, score: found.confidence.reduce((sum, value) => sum + value, 0) / (255 * found.confidence.length) };
+    const score = found.confidence.reduce((sum, value) => sum + value, 0) / (255 * found.confidence.length);
+    return { result: JSON.parse(content)[0].predictions[0].result, score };
   }
 
   /** Of a video: Label Studio has no masks there. */

@@ -7,7 +7,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { promisify } from 'node:util';
-import { encodeLabelStudioVideo, readAnnotations } from 'veronese/formats';
+import { encode, readAnnotations } from 'veronese/formats';
 import { Refusal } from './http.mjs';
 
 /** Most frames, and how long a clip may take, seconds: Label Studio itself gives up after 100. */
@@ -84,8 +84,9 @@ export async function boxesOf({ folder, tracks: { frames, objects }, frameRate }
   const length = Math.max(1, Math.round((frames.length / frameRate) * rate));
   if (length > LONGEST) throw new Refusal(422, 'invalid-input', `at ${rate} per second the video has ${length} frames: at most ${LONGEST} are possible`);
   const names = Object.fromEntries(objects.map(({ id }, index) => [id, labels[Math.min(index, labels.length - 1)]]));
-  const meta = { clip: 'video', tracked: true, names, labels: objects.map(({ id }) => id), frameRate: rate };
-  const { predictions: [{ result }] } = await encodeLabelStudioVideo(shown(), meta, { fromName, toName, modelVersion });
+  const metadata = { clip: 'video', names, labels: objects.map(({ id }) => id), frameRate: rate, fromName, toName, modelVersion };
+  const [{ content }] = await encode('label-studio-video', shown(), metadata);
+  const { predictions: [{ result }] } = JSON.parse(content);
   const sure = objects.flatMap((object) => object.frames.map(({ confidence }) => confidence));
   return { result, score: sure.reduce((sum, value) => sum + value, 0) / Math.max(1, sure.length) };
 

@@ -4,7 +4,7 @@
 import { readFile, readdir, rm } from 'node:fs/promises';
 import { join } from 'node:path';
 import { davisPalette, version } from 'veronese';
-import { decodeImage, encodeIndexedPng } from 'veronese/codecs';
+import { decodeImage, encodePng } from 'veronese/codecs';
 import { FINAL, recordOf, sha256, writeWhole } from './job.mjs';
 
 /** The names of the frames in a folder, in order. */
@@ -72,7 +72,7 @@ export async function performClip(segmenter, { job, folder, out, options }) {
     });
     const images = {};
     for await (const { index, labels } of clip) {
-      const image = await encodeIndexedPng(size.width, size.height, labels, davisPalette());
+      const image = await encodePng(size.width, size.height, labels, { palette: davisPalette() });
       const name = `${names[index]}.png`;
       await writeWhole(join(place, name), image);
       images[name] = sha256(image);

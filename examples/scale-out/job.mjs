@@ -5,7 +5,7 @@ import { createHash, randomUUID } from 'node:crypto';
 import { mkdir, readFile, rename, rm, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { davisPalette, version } from 'veronese';
-import { decodeImage, encodeIndexedPng } from 'veronese/codecs';
+import { decodeImage, encodePng } from 'veronese/codecs';
 
 export const QUEUE = 'veronese-pairs';
 
@@ -57,7 +57,7 @@ export async function perform(segmenter, { job, first, second, out, options }) {
   try {
     const [one, two] = await Promise.all(files.map((file) => decodeImage(file)));
     const { labels, confidence: _, milliseconds: __, ...report } = await segmenter.segmentPair(one, two, options);
-    const image = await encodeIndexedPng(report.width, report.height, labels, davisPalette());
+    const image = await encodePng(report.width, report.height, labels, { palette: davisPalette() });
     await writeWhole(place.png, image);
     await writeWhole(place.json, recordOf(job, { ...report, image: sha256(image) }));
   } catch (error) {

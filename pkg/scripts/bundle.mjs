@@ -32,8 +32,10 @@ const BUNDLED = { '@rgrove/parse-xml': '@rgrove/parse-xml/src/index.ts', fflate:
 /** Shared by the encoders of masks and the calls. */
 const SHARED = ['common/'];
 /** Shared by encoders and readers of masks. */
-const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
-/** Shared by all entries with calls, but for what they load when masks or pictures are given or several workers share a clip. */
+const BOTH_WAYS = ['formats/file-names.js'];
+/** One mask in another form: also for the calls, which do not need the readers of files of annotation tools. */
+const ONE_MASK = ['formats/png-reader.js', 'formats/reading/(?:mask|smoothed|coco-rle).js'];
+/** Shared by all entries with calls, but for what they load when masks or pictures are given. */
 const CALLS = ['module/', 'calls/(?!(?:clip/notes|segmented/given-masks|session/stored-journal|nothing|pictures)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
@@ -86,9 +88,11 @@ await bundle.write({
       { name: 'shared', test: within(SHARED), priority: 1 },
       { name: 'calls', test: within(CALLS) },
       // A page that writes masks need not load what reads them: it has a file of its own, and so has what the two share.
-      ...['png-file', 'indexed-png'].map((name) => ({ name, test: within([`formats/${name}.js`]), priority: 1 })),
-      { name: 'masks', test: within(BOTH_WAYS), priority: 1 },
+      { name: 'png-writer', test: within(['formats/png-writer.js']), priority: 1 },
+      { name: 'mask', test: within(ONE_MASK), priority: 1 },
+      { name: 'file-names', test: within(BOTH_WAYS), priority: 1 },
       { name: 'annotations', test: within(['formats/reading/']) },
+      { name: 'encoders', test: within(['formats/(?!index)']) },
       // Whatever loads it loads it once, and whoever bundles the package can put another copy in its place.
       { name: 'fflate', test: /[\\/]node_modules[\\/]fflate[\\/]/, priority: 2 },
     ],

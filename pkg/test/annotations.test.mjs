@@ -1,19 +1,20 @@
-// Annotations read back: what the encoders write gives the same labels again, files of other programs are understood, and whatever else
-// comes ends with a sentence.
+// Annotations read back: what `encode` writes gives the same labels again, files of other programs are understood, and whatever else comes
+// ends with a sentence.
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { deflateSync, gzipSync } from 'node:zlib';
 import { zipSync } from 'fflate';
-import * as formats from 'veronese/formats';
+import { readAnnotations } from 'veronese/formats';
+import { davisPng } from '../build/formats/pictures.js';
 import { random } from '../../scripts/lib/random.mjs';
 import { chunk, pngOf } from './support/chunks.mjs';
 import { drawnClip } from './support/clip.mjs';
+import { document, files } from './support/encoded.mjs';
 import { drawn, labelImages } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
 import { soaking } from './support/soak.mjs';
 
-const { readAnnotations } = formats;
 const encoder = new TextEncoder();
 const bytesOf = (content) => {
   if (content instanceof Uint8Array) return content;
@@ -21,79 +22,14 @@ const bytesOf = (content) => {
 };
 const file = (name, content) => ({ name, bytes: bytesOf(content) });
 const read = (...contents) => readAnnotations(contents.map((content, k) => file(`file-${k}`, content)));
-const motsFiles = ({ gt, names }) => [file('mots/gt/gt.txt', gt), file('mots/gt/labels.txt', names.map((name) => `${name}\n`).join(''))];
 
-/** The formats of one image: files by labels, width, height and what is known. */
-const IMAGES = {
-  coco: (...all) => [file('coco.json', formats.encodeCoco(...all))],
-  'coco-polygon': (...all) => [file('coco.json', formats.encodeCoco(...all, { shape: 'polygon' }))],
-  cvat: (...all) => [file('cvat.xml', formats.encodeCvatXml(...all))],
-  'cvat-polygon': (...all) => [file('cvat.xml', formats.encodeCvatXml(...all, { shape: 'polygon' }))],
-  labelme: (...all) => [file('labelme.json', formats.encodeLabelMe(...all))],
-  'labelme-polygon': (...all) => [file('labelme.json', formats.encodeLabelMe(...all, { shape: 'polygon' }))],
-  'label-studio': (...all) => [file('label-studio.json', [formats.encodeLabelStudio(...all)])],
-  supervisely: (...all) => [file('ann/first.png.json', formats.encodeSupervisely(...all))],
-  yolo: (labels, width, height, meta) => {
-    const { text, names } = formats.encodeYolo(labels, width, height, meta);
-    return [file('labels/first.txt', text), file('names.txt', names.join('\n')), file('images/first.png', formats.encodeDavis(labels, width, height))];
-  },
-  davis: (labels, width, height) => [file('first.png', formats.encodeDavis(labels, width, height))],
-  veronese: (...all) => [file('veronese.json', formats.encodeVeronese(...all))],
-};
-
-/** Those of many frames. */
-const CLIPS = {
-  coco: (frames, meta) => [file('coco.json', formats.encodeCocoImages(frames, meta))],
-  'coco-polygon': (frames, meta, tolerance) => [file('coco.json', formats.encodeCocoImages(frames, meta, { shape: 'polygon', tolerance }))],
-  'youtube-vis': (frames, meta) => [file('youtube-vis.json', formats.encodeCocoVideo(frames, meta))],
-  cvat: (frames, meta) => [file('cvat.xml', formats.encodeCvatImages(frames, meta))],
-  'cvat-polygon': (frames, meta, tolerance) => [file('cvat.xml', formats.encodeCvatImages(frames, meta, { shape: 'polygon', tolerance }))],
-  'cvat-video': (frames, meta, tolerance) => [file('video.xml', formats.encodeCvatVideo(frames, meta, { shape: 'polygon', tolerance }))],
-  'cvat-mots': (frames, meta) => [file('cvat-mots.zip', formats.encodeCvatMots(frames, meta))],
-  mots: (frames, meta) => motsFiles(formats.encodeMots(frames, meta)),
-  labelme: (frames, meta) => frames.map((one) => file(`${one.image}.json`, formats.encodeLabelMe(...given(one, meta)))),
-  'labelme-polygon': (frames, meta, tolerance) =>
-    frames.map((one) => file(`${one.image}.json`, formats.encodeLabelMe(...given(one, meta), { shape: 'polygon', tolerance }))),
-  davis: (frames) => frames.map((one) => file(`davis/480p/a/${one.image}`, formats.encodeDavis(one.labels, one.width, one.height))),
-  veronese: (frames, meta) => frames.map((one) => file(`${one.image}.json`, formats.encodeVeronese(...given(one, meta)))),
-};
-/** Unlabelled pixels are in these alone; in the others they become ground. */
-const COMPLETE = ['davis', 'veronese'];
-
-function given({ labels, width, height, image }, { tracked: _, ...meta }) {
-  return [labels, width, height, { ...meta, image }];
-}
+/** Those that are read back with the numbers of objects, and those that only name them. */
+const NUMBERED = ['coco', 'coco-polygon', 'youtube-vis', 'cvat', 'cvat-polygon', 'cvat-video', 'cvat-mots', 'mots', 'davis', 'masks'];
+const NAMED = ['label-studio', 'label-studio-polygon', 'yolo'];
+/** Without names. */
+const PICTURES = ['davis', 'masks'];
 
 const ground = (labels) => labels.map((label) => (label === 255 ? 0 : label));
-
-describe('one image', () => {
-  for (const [name, encode] of Object.entries(IMAGES)) {
-    test(`${name}: every pixel`, () => {
-      const names = Object.fromEntries(Array.from({ length: 10 }, (_, label) => [label, label === 0 ? 'background' : `thing ${label}`]));
-      for (const { labels, width, height } of labelImages(soaking ? 80 : 15)) {
-        const complete = COMPLETE.includes(name);
-        const all = [...new Set(labels)].sort((a, b) => a - b);
-        const present = all.filter((label) => label !== 255 && label !== 0);
-        if (!complete && all.every((label) => label === 255)) continue; // Nothing is annotated.
-        const { frames, names: called } = readAnnotations(encode(labels, width, height, { image: 'first.png', names }));
-        assert.deepEqual([...frames.keys()], ['first']);
-        const found = frames.get('first');
-        assert.deepEqual([found.width, found.height], [width, height]);
-        // Without numbers of their own, objects are counted in their order.
-        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'label-studio', 'supervisely', 'yolo'].includes(name);
-        if (name.startsWith('cvat-poly')) {
-          const numbers = new Map([[0, 0], ...Object.entries(called).map(([number, name]) => [Number(name.slice(6)), Number(number)])]);
-          assert.deepEqual(found.read(), ground(labels).map((label) => numbers.get(label)));
-          continue;
-        }
-        const numberOf = counted ? (label) => present.indexOf(label) + 1 : (label) => label;
-        assert.deepEqual(found.read(), complete ? labels : ground(labels).map(numberOf));
-        if (name === 'davis') continue;
-        for (const label of present) assert.equal(called[numberOf(label)], names[label]);
-      }
-    });
-  }
-});
 
 /** Things of some size that wander, leave and come back: 160 × 120. */
 function wandering(seed) {
@@ -130,62 +66,64 @@ function intersectionOverUnion(one, other, label) {
   return both / either;
 }
 
-describe('a clip', () => {
+describe('what is written is read back', () => {
   const small = drawnClip().map((labels, k) => ({ labels, width: 37, height: 23, image: `${String(k).padStart(5, '0')}.jpg` }));
-  for (const [name, encode] of Object.entries(CLIPS)) {
-    test(`${name}: every pixel, the numbers and the names of the objects`, () => {
-      for (const frames of [small, wandering(1), wandering(2)]) {
-        const numbers = [...new Set(frames.flatMap(({ labels }) => [...labels]))].filter((label) => label > 0 && label < 255);
+  const images = labelImages(soaking ? 80 : 15).map((image) => [{ ...image, image: 'first.png' }]);
+  for (const format of [...NUMBERED, ...NAMED]) {
+    test(`${format}: every pixel, and what it knows of numbers and names`, async () => {
+      for (const frames of [small, wandering(1), wandering(2), ...images]) {
+        const numbers = [...new Set(frames.flatMap(({ labels }) => [...labels]))].filter((label) => label > 0 && label < 255).sort((a, b) => a - b);
+        if (numbers.length === 0 && format !== 'davis') continue; // Nothing is annotated.
         for (const background of [false, true]) {
-          const nameOf = (number, k) => (k % 2 === 0 ? 'car' : `<thing> "${number}" & Boot 🚗`);
+          const nameOf = (number, k) => (NUMBERED.includes(format) && k % 2 === 0 ? 'car' : `<thing> "${number}" & Boot 🚗`);
           const called = Object.fromEntries(numbers.map((number, k) => [number, nameOf(number, k)]));
-          const meta = { names: { 0: 'background', ...called }, labels: [...(background ? [0] : []), ...numbers], tracked: true };
-          const found = readAnnotations(encode(frames, meta, 0));
-          assert.deepEqual([...found.frames.keys()], frames.map(({ image }) => image.slice(0, 5)));
-          frames.forEach(({ labels, width, height }, k) => {
+          const metadata = { names: { 0: 'background', ...called }, labels: [...(background ? [0] : []), ...numbers] };
+          const { width, height } = frames[0];
+          const found = readAnnotations(await files(format, frames, metadata), { size: { width, height } });
+          assert.deepEqual([...found.frames.keys()], frames.map(({ image }, k) => (['cvat-video', 'mots'].includes(format) ? `0000${k}` : image.slice(0, 5))));
+          frames.forEach(({ labels }, k) => {
             const one = [...found.frames.values()][k];
             assert.deepEqual([one.width, one.height], [width, height]);
-            assert.deepEqual(one.read(), COMPLETE.includes(name) ? labels : ground(labels));
+            if (NUMBERED.includes(format)) assert.deepEqual(one.read(), format === 'davis' ? labels : ground(labels));
+            else assert.deepEqual(Array.from(one.read(), (number) => found.names[number]), Array.from(labels, (label) => called[label]));
           });
-          if (name !== 'davis') assert.deepEqual(found.names, called);
+          if (NUMBERED.includes(format) && !PICTURES.includes(format)) assert.deepEqual(found.names, called);
         }
       }
     });
   }
 
-  for (const name of Object.keys(CLIPS).filter((name) => name.includes('polygon') || name === 'cvat-video')) {
-    test(`${name}: thinned as convert does it, IoU of each object above .97`, () => {
+  for (const format of ['coco-polygon', 'cvat-polygon', 'cvat-video']) {
+    test(`${format}: thinned as convert does it, IoU of each object above .97`, async () => {
       for (const seed of [3, 4, 5]) {
         const frames = wandering(seed);
-        const found = [...readAnnotations(CLIPS[name](frames, { tracked: true, labels: [1, 4, 7, 10, 13] }, 0.5)).frames.values()];
+        const found = [...readAnnotations(await files(format, frames, { tolerance: 0.5 })).frames.values()];
         frames.forEach(({ labels }, k) => {
           const drawn = found[k].read();
           for (const label of new Set(labels)) {
             const overlap = intersectionOverUnion(labels, drawn, label);
             const pixels = labels.filter((one) => one === label).length;
             // Of what is nearly covered there is little to compare.
-            if (pixels >= 100) assert.ok(overlap >= 0.97, `${name}, frame ${k}, object ${label} of ${pixels} pixels: ${overlap}`);
+            if (pixels >= 100) assert.ok(overlap >= 0.97, `${format}, frame ${k}, object ${label} of ${pixels} pixels: ${overlap}`);
           }
         });
       }
     });
   }
 
-  test('frames without an object are left out where a document lists all frames, and said where each has a file', () => {
+  test('frames without an object are left out where a document lists all frames, and there where each has a file', async () => {
     const frames = [drawn('00', '00'), drawn('01', '00')].map((one, k) => ({ ...one, image: `f${k}.png` }));
-    for (const [name, encode] of Object.entries(CLIPS)) {
-      const { frames: found } = readAnnotations(encode(frames, { labels: [1], tracked: true }, 0), { frames: ['f0', 'f1'] });
-      const each = ['labelme', 'labelme-polygon', 'davis', 'veronese', 'cvat-mots'].includes(name);
-      assert.deepEqual([...found.keys()], each ? ['f0', 'f1'] : ['f1'], name);
+    for (const format of [...NUMBERED, ...NAMED]) {
+      const { frames: found } = readAnnotations(await files(format, frames), { frames: ['f0', 'f1'], size: { width: 2, height: 2 } });
+      assert.deepEqual([...found.keys()].sort(), ['davis', 'cvat-mots', 'yolo'].includes(format) ? ['f0', 'f1'] : ['f1'], format);
     }
   });
 
-  test('names of frames, for formats that count them', () => {
-    const frames = [drawn('11'), drawn('01')];
-    const video = file('video.xml', formats.encodeCvatVideo(frames, { labels: [1] }));
+  test('names of frames, for formats that count them', async () => {
+    const [video] = await files('cvat-video', [drawn('11'), drawn('01')]);
     assert.deepEqual([...readAnnotations([video]).frames.keys()], ['00000', '00001']);
     assert.deepEqual([...readAnnotations([video], { frames: ['a.1', 'a.2', 'c'] }).frames.keys()], ['a.1', 'a.2']);
-    const message = "'video.xml': it has a frame 1, and the clip has 1";
+    const message = "'cvat-video.xml': it has a frame 1, and the clip has 1";
     assert.throws(() => readAnnotations([video], { frames: ['a'] }), { code: 'invalid-input', message });
     assert.throws(() => readAnnotations([video], { frames: 3 }), { code: 'invalid-option' });
     assert.throws(() => readAnnotations([video], { names: [] }), { code: 'invalid-option' });
@@ -300,24 +238,12 @@ describe('files of other programs', () => {
     assert.deepEqual(names, {});
   });
 
-  test('LabelMe: no type, no groups, a path of Windows, corners in fractions', () => {
-    const square = [[0, 0], [1, 0], [1, 1], [0, 1]];
-    const { mask } = formats.encodeLabelMe(Uint8Array.of(0, 1), 2, 1, { labels: [1] }).shapes[0];
-    const shapes = [
-      { label: 'cow', points: square, group_id: null },
-      { label: 'cow', points: [[1.2, 0.1], [0.9, 0.2]], shape_type: 'mask', mask },
-    ];
-    const { frames, names } = read({ imagePath: '..\\images\\0001.jpg', imageData: 'AAAA', imageWidth: 3, imageHeight: 1, shapes });
-    assert.deepEqual([...frames.get('0001').read()], [1, 2, 0]);
-    assert.deepEqual(names, { 1: 'cow', 2: 'cow' });
-  });
-
-  test('archives, with the frames beside the annotation', () => {
-    const document = formats.encodeCoco(Uint8Array.of(0, 1), 2, 1, { image: 'a.png', labels: [1] });
+  test('archives, with the frames beside the annotation', async () => {
+    const coco = await document('coco', { ...drawn('01'), image: 'a.png' });
     const others = { 'images/a.png': Uint8Array.of(137, 80, 78, 71), '__MACOSX/a.json': bytesOf('{'), 'info.txt': bytesOf('1 2') };
-    const archive = { 'annotations/instances.json': bytesOf(document), ...others };
+    const archive = { 'annotations/instances.json': bytesOf(coco), ...others };
     assert.deepEqual([...read(zipSync(archive)).frames.get('a').read()], [0, 1]);
-    const bom = Uint8Array.of(0xef, 0xbb, 0xbf, ...bytesOf(document));
+    const bom = Uint8Array.of(0xef, 0xbb, 0xbf, ...bytesOf(coco));
     assert.deepEqual([...read(bom).frames.get('a').read()], [0, 1]);
   });
 });
@@ -327,30 +253,17 @@ describe('annotations as people have them', () => {
   const ring = [1, 1, 5, 1, 5, 4, 1, 4];
   const coco = (...annotations) => ({ images: [image], categories: [{ id: 0, name: 'car' }], annotations: annotations.map((one, id) => ({ id, image_id: 1, category_id: 0, ...one })) });
   const cvat = (inside) => `<annotations><image id="0" name="0001.png" width="8" height="6">${inside}</image></annotations>`;
-  const labelMe = (...shapes) => ({ imagePath: '0001.png', imageWidth: 8, imageHeight: 6, shapes: shapes.map((one) => ({ label: 'car', ...one })) });
   const polygon = { points: [[1, 1], [5, 1], [5, 4], [1, 4]] };
-  const supervisely = (...objects) => ({ size: { width: 8, height: 6 }, objects: objects.map((one) => ({ classTitle: 'car', ...one })) });
   const task = (...result) => [{ id: 3, data: { image: '/data/upload/1/0a1b2c3d-0001.png' }, annotations: [{ result: result.map((one) => ({ original_width: 8, original_height: 6, ...one })) }] }];
   const percent = ([x, y]) => [(100 * x) / 8, (100 * y) / 6];
-  const datumaro = (...annotations) => ({
-    info: {},
-    categories: { label: { labels: [{ name: 'car', parent: '' }] } },
-    items: [{ id: '0001', image: { path: '0001.png', size: [6, 8] }, annotations: annotations.map((one, id) => ({ id, label_id: 0, group: 0, ...one })) }],
-  });
   /** A mask of 4 × 3 pixels at (1, 1) beside a box of 2 × 1 at (6, 4). */
   const BOTH = {
     coco: coco({ segmentation: [ring] }, { segmentation: [], bbox: [6, 4, 2, 1] }),
     cvat: cvat('<polygon label="car" points="1,1;5,1;5,4;1,4"/><box label="car" xtl="6.2" ytl="4.0" xbr="7.9" ybr="4.9"/>'),
-    labelme: labelMe({ ...polygon }, { shape_type: 'rectangle', points: [[8, 5], [6, 4]] }),
-    supervisely: supervisely(
-      { geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]], interior: [] } },
-      { geometryType: 'rectangle', points: { exterior: [[6, 4], [7, 4]], interior: [] } },
-    ),
     'label-studio': task(
       { type: 'polygonlabels', value: { points: polygon.points.map(percent), polygonlabels: ['car'] } },
       { type: 'rectanglelabels', value: { x: 75, y: 66.7, width: 25, height: 16, rectanglelabels: ['car'] } },
     ),
-    datumaro: datumaro({ type: 'polygon', points: ring }, { type: 'bbox', bbox: [6, 4, 2, 1] }),
   };
   const labels = [...'00000000', ...'01111000', ...'01111000', ...'01111000', ...'000000..', ...'00000000'].map((digit) => (digit === '.' ? 255 : Number(digit)));
 
@@ -365,8 +278,8 @@ describe('annotations as people have them', () => {
     });
   }
 
-  test('boxes alone, on frames without any mask', () => {
-    const { frames, boxes } = read(formats.encodeCvatVideo([drawn('01'), drawn('11')], { labels: [1] }, { shape: 'box' }));
+  test('boxes alone, on frames without any mask', async () => {
+    const { frames, boxes } = read(await document('cvat-video', [drawn('01'), drawn('11')], { shape: 'box' }));
     assert.equal(frames.size, 0);
     assert.deepEqual(boxes, [{ frame: '00000', object: 1, box: [1, 0, 1, 1] }, { frame: '00001', object: 1, box: [0, 0, 2, 1] }]);
     const turned = read(cvat('<box label="car" xtl="2" ytl="2" xbr="6" ybr="4" rotation="90"/>'));
@@ -374,10 +287,7 @@ describe('annotations as people have them', () => {
   });
 
   test('what has no inside is left out and counted; nothing of it refuses the file', () => {
-    const point = { shape_type: 'point', points: [[1, 1]] };
-    const { notes } = read(labelMe(polygon, point, point, { shape_type: 'linestrip', points: [[1, 1], [2, 2]] }));
-    assert.deepEqual(notes, [{ code: 'shapes-left-out', message: "'file-0': left out shapes of type \"point\" (2), shapes of type \"linestrip\" (1)" }]);
-    assert.match(read(cvat('<polygon label="car" points="1,1;5,1;5,4"/><points label="a" points="1,1"/>')).notes[0].message, /<points> elements \(1\)/);
+    assert.match(read(cvat('<polygon label="car" points="1,1;5,1;5,4"/><points label="a" points="1,1"/><points label="a" points="2,1"/><polyline label="a" points="2,1"/>')).notes[0].message, /<points> elements \(2\), <polyline> elements \(1\)/);
     assert.match(read(coco({ segmentation: [ring] }, { segmentation: null })).notes[0].message, /without a mask \(1\)/);
     assert.match(read(coco({ segmentation: [ring] }, { segmentation: [], bbox: [20, 20, 3, 3] })).notes[0].message, /boxes without a pixel of the frame \(1\)/);
   });
@@ -385,10 +295,8 @@ describe('annotations as people have them', () => {
   const at = (found, x, y) => found.frames.get('0001')?.read()[8 * y + x];
   const circle = [...'00000000', ...'00000000', ...'00011000', ...'00111100', ...'00111100', ...'00011000'].map(Number);
   const ROUND = {
-    labelme: labelMe({ shape_type: 'circle', points: [[4, 4], [4, 2]] }),
     cvat: cvat('<ellipse label="car" cx="4" cy="4" rx="2" ry="2"/>'),
     'label-studio': task({ type: 'ellipselabels', value: { x: 50, y: 100 / 1.5, radiusX: 25, radiusY: 100 / 3, rotation: 0, ellipselabels: ['car'] } }),
-    datumaro: datumaro({ type: 'ellipse', points: [2, 2, 6, 6] }),
   };
   for (const [format, content] of Object.entries(ROUND)) {
     test(`${format}: circles and ellipses are drawn`, () => {
@@ -403,21 +311,15 @@ describe('annotations as people have them', () => {
     assert.throws(() => read(cvat('<ellipse label="car" cx="4" cy="3" rx="1"/>')).frames.get('0001').read(), { message: /image "0001\.png", shape 1: an ellipse must have a middle and radii/ });
   });
 
-  test('rectangles of four corners, upright or turned, are boxes', () => {
-    const corners = [[1, 2], [5, 2], [5, 5], [1, 5]];
-    for (const type of ['rectangle', 'rotation']) assert.deepEqual(read(labelMe({ shape_type: type, points: corners })).boxes, [{ frame: '0001', object: 1, box: [1, 2, 4, 3] }]);
+  test('rectangles that are turned are the boxes around them', () => {
     const value = { x: 50, y: 0, width: 25, height: 50, rotation: 90, rectanglelabels: ['car'] };
     assert.deepEqual(read(task({ type: 'rectanglelabels', value })).boxes, [{ frame: '0001', object: 1, box: [1, 0, 3, 2] }]);
   });
 
-  const point = { ...polygon, points: [[7, 5]] };
   const UNREAD = {
-    labelme: labelMe(polygon, { ...point, shape_type: 'point' }),
     cvat: cvat('<polygon label="car" points="1,1;5,1;5,4;1,4"/><polyline label="car" points="6,4;7,5"/>'),
     coco: coco({ segmentation: [ring] }, { keypoints: [7, 5, 2] }),
-    supervisely: supervisely({ geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]], interior: [] } }, { geometryType: 'point', points: { exterior: [[7, 5]] } }),
     'label-studio': task({ type: 'polygonlabels', value: { points: polygon.points.map(percent), polygonlabels: ['car'] } }, { type: 'keypointlabels', value: { x: 90, y: 90 } }),
-    datumaro: datumaro({ type: 'polygon', points: ring }, { type: 'points', points: [7, 5] }),
   };
   for (const [format, content] of Object.entries(UNREAD)) {
     test(`${format}: where a shape is not read, nothing is said of the ground`, () => {
@@ -429,20 +331,18 @@ describe('annotations as people have them', () => {
   }
 
   test('a frame of which no shape is read says nothing', () => {
-    assert.throws(() => read(labelMe({ ...point, shape_type: 'point' })), { message: /annotates no frame: .*left out shapes of type "point" \(1\)/ });
-    const { frames } = readAnnotations([file('a.json', labelMe({ ...point, shape_type: 'point' })), file('b.json', { ...labelMe(polygon), imagePath: '0002.png' })]);
+    const line = '<polyline label="car" points="6,4;7,5"/>';
+    assert.throws(() => read(cvat(line)), { message: /annotates no frame: .*left out <polyline> elements \(1\)/ });
+    const { frames } = read(cvat(line), cvat('<polygon label="car" points="1,1;5,1;5,4"/>').replace('0001', '0002'));
     assert.deepEqual([...frames.keys()], ['0002']);
   });
 
   test('a polygon of one or two vertices is left out, and the rest is read', () => {
     const CLICKED = {
-      labelme: labelMe({ points: [[6, 5], [7, 5]] }, polygon),
-      coco: coco({ segmentation: [[6, 5]] }, { segmentation: [ring] }),
+        coco: coco({ segmentation: [[6, 5]] }, { segmentation: [ring] }),
       'coco, beside another part': coco({ segmentation: [[6, 5, 7, 5], ring] }),
       cvat: cvat('<polygon label="car" points="6,5;7,5"/><polygon label="car" points="1,1;5,1;5,4;1,4"/>'),
-      supervisely: supervisely({ geometryType: 'polygon', points: { exterior: [[6, 5]] } }, { geometryType: 'polygon', points: { exterior: [[0.5, 0.5], [4.5, 0.5], [4.5, 3.5], [0.5, 3.5]] } }),
-      datumaro: datumaro({ type: 'polygon', points: [6, 5, 7, 5] }, { type: 'polygon', points: ring }),
-    };
+        };
     for (const [name, content] of Object.entries(CLICKED)) {
       const found = readAnnotations([file('0001.png.json', content)]);
       assert.deepEqual([at(found, 6, 5), at(found, 2, 2), at(found, 0, 0)], [255, 1, 0], name);
@@ -452,7 +352,7 @@ describe('annotations as people have them', () => {
   });
 
   test('the second box of an object says nothing of the ground either', () => {
-    const found = read(labelMe({ ...polygon, group_id: 3 }, { shape_type: 'rectangle', group_id: 3, points: [[6, 4], [8, 6]] }));
+    const found = read(cvat('<polygon label="car" points="1,1;5,1;5,4;1,4" group_id="3"/><box label="car" xtl="6" ytl="4" xbr="8" ybr="6" group_id="3"/>'));
     assert.deepEqual([at(found, 2, 2), at(found, 7, 5), at(found, 0, 0)], [3, 255, 0]);
   });
 
@@ -465,9 +365,9 @@ describe('annotations as people have them', () => {
     });
   });
 
-  test('Label Studio: brushes, the last annotation that was not skipped, names of images', () => {
-    const { labels, width, height } = drawn('0110', '0121', '0000');
-    const [{ value }, other] = formats.encodeLabelStudio(labels, width, height, { labels: [1, 2], names: { 1: 'a', 2: 'b' } }).predictions[0].result;
+  test('Label Studio: brushes, the last annotation that was not skipped, names of images', async () => {
+    const frame = drawn('0110', '0121', '0000');
+    const [{ predictions: [{ result: [{ value }, other] }] }] = await document('label-studio', frame, { names: { 1: 'a', 2: 'b' } });
     const result = [value, other.value].map((value) => ({ type: 'brushlabels', original_width: 4, original_height: 3, value }));
     const tasks = [
       { data: { image: '/data/local-files/?d=clips%2Fone%2F0001.jpg' }, annotations: [{ result: [] }, { result }, { was_cancelled: true, result: [] }] },
@@ -475,24 +375,10 @@ describe('annotations as people have them', () => {
     ];
     const { frames, names, notes } = read(tasks);
     assert.deepEqual([...frames.keys()], ['0001', '0002']);
-    assert.deepEqual([...frames.get('0001').read()], [...labels]);
+    assert.deepEqual([...frames.get('0001').read()], [...frame.labels]);
     assert.deepEqual([names, notes], [{ 1: 'a', 2: 'b' }, []]);
     const damaged = task({ id: 'x', type: 'brushlabels', value: { format: 'rle', rle: value.rle.slice(0, 9), brushlabels: ['a'] } });
     assert.throws(() => read(damaged).frames.get('0001').read(), { message: /^'file-0': task 3, image "0001\.png".*|result "x": the run lengths/ });
-  });
-
-  test('Datumaro: run lengths, groups and the order of layers', () => {
-    const counts = formats.encodeCocoRle(drawn('0110', '0110').labels, 4, 2);
-    const document = datumaro();
-    document.items[0].image.size = [2, 4];
-    document.items[0].annotations = [
-      { id: 0, type: 'polygon', label_id: 0, group: 4, z_order: 2, points: [0, 0, 2, 0, 2, 1, 0, 1] },
-      { id: 1, type: 'mask', label_id: 0, group: 0, z_order: 1, rle: counts },
-      { id: 2, type: 'caption', caption: 'a car' },
-    ];
-    const { frames, names } = read(document);
-    assert.deepEqual([...frames.get('0001').read()], [4, 4, 1, 0, 0, 1, 1, 0]);
-    assert.deepEqual(names, { 1: 'car', 4: 'car' });
   });
 });
 
@@ -516,12 +402,7 @@ describe('what is none of that', () => {
   const track = (inside, size = '<width>4</width><height>4</height>') =>
     `<annotations><meta><task><original_size>${size}</original_size></task></meta><track id="1" label="a">${inside}</track></annotations>`;
   const polygon = (points) => cvat(`<polygon label="a" points="${points}"/>`);
-  const labelMe = (shape, change = {}) => ({ imagePath: 'f.jpg', imageWidth: 4, imageHeight: 4, shapes: [{ label: 'a', ...shape }], ...change });
-  const { mask: stamp } = formats.encodeLabelMe(Uint8Array.of(0, 1, 1, 1), 2, 2, { labels: [1] }).shapes[0];
-  const corners = [[0, 0], [1, 1]];
-  const supervisely = (object, size = { width: 4, height: 4 }) => ({ size, objects: [{ classTitle: 'a', geometryType: 'bitmap', ...object }] });
-
-  const png = formats.encodeDavis(new Uint8Array(16), 4, 4);
+  const png = davisPng(new Uint8Array(16), 4, 4);
   const WRONG = {
     'nothing at all': ['', /is not an annotation in a format that is read/],
     'a text': ['hello', /is not an annotation/],
@@ -591,30 +472,15 @@ describe('what is none of that', () => {
     'a track of no frame': [track('<polygon points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
     'a track before the first frame': [track('<polygon frame="-1" points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
 
-    'a rectangle in LabelMe of one corner': [labelMe({ points: [[1, 1]], shape_type: 'rectangle' }), /a box must have four numbers/],
-    'a shape without a label': [labelMe({ label: 3, points: corners }), /label of a shape must be text/],
-    'points of LabelMe that are none': [labelMe({ points: [1, 2, 3] }), /must each be x and y/],
-    'a mask that is no PNG': [labelMe({ points: corners, shape_type: 'mask', mask: 'AAAA' }), /a mask is not a PNG/, 'unreadable-image'],
-    'a mask that is no base64': [labelMe({ points: corners, shape_type: 'mask', mask: '§' }), /not base64/],
-    'a mask without pixels': [labelMe({ points: corners, shape_type: 'mask', mask: null }), /shape of type "mask"/],
-    'a mask with other corners': [labelMe({ points: [[0, 0], [2, 1]], shape_type: 'mask', mask: stamp }), /2 × 2 pixels, and its corners are those of 3 × 2/],
-    'a mask out of the image': [labelMe({ points: [[3, 3], [4, 4]], shape_type: 'mask', mask: stamp }), /must lie inside the frame/],
-    'LabelMe without a size': [labelMe({ points: corners }, { imageWidth: null }), /width and height of the image/],
-
     'lines of MOTS that end early': ['1 1001 1 4 4 0<\n2 1001', /line 2 is not "frame id class height width run-lengths"/],
     'sizes of MOTS that differ': ['1 1001 1 1 4 04\n1 1002 1 1 5 05', /line 2: the frame has had another size/],
     'a large frame of MOTS': ['1 1001 1 1 20000 0', /width and height of line 1/],
-
-    'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
-    'a polygon of Supervisely without points': [supervisely({ geometryType: 'polygon' }), /object 1, "a": its points must be lists/],
-    'a bitmap without data': [supervisely({}), /object 1, "a": it is a bitmap without data/],
-    'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
 
     'a picture': [pngOf([32, 32, 8, 2], ['IDAT', deflateSync(Buffer.from(Array.from({ length: 32 * 97 }, (_, at) => (at % 97 === 0 ? 0 : at * 7919))))]), /it has \d+ colours only between others/],
     'half of a PNG': [png.slice(0, png.length - 30), /it is damaged/, 'unreadable-image'],
     'the beginning of a PNG': [png.slice(0, 20), /it has no header/, 'unreadable-image'],
     'a large PNG': [Uint8Array.from(png).fill(255, 18, 20), /it has 65535 × 4 pixels|it has \d+ × 4 pixels/, 'unreadable-image'],
-    'a document of ours that is damaged': [{ format: 'veronese', version: 1 }, /document cannot be read/],
+    'a document of another tool': [{ shapes: [], imagePath: 'f.jpg' }, /is not an annotation/],
   };
   for (const [name, [content, sentence, code = 'invalid-input']] of Object.entries(WRONG)) {
     test(name, () => {
@@ -633,7 +499,7 @@ describe('what is none of that', () => {
   }
 
   test('files that contradict each other', () => {
-    const [one, other] = [file('a.png', png), file('b.png', formats.encodeDavis(new Uint8Array(8), 4, 2))];
+    const [one, other] = [file('a.png', png), file('b.png', davisPng(new Uint8Array(8), 4, 2))];
     assert.throws(() => readAnnotations([one, other]), { code: 'frame-size-mismatch', message: "'b.png': frame 'b' has 4×2 pixels, others have 4×4" });
     assert.throws(() => readAnnotations([one, file('x/A.png', png)]), { message: "'x/A.png' and 'a.png' are both of the frame 'A'" });
     const both = [file('a.json', coco()), file('a.xml', polygon('0,0;1,0;1,1'))];
@@ -704,7 +570,7 @@ describe('YOLO', () => {
   }
 
   test('the size is that of the image with the name, PNG or JPEG; of several that of the folder of images', () => {
-    const png = formats.encodeDavis(new Uint8Array(64), 16, 4);
+    const png = davisPng(new Uint8Array(64), 16, 4);
     const jpeg = Uint8Array.of(0xff, 0xd8, 0xff, 0xe0, 0, 4, 1, 2, 0xff, 0xff, 0xc2, 0, 11, 8, 0, 8, 0, 4, 1, 1, 0x11, 0);
     const sizeOf = (...more) => {
       const { width, height } = yolo(`0 ${SQUARE}`, ...more).frames.get('a');

@@ -6,7 +6,7 @@ import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync,
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { davisPalette, segmentClip } from 'veronese';
-import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
 import { frame, png } from './support/frames.mjs';
 import { signalledAt } from './support/stopping.mjs';
@@ -33,7 +33,7 @@ const LABELS = Uint8Array.from({ length: PIXELS }, (_, p) => {
   const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
   return x >= 27 && x < 63 && y >= 20 && y < 56 ? 9 : 0;
 });
-const mask = (labels = LABELS, { width, height } = SIZE) => encodeIndexedPng(width, height, labels, davisPalette());
+const mask = (labels = LABELS, { width, height } = SIZE) => encodePng(width, height, labels, { palette: davisPalette() });
 
 async function run(args, { code = 0, ...options } = {}) {
   const done = await veronese(['clip', '--quality', 'fast', ...args], options);
@@ -49,7 +49,7 @@ describe('veronese clip --corrections', () => {
     const { frames, corrections, paint, out } = clip(t);
     // Half of it is another object at first.
     const labels = LABELS.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label));
-    paint('f3.PNG', await encodeGreyPng(SIZE.width, SIZE.height, labels));
+    paint('f3.PNG', await encodePng(SIZE.width, SIZE.height, labels));
     const edits = { merge: [[9, 1]], names: { 9: 'square' } };
     paint('edits.json', JSON.stringify(edits));
     paint('notes.txt', 'no correction');
@@ -185,7 +185,7 @@ describe('veronese clip --corrections', () => {
   test('--levels decides about smoothed levels', async (t) => {
     const { frames, give, masks, out } = clip(t);
     const soft = LABELS.map((_, p) => Math.min(200, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36)))));
-    give('f3.png', await encodeGreyPng(SIZE.width, SIZE.height, soft));
+    give('f3.png', await encodePng(SIZE.width, SIZE.height, soft));
     await run([frames, '--masks', masks, '--out', out], { code: 1 });
     await run([frames, '--masks', masks, '--levels', '100', '--out', out]);
     assert.deepEqual(labelsOf(out, 3), soft.map((level) => Number(level >= 100)));
@@ -195,8 +195,8 @@ describe('veronese clip --corrections', () => {
 
   test('names what is wrong before anything is written', async (t) => {
     const { frames, corrections, paint, out, path } = clip(t);
-    const colours = await encodeColourPng(SIZE.width, SIZE.height, Uint8Array.from({ length: 3 * PIXELS }, (_, at) => at * 7919));
-    const soft = await encodeGreyPng(SIZE.width, SIZE.height, LABELS.map((_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36))))));
+    const colours = await encodePng(SIZE.width, SIZE.height, Uint8Array.from({ length: 3 * PIXELS }, (_, at) => at * 7919));
+    const soft = await encodePng(SIZE.width, SIZE.height, LABELS.map((_, p) => Math.min(255, Math.max(0, 40 * (30 - Math.hypot((p % 96) - 48, Math.floor(p / 96) - 36))))));
     const cases = [
       ['F1.png', await mask(), /F1\.png' has the name of no frame/],
       ['f1.png', await mask(new Uint8Array(64), { width: 8, height: 8 }), /f1\.png' has 8×8 pixels, the frames have 96×72/, 'frame-size-mismatch'],

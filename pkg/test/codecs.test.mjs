@@ -4,7 +4,7 @@ import { describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { decode, encode } from 'fast-png';
 import { davisPalette } from 'veronese';
-import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
+import { decodeImage, encodePng } from 'veronese/codecs';
 import { glue } from '../build/entries/glue-codecs.js';
 import { chunk, pngOf } from './support/chunks.mjs';
 import { bmp, frame, png, ppm, ramp, turnedJpeg } from './support/frames.mjs';
@@ -83,7 +83,7 @@ describe('decodeImage', () => {
     assert.deepEqual([...alpha.data], [9, 9, 9, 128]);
     const deep = await decodeImage(encode({ width: 1, height: 1, channels: 3, depth: 16, data: Uint16Array.of(0, 65535, 32896) }));
     assert.deepEqual([...deep.data], [0, 255, 128, 255]);
-    const indexed = await decodeImage(await encodeIndexedPng(2, 1, Uint8Array.of(1, 2), davisPalette()));
+    const indexed = await decodeImage(await encodePng(2, 1, Uint8Array.of(1, 2), { palette: davisPalette() }));
     assert.deepEqual([...indexed.data], [128, 0, 0, 255, 0, 128, 0, 255]);
   });
 
@@ -202,7 +202,7 @@ function lossy(width, height) {
 describe('encoders', () => {
   test('an indexed PNG reads back as indices and palette', async () => {
     const indices = Uint8Array.from({ length: 256 * 2 }, (_, i) => i % 256);
-    const file = await encodeIndexedPng(256, 2, indices, davisPalette());
+    const file = await encodePng(256, 2, indices, { palette: davisPalette() });
     assert.deepEqual([file[24], file[25]], [8, 3]);
     const image = decode(file);
     assert.deepEqual([...image.data], [...indices]);
@@ -211,9 +211,8 @@ describe('encoders', () => {
 
   test('grey, RGB and RGBA PNG read back', async () => {
     const bytes = (n) => Uint8Array.from({ length: n }, (_, i) => (i * 37) % 256);
-    const cases = [[encodeGreyPng, 1], [encodeColourPng, 3], [encodeColourPng, 4]];
-    for (const [encoder, channels] of cases) {
-      const image = decode(await encoder(5, 3, bytes(15 * channels)));
+    for (const channels of [1, 3, 4]) {
+      const image = decode(await encodePng(5, 3, bytes(15 * channels)));
       assert.deepEqual([image.width, image.height, image.channels, image.depth], [5, 3, channels, 8]);
       assert.deepEqual([...image.data], [...bytes(15 * channels)]);
     }
@@ -221,13 +220,15 @@ describe('encoders', () => {
 
   test('refuse what does not fit', async () => {
     const cases = [
-      ['invalid-option', () => encodeGreyPng(3, 3, new Uint8Array(8))],
-      ['invalid-option', () => encodeColourPng(3, 3, new Uint8Array(9))],
-      ['invalid-option', () => encodeIndexedPng(1, 1, Uint8Array.of(5), davisPalette().slice(0, 5))],
-      ['invalid-option', () => encodeIndexedPng(1, 1, Uint8Array.of(0), [])],
-      ['invalid-input', () => encodeGreyPng(0, 3, new Uint8Array(0))],
-      ['invalid-input', () => encodeGreyPng(1.5, 2, new Uint8Array(3))],
-      ['invalid-input', () => encodeGreyPng(1, 1, 'grey')],
+      ['invalid-option', () => encodePng(3, 3, new Uint8Array(8))],
+      ['invalid-option', () => encodePng(3, 3, new Uint8Array(18))],
+      ['invalid-option', () => encodePng(3, 3, new Uint8Array(27), { palette: davisPalette() })],
+      ['invalid-option', () => encodePng(3, 3, new Uint8Array(9), davisPalette())],
+      ['invalid-option', () => encodePng(1, 1, Uint8Array.of(5), { palette: davisPalette().slice(0, 5) })],
+      ['invalid-option', () => encodePng(1, 1, Uint8Array.of(0), { palette: [] })],
+      ['invalid-input', () => encodePng(0, 3, new Uint8Array(0))],
+      ['invalid-input', () => encodePng(1.5, 2, new Uint8Array(3))],
+      ['invalid-input', () => encodePng(1, 1, 'grey')],
     ];
     for (const [code, call] of cases) assert.equal((await failure(call())).code, code);
   });

@@ -1,13 +1,12 @@
-// The flow field of labels and motions, written by `convert` of a pair and of a clip, and read back by the layouts of the two formats.
+// The flow field of labels and motions, written by `convert` of a pair, and read back by the layouts of the two formats.
 
 import assert from 'node:assert/strict';
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { decode } from 'fast-png';
-import { encodeFlow } from 'veronese/formats';
-import { clip as framesOf } from './support/folders.mjs';
-import { frame, pair, png } from './support/frames.mjs';
+import { encode } from 'veronese/formats';
+import { pair, png } from './support/frames.mjs';
 import { converted, temporaryFolder, veronese } from './support/program.mjs';
 
 /** As Middlebury describes it: the tag, width, height, then u and v of each pixel; a value above 1e9 is unknown. */
@@ -55,23 +54,11 @@ test('of a pair: every pixel moves as its motion says, and none that is unlabell
   assert.deepEqual(npy(readFileSync(path('out', 'flow.npy'))), expected);
 });
 
-test('of a clip: a file for each frame that has a next one', async (t) => {
-  const { frames, out } = framesOf(t, 3, (k) => frame(k / 2));
-  assert.equal((await veronese(['clip', frames, '--quality', 'fast', '--out', out])).code, 0);
-  const { files } = await converted(out, '--to', 'flo,npy');
-  assert.deepEqual(files, ['flo/', 'npy/']);
-  assert.deepEqual([readdirSync(join(out, 'flo')), readdirSync(join(out, 'npy'))], [['f0.flo', 'f1.flo'], ['f0.npy', 'f1.npy']]);
-  assert.ok(existsSync(join(out, 'labels/f2.png')));
-  const { objects, background } = JSON.parse(readFileSync(join(out, 'tracks.json')));
-  const motions = [{ label: 0, ...background[1] }, ...objects.map(({ id, frames }) => ({ label: id, ...frames.find(({ frame }) => frame === 1) }))];
-  const expected = flowOf(labelsIn(out, 'labels/f1.png'), motions);
-  assert.deepEqual(flo(readFileSync(join(out, 'flo/f1.flo'))), expected);
-  assert.deepEqual(npy(readFileSync(join(out, 'npy/f1.npy'))), expected);
-});
-
-test('the call has the same two layouts', () => {
-  const all = [Uint8Array.of(0, 1, 7, 255), 2, 2, { motions: [{ label: 0, matrix: [0, 0, 3, 0, 0, -1] }, { label: 1, matrix: [1, 0, 0.5, 0, 2, 0] }] }];
+test('the call has the same two layouts', async () => {
+  const motions = [{ label: 0, matrix: [0, 0, 3, 0, 0, -1] }, { label: 1, matrix: [1, 0, 0.5, 0, 2, 0] }];
   const expected = { width: 2, height: 2, flow: [3, -1, 1.5, 0, NaN, NaN, NaN, NaN] };
-  assert.deepEqual(flo(Buffer.from(encodeFlow(...all))), expected);
-  assert.deepEqual(npy(Buffer.from(encodeFlow(...all, { shape: 'npy' }))), expected);
+  for (const [format, read] of Object.entries({ flo, npy })) {
+    const [{ content }] = await encode(format, { labels: Uint8Array.of(0, 1, 7, 255), width: 2, height: 2, motions });
+    assert.deepEqual(read(Buffer.from(content)), expected);
+  }
 });

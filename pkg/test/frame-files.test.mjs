@@ -5,7 +5,7 @@ import { createReadStream, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
-import { Segmenter, SegmenterPool, segmentClip, segmentPair } from 'veronese';
+import { openClip, Segmenter, SegmenterPool, segmentPair, segmentStream } from 'veronese';
 import { pair, png } from './support/frames.mjs';
 import { temporaryFolder } from './support/program.mjs';
 import { failure, timeless } from './support/shapes.mjs';
@@ -45,17 +45,19 @@ test('two frames: paths, file addresses, addresses of a server, and pixels besid
 
 test('clips: lists of paths, streams, and frames that are read again', async (t) => {
   const { paths } = files(t);
-  const expected = await labelsOf(segmentClip(pair(), { quality: 'fast' }));
-  assert.deepEqual(await labelsOf(segmentClip(paths, { quality: 'fast' })), expected);
+  const expected = await labelsOf(segmentStream(pair(), { quality: 'fast' }));
+  assert.deepEqual(await labelsOf(segmentStream(paths, { quality: 'fast' })), expected);
   async function* stream() {
     yield pair()[0];
     yield pathToFileURL(paths[1]);
   }
-  assert.deepEqual(await labelsOf(segmentClip(stream(), { quality: 'fast' })), expected);
-  const whole = await labelsOf(segmentClip({ length: 2, read: (index) => pair()[index] }, { quality: 'fast' }));
+  assert.deepEqual(await labelsOf(segmentStream(stream(), { quality: 'fast' })), expected);
+  const wholeOf = async (opening) => labelsOf((await opening).segment({ quality: 'fast' }));
+  const whole = await wholeOf(openClip(pair()));
+  assert.deepEqual(await wholeOf(openClip(paths)), whole);
   const pool = new SegmenterPool({ jobs: 2 });
   t.after(() => pool.close());
-  assert.deepEqual(await labelsOf(pool.segmentClip({ length: 2, read: async (index) => paths[index] }, { quality: 'fast' })), whole);
+  assert.deepEqual(await wholeOf(pool.openClip({ length: 2, read: async (index) => paths[index] })), whole);
 });
 
 test('streams of bytes: of a file, of a response, in pairs and in streams of frames', async (t) => {
@@ -66,9 +68,9 @@ test('streams of bytes: of a file, of a response, in pairs and in streams of fra
   t.after(() => segmenter.close());
   assert.deepEqual(timeless(await segmentPair(stream(0), stream(1))), expected);
   assert.deepEqual(timeless(await segmenter.segmentPair(new Blob([png(pair()[0])]).stream(), paths[1])), expected);
-  const labels = await labelsOf(segmentClip(pair(), { quality: 'fast' }));
-  assert.deepEqual(await labelsOf(segmentClip([stream(0), stream(1)], { quality: 'fast' })), labels);
-  assert.deepEqual(await labelsOf(segmentClip({ length: 2, read: stream }, { quality: 'fast', lookAhead: 8 })), labels);
+  const labels = await labelsOf(segmentStream(pair(), { quality: 'fast' }));
+  assert.deepEqual(await labelsOf(segmentStream([stream(0), stream(1)], { quality: 'fast' })), labels);
+  assert.equal((await labelsOf((await openClip({ length: 2, read: stream })).segment({ quality: 'fast' }))).length, 2);
   async function* of(...pieces) {
     yield* pieces;
   }
@@ -92,7 +94,7 @@ test('files in memory, in pairs and in clips', async (t) => {
   const blobs = pair().map((frame) => new Blob([png(frame)]));
   assert.deepEqual(timeless(await segmentPair(...blobs)), expected);
   assert.deepEqual(timeless(await segmentPair(paths[0], new File([blobs[1]], '1.png'))), expected);
-  assert.deepEqual(await labelsOf(segmentClip(blobs, { quality: 'fast' })), await labelsOf(segmentClip(pair(), { quality: 'fast' })));
+  assert.deepEqual(await labelsOf(segmentStream(blobs, { quality: 'fast' })), await labelsOf(segmentStream(pair(), { quality: 'fast' })));
   for (const [given, name] of [[new Blob(['text']), 'the file in memory'], [new File(['text'], 'a.png'), "the file 'a.png'"]]) {
     const error = await failure(segmentPair(paths[0], given));
     assert.equal(error.code, 'unreadable-image');
@@ -122,6 +124,6 @@ test('what cannot be read is named', async (t) => {
     const error = await failure(segmentPair(paths[0], place));
     assert.equal(error.code, code);
     assert.ok(error.message.includes(String(place)), error.message);
-    assert.equal((await failure(labelsOf(segmentClip([paths[0], place])))).code, code);
+    assert.equal((await failure(labelsOf(segmentStream([paths[0], place])))).code, code);
   }
 });

@@ -9,7 +9,6 @@ import { decode, encode } from 'fast-png';
 import { davisPalette } from 'veronese';
 import { readAnnotations } from 'veronese/formats';
 import { pngOf } from './support/chunks.mjs';
-import { clipFolder } from './support/clip.mjs';
 import { clip as framesOf, labelsOf, lines, tracksOf } from './support/folders.mjs';
 import { frame } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
@@ -247,22 +246,6 @@ describe('masks and the program', () => {
     writeFileSync(path('masks', 'f0.pgm'), Buffer.concat([Buffer.from(`P5 ${SIZE.width} ${SIZE.height} 65535\n`), Buffer.from(ONE.flatMap((is) => [0, is]))]));
     const { code, stderr } = await veronese(['clip', frames, '--quality', 'fast', '--masks', path('masks'), '--out', out]);
     assert.deepEqual([code, stderr.replace(path('masks'), '')], [1, "veronese: error: invalid-input: '/f0.pgm' has samples of 16 bits, and 8 of them would be lost: save it as PNG\n"]);
-  });
-
-  test('convert --to masks reads back to the same objects', async (t) => {
-    const folder = temporaryFolder(t);
-    const { frames, tracks } = clipFolder(folder.path('clip'));
-    for (const args of [['clip', '--to', 'masks', '--background', '--out', 'all'], ['all/masks', '--to', 'corrections', '--out', 'back']]) {
-      const [source, to, format, ...rest] = args;
-      const places = rest.map((arg, k) => (rest[k - 1] === '--out' ? folder.path(arg) : arg));
-      const { code, stderr } = await veronese(['convert', folder.path(source), to, format, ...places]);
-      assert.deepEqual([code, stderr.split('\n').length - 1], [0, Number(to === '--to' && format === 'corrections')]);
-      assert.match(stderr, /^$|folder 0 is the background/);
-    }
-    frames.forEach((labels, k) => {
-      const found = decode(readFileSync(folder.path('back', `${tracks.frames[k]}.png`))).data;
-      assert.deepEqual(Uint8Array.from(found), labels.map((label) => (label === 255 ? 0 : label)));
-    });
   });
 
   test('convert says what it takes them for, and writes numbers', async (t) => {

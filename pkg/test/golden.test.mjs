@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { fitMotions, segmentClip, segmentPair } from 'veronese';
+import { fitMotions, openClip, segmentPair, segmentStream } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 const root = new URL('../../', import.meta.url);
@@ -71,15 +71,17 @@ function answered({ labels, confidence, version, milliseconds, settings, ...rest
 
 const CALLS = {
   segmentPair: async ({ of, options }) => answered(await segmentPair(...(await framesOf(of)), options)),
-  segmentClip: async ({ of, options, corrections: said = [] }) => {
+  segmentClip: async ({ of, options: { lookAhead, markUnknown, ...options }, corrections = [] }) => {
     const frames = await framesOf(of);
-    const corrections = said.map(({ frame, box, label }) => ({ frame, labels: filled(frames[0], box, label) }));
-    // A stream cannot be corrected.
-    const asked = corrections.length > 0 ? { ...options, corrections } : options;
-    const source = options.lookAhead === 'all' ? { length: frames.length, read: (index) => frames[index] } : frames;
+    const isStream = lookAhead !== 'all' && corrections.length === 0;
+    const clip = isStream ? undefined : await openClip(frames, { markUnknown });
+    await clip?.segment(options);
+    const annotations = corrections.map(({ frame, box, label }) => ({ frame, labels: filled(frames[0], box, label) }));
+    if (annotations.length > 0) await clip.annotate(...annotations);
     const done = [];
+    const labelled = clip ? frames.map((_, index) => clip.labels(index)) : segmentStream(frames, { lookAhead, markUnknown, ...options });
     // The size is the package's own.
-    for await (const { width, height, ...frame } of segmentClip(source, asked)) done.push(answered(frame));
+    for await (const { width, height, ...frame } of labelled) done.push(answered(frame));
     return { bytes: done.flatMap(({ bytes }) => bytes), rest: done.map(({ rest }) => rest) };
   },
   fitMotions: async ({ of, options }) => answered(await fitMotions(measurementsOf(golden.measurements[of]), options)),

@@ -182,17 +182,20 @@ describe('pictures and labels', () => {
 
   test('codecs', async () => {
     await everywhere((value) => codecs.decodeImage(value), []);
-    const encoders = [[codecs.encodeGreyPng, 1], [codecs.encodeColourPng, 3], [codecs.encodeIndexedPng, 1]];
-    for (const [encoder, channels] of encoders) {
+    const palette = index.davisPalette();
+    for (const [channels, options] of [[1], [3], [1, { palette }]]) {
       const bytes = new Uint8Array(4 * 4 * channels);
-      const palette = index.davisPalette();
-      await everywhere((value) => encoder(value, 4, bytes, palette), []);
-      await everywhere((value) => encoder(4, value, bytes, palette), []);
-      await everywhere((value) => encoder(2 ** 32 + 4, 4, value, palette), []);
-      await everywhere((value) => encoder(4, 4, value, palette), channels === 1 ? ['bytes that are called something else'] : []);
+      // 16 bytes are also four pixels of four.
+      const four = channels === 1 && !options ? ['one'] : [];
+      await everywhere((value) => codecs.encodePng(value, 4, bytes, options), four);
+      await everywhere((value) => codecs.encodePng(4, value, bytes, options), four);
+      await everywhere((value) => codecs.encodePng(2 ** 32 + 4, 4, value, options), []);
+      await everywhere((value) => codecs.encodePng(4, 4, value, options), ['bytes that are called something else']);
     }
-    await everywhere((value) => codecs.encodeIndexedPng(4, 4, new Uint8Array(16), value), []);
-    await everywhere((value) => codecs.encodeIndexedPng(4, 4, new Uint8Array(16), [[0, 0, value]]), ['zero', 'half', 'one']);
+    await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), value), OPTIONS);
+    await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), { nonsense: value }), ['undefined']);
+    await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), { palette: value }), ['undefined']);
+    await everywhere((value) => codecs.encodePng(4, 4, new Uint8Array(16), { palette: [[0, 0, value]] }), ['zero', 'half', 'one']);
     assert.equal((await codecs.decodeImage(png(first))).width, 16);
   });
 
@@ -230,108 +233,70 @@ describe('init', () => {
 describe('formats', () => {
   const labels = Uint8Array.of(0, 1, 255, 1);
   const frame = { labels, width: 2, height: 2 };
-  const whole = [labels, 2, 2];
-  const ONE = ['encodeCoco', 'encodeCvatXml', 'encodeCvatPoints', 'encodeLabelStudio', 'encodeLabelMe', 'encodeYolo', 'encodeSupervisely', 'encodeWebAnnotation', 'encodeVeronese', 'encodeFlow'];
-  const SHAPED = ['encodeCoco', 'encodeCvatXml', 'encodeLabelStudio', 'encodeLabelMe'];
-  const MANY = ['encodeCocoImages', 'encodeCocoVideo', 'encodeCvatImages', 'encodeCvatVideo', 'encodeCvatMots', 'encodeMots', 'encodeMotChallenge', 'encodeLabelStudioVideo'];
-  const calls = {
-    ...Object.fromEntries(ONE.map((name) => [name, (meta) => formats[name](...whole, meta)])),
-    ...Object.fromEntries(MANY.map((name) => [name, (meta) => formats[name]([frame], meta)])),
-  };
+  const { encode, readMask } = formats;
+  // Of each kind one: a document, tracks, an archive, pictures, numbers.
+  const FORMATS = ['coco-polygon', 'cvat-video', 'cvat-mots', 'davis', 'flo'];
 
-  // Frames of MOTS become files of an archive, so that they need a name.
-  const imageNames = (name) => ['undefined', 'text', ...(name === 'encodeCvatMots' ? [] : ['empty text'])];
-
-  for (const name of [...ONE, 'encodeDavis', 'encodeCocoRle', 'encodeCocoRleCounts']) {
-    test(`${name}: labels and sizes`, async () => {
-      await everywhere((value) => formats[name](value, 4, 4), ['bytes that are called something else']);
-      await everywhere((value) => formats[name](labels, value, 2), []);
-      await everywhere((value) => formats[name](labels, 2, value), []);
-    });
-  }
-
-  for (const [name, call] of Object.entries(calls)) {
-    test(`${name}: what is known beside the labels`, async () => {
-      await everywhere(call, OPTIONS);
-      await everywhere((value) => call({ image: value }), imageNames(name));
-      await everywhere((value) => call({ names: value }), ['undefined', 'empty list', 'sparse list', ...EMPTY]);
-      await everywhere((value) => call({ names: { 1: value } }), ['undefined', 'text', 'empty text']);
-      await everywhere((value) => call({ classes: value }), ['undefined', 'empty list']);
-      await everywhere((value) => call({ classes: [value] }), ['text', 'empty text']);
-      await everywhere((value) => call({ motions: value }), ['undefined', 'empty list']);
-      await everywhere((value) => call({ motions: [value] }), []);
-      await everywhere((value) => call({ motions: [{ label: value, matrix: [0, 0, 0, 0, 0, 0] }] }), ['zero', 'one']);
-      await everywhere((value) => call({ motions: [{ label: 1, matrix: [0, 0, value, 0, 0, 0] }] }), FINITE);
-      await everywhere((value) => call({ motions: [{ label: 1, matrix: [0, 0, 0, 0, 0, 0], bbox: value }] }), ['undefined']);
-      await everywhere((value) => call({ labels: value }), ['undefined', 'empty list']);
-      await everywhere((value) => call({ labels: [value] }), ['zero', 'one']);
-      await everywhere((value) => call({ nonsense: value }), ['undefined']);
-    });
-  }
-
-  for (const name of [...SHAPED, 'encodeYolo', 'encodeWebAnnotation']) {
-    test(`${name}: options`, async () => {
-      await everywhere((value) => formats[name](...whole, {}, value), OPTIONS);
-      await everywhere((value) => formats[name](...whole, {}, { shape: value }), ['undefined']);
-      await everywhere((value) => formats[name](...whole, {}, { tolerance: value }), ['undefined', 'zero', 'half', 'one', '300', 'more than 32 bits', 'more than 53 bits']);
-      await everywhere((value) => formats[name](...whole, {}, { nonsense: value }), ['undefined']);
-      await everywhere((value) => formats[name](...whole, {}, { modelVersion: value }), ['undefined', ...(name === 'encodeLabelStudio' ? ['text', 'empty text'] : [])]);
-    });
-  }
-
-  test('encodeYolo: classes', async () => {
-    await everywhere((value) => formats.encodeYolo(...whole, {}, { classes: value }), ['undefined']);
-    await everywhere((value) => formats.encodeYolo(...whole, {}, { classes: ['motion-0', 'motion-1', value] }), ['text', 'empty text']);
+  test('format and metadata', async () => {
+    await everywhere((value) => encode(value, frame), []);
+    const call = (metadata) => encode('label-studio-video', [frame], metadata);
+    await everywhere(call, OPTIONS);
+    await everywhere((value) => call({ nonsense: value }), ['undefined']);
+    const text = ['undefined', 'text', 'empty text'];
+    for (const name of ['clip', 'fromName', 'toName', 'modelVersion']) await everywhere((value) => call({ [name]: value }), text);
+    await everywhere((value) => call({ names: value }), ['undefined', 'empty list', 'sparse list', ...EMPTY]);
+    await everywhere((value) => call({ names: { 1: value } }), text);
+    await everywhere((value) => call({ classes: value }), ['undefined', 'empty list']);
+    await everywhere((value) => call({ classes: [value] }), ['text', 'empty text']);
+    await everywhere((value) => call({ labels: value }), ['undefined', 'empty list']);
+    await everywhere((value) => call({ labels: [value] }), ['zero', 'one']);
+    await everywhere((value) => call({ tracked: value }), ['undefined', 'true', 'false']);
+    await everywhere((value) => call({ frameRate: value }), ['undefined', ...named((value) => Number.isFinite(value) && value > 0)]);
+    await everywhere((value) => call({ timestamps: value }), ['undefined', 'empty list']);
+    await everywhere((value) => call({ timestamps: [value] }), FINITE);
+    await everywhere((value) => call({ tolerance: value }), ['undefined', ...named((value) => Number.isFinite(value) && value >= 0)]);
+    await everywhere((value) => call({ shape: value }), ['undefined']);
+    await assert.rejects(call({ classes: ['a', 'a'] }), { code: 'invalid-option' });
   });
 
-  for (const name of ['encodeCocoImages', 'encodeCvatImages', 'encodeCvatVideo', 'encodeLabelStudioVideo']) {
-    test(`${name}: options`, async () => {
-      await everywhere((value) => formats[name]([frame], {}, value), OPTIONS);
-      await everywhere((value) => formats[name]([frame], {}, { shape: value }), ['undefined']);
-      await everywhere((value) => formats[name]([frame], {}, { nonsense: value }), ['undefined']);
-      await everywhere((value) => formats[name]([frame], {}, { modelVersion: value }), ['undefined', ...(name === 'encodeLabelStudioVideo' ? ['text', 'empty text'] : [])]);
-    });
-  }
-
-  for (const name of MANY) {
-    test(`${name}: what is known of the clip`, async () => {
-      await everywhere((value) => formats[name]([frame], { clip: value }), ['undefined', 'text', 'empty text']);
-      await everywhere((value) => formats[name]([frame], { tracked: value }), ['undefined', 'true', 'false']);
-      await everywhere((value) => formats[name]([frame], { frameRate: value }), ['undefined', ...named((value) => Number.isFinite(value) && value > 0)]);
-      await everywhere((value) => formats[name]([frame], { timestamps: value }), ['undefined', 'empty list']);
-      await everywhere((value) => formats[name]([frame], { timestamps: [value] }), FINITE);
-    });
-
-    test(`${name}: frames that come later`, async () => {
+  for (const format of FORMATS) {
+    test(`${format}: frames, also those that come later`, async () => {
       async function* later(...frames) {
         yield* frames;
       }
-      assert.deepEqual(await formats[name](later(frame)), formats[name]([frame]));
-      await everywhere((value) => formats[name](later(frame, value)), []);
-      await everywhere((value) => formats[name](later(frame), value), OPTIONS);
-      await assert.rejects(async () => formats[name](later()), { name: 'VeroneseError', code: 'invalid-input' });
-    });
-
-    test(`${name}: frames`, async () => {
-      await everywhere((value) => formats[name](value), []);
-      await everywhere((value) => formats[name]([frame, value]), []);
-      await everywhere((value) => formats[name]([{ ...frame, labels: value }]), []);
-      await everywhere((value) => formats[name]([{ ...frame, width: value }]), []);
-      await everywhere((value) => formats[name]([frame, { ...frame, image: value }]), imageNames(name));
-      await everywhere((value) => formats[name]([{ ...frame, motions: value }]), ['undefined', 'empty list']);
+      const makers = [(frame) => encode(format, frame), (frame) => encode(format, [{ ...frame }]), (frame) => encode(format, later(frame))];
+      for (const call of makers) {
+        await everywhere((value) => call({ ...frame, labels: value }), []);
+        await everywhere((value) => call({ ...frame, width: value }), []);
+        await everywhere((value) => call({ ...frame, height: value }), []);
+        const matrix = [0, 0, 0, 0, 0, 0];
+        await everywhere((value) => call({ ...frame, motions: value }), ['undefined', 'empty list']);
+        await everywhere((value) => call({ ...frame, motions: [value] }), []);
+        await everywhere((value) => call({ ...frame, motions: [{ label: value, matrix }] }), ['zero', 'one']);
+        await everywhere((value) => call({ ...frame, motions: [{ label: 1, matrix: matrix.with(2, value) }] }), FINITE);
+        await everywhere((value) => call({ ...frame, index: value }), ['undefined', 'zero', 'one', '300', 'more than 32 bits']);
+        await assert.rejects(call({ ...frame, motions: [1, 1].map((label) => ({ label, matrix })) }), { code: 'invalid-input', message: 'motions has a label twice' });
+      }
+      const image = ['undefined', 'text', ...(['cvat-mots', 'davis', 'flo'].includes(format) ? [] : ['empty text'])];
+      await everywhere((value) => encode(format, [frame, { ...frame, image: value }]), image);
+      await everywhere((value) => encode(format, value), []);
+      await everywhere((value) => encode(format, [frame, value]), []);
+      await everywhere((value) => encode(format, later(frame, value)), []);
     });
   }
 
-  test('decodeVeronese', async () => {
-    const document = formats.encodeVeronese(...whole, { names: { 1: 'car' }, motions: found.motions });
-    await everywhere((value) => formats.decodeVeronese(value), []);
-    const harmless = {
-      image: ['text', 'empty text'], motions: ['empty list'], names: EMPTY, convention: Object.keys(VALUES), version: ['one'],
-    };
-    for (const name of Object.keys(document)) {
-      await everywhere((value) => formats.decodeVeronese({ ...document, [name]: value }), harmless[name] ?? []);
-    }
-    await everywhere((value) => formats.decodeVeronese({ ...document, runs: [0, value] }), []);
-    await everywhere((value) => formats.decodeVeronese({ ...document, runs: [value, 4] }), ['zero', 'one']);
+  test('readMask', async () => {
+    const call = (source, options) => readMask(source, options);
+    await everywhere(call, []);
+    await everywhere((png) => call({ png }), []);
+    await everywhere((rle) => call({ rle }), []);
+    await everywhere((counts) => call({ rle: { size: [2, 2], counts } }), []);
+    await everywhere((count) => call({ rle: { size: [2, 2], counts: [4, count] } }), ['zero']);
+    await everywhere((side) => call({ rle: { size: [side, 1], counts: [1] } }), ['one']);
+    await everywhere((id) => call({ rle: { size: [2, 2], counts: [0, 4] }, id }), ['undefined', 'one']);
+    await everywhere((data) => call({ data, width: 2, height: 2 }), ['bytes that are called something else']);
+    await everywhere((width) => call({ data: new Uint8Array(4), width, height: 1 }), ['one']);
+    await everywhere((options) => call({ data: new Uint8Array(4), width: 1, height: 1 }, options), OPTIONS);
+    await everywhere((levels) => call({ data: new Uint8Array(4), width: 1, height: 1 }, { levels }), ['undefined', 'one', '300']);
   });
 });

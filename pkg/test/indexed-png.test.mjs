@@ -3,9 +3,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
-import { encodeIndexedPng } from 'veronese/codecs';
-import { encodeDavis } from 'veronese/formats';
-import { decodeIndices } from '../build/formats/indexed-png.js';
+import { encodePng } from 'veronese/codecs';
+import { decodeIndices } from '../build/formats/png-reader.js';
+import { davisPng } from '../build/formats/pictures.js';
 import { random } from '../../scripts/lib/random.mjs';
 import { pngOf } from './support/chunks.mjs';
 import { png } from './support/frames.mjs';
@@ -52,8 +52,8 @@ test('every filter', () => {
 test('what the encoders of the package write', async () => {
   const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
   for (const { labels, width, height } of [noise, ...labelImages(20)]) {
-    assert.deepEqual(decodeIndices(await encodeIndexedPng(width, height, labels, palette)).indices, labels);
-    assert.deepEqual(decodeIndices(encodeDavis(labels, width, height)).indices, labels);
+    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).indices, labels);
+    assert.deepEqual(decodeIndices(davisPng(labels, width, height)).indices, labels);
   }
 });
 
@@ -67,7 +67,8 @@ test('other pictures and damaged ones are refused', () => {
   refused(changed(23, 16), 'unreadable-image');
   refused(changed(23, 18), 'unreadable-image');
   refused(changed(20, 1), 'unreadable-image');
-  for (const [at, value] of [[24, 4], [25, 2], [28, 1]]) refused(changed(at, value), 'invalid-input');
+  for (const [at, value] of [[24, 4], [25, 2]]) refused(changed(at, value), 'invalid-input');
+  for (const at of [26, 27, 28]) refused(changed(at, 1), 'unreadable-image');
   refused(filtered({ ...noise, height: 0 }, [0]), 'unreadable-image');
   refused(filtered(noise, [0]).fill(9, 41 + 768 + 20, 41 + 768 + 30), 'unreadable-image');
   refused(png({ data: new Uint8ClampedArray(16), width: 2, height: 2 }), 'invalid-input');

@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { segmentClip, SegmenterPool, segmentPair } from 'veronese';
+import { SegmenterPool, segmentPair, segmentStream } from 'veronese';
 import { frame, pair } from './support/frames.mjs';
 import { all, timeless } from './support/shapes.mjs';
 import { soaking } from './support/soak.mjs';
@@ -57,11 +57,11 @@ describe('in the long run', { skip: !soaking && 'npm run soak -- package' }, () 
     function* frames() {
       for (let k = 0; k < FRAMES; k += 1) yield frameAt(k);
     }
-    const short = () => all(segmentClip([0, 1, 2, 3].map(frameAt), OPTIONS));
+    const short = () => all(segmentStream([0, 1, 2, 3].map(frameAt), OPTIONS));
     const expected = await short();
     const checkMemory = flatMemory();
     let answered = 0;
-    for await (const { index, objects } of segmentClip(frames(), { ...OPTIONS, lookAhead: 2 })) {
+    for await (const { index, objects } of segmentStream(frames(), { ...OPTIONS, lookAhead: 2 })) {
       assert.equal(index, answered++);
       assert.ok(objects.length < 20, `${objects.length} objects in frame ${index}, where one square moves`);
       if (answered % BATCH > 0) continue;

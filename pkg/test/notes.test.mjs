@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { Segmenter, segmentClip, segmentPair } from 'veronese';
+import { openClip, Segmenter, segmentPair, segmentStream } from 'veronese';
 import { random } from '../../scripts/lib/random.mjs';
 import { clip as framesOf, lines, tracksOf } from './support/folders.mjs';
 import { frame, pair } from './support/frames.mjs';
@@ -50,33 +50,39 @@ test('a clip in which nothing is found says why, in tracks.json and in one sente
 });
 
 describe('the call for clips gives the same notes', () => {
-  const frames = (at, length = 9) => ({ length, read: (index) => at(index) });
+  const framesAt = (at, length = 9) => Array.from({ length }, (_, k) => at(k));
   const options = { quality: 'fast' };
-  const notesOf = async (clip) => {
-    while (!(await clip.next()).done);
-    return clip.tracks().notes;
+  const notesOf = async (frames, { place = openClip, ...more } = {}) => {
+    const clip = await place(frames);
+    await clip.segment({ ...options, ...more });
+    const { notes } = await clip.tracks();
+    return { clip, notes };
+  };
+  const ofStream = async (frames, more) => {
+    const stream = segmentStream(frames, { ...options, ...more });
+    while (!(await stream.next()).done);
+    return stream.tracks().notes;
   };
   for (const [code, [at, sentence]] of Object.entries(CLIPS)) {
     test(code, async () => {
-      const source = frames(at, lengthOf(code));
-      const notes = await notesOf(segmentClip(source, options));
+      const { notes } = await notesOf(framesAt(at, lengthOf(code)));
       assert.deepEqual(notes.map((note) => note.code), [code]);
       const { message, step } = notes[0];
       assert.match(step ? `${message}: try '--every ${step}'` : message, sentence);
-      assert.deepEqual(await notesOf(segmentClip(source, { ...options, lookAhead: 2 })), notes, 'a stream that can be read again');
     });
   }
 
   test('in a worker', async () => {
-    const source = () => frames(CLIPS['small-steps'][0], lengthOf('small-steps'));
+    const frames = framesAt(CLIPS['small-steps'][0], lengthOf('small-steps'));
     const segmenter = new Segmenter();
-    assert.deepEqual(await notesOf(segmenter.segmentClip(source(), options)), await notesOf(segmentClip(source(), options)));
+    const { notes } = await notesOf(frames, { place: (given) => segmenter.openClip(given) });
+    assert.deepEqual(notes, (await notesOf(frames)).notes);
     segmenter.close();
   });
 
   test('frames that are gone tell it by a pair that was kept, but no step', async () => {
     for (const [code, transfer] of [['one-motion', false], ['small-steps', true]]) {
-      const [kept] = await notesOf(segmentClip(Array.from({ length: 9 }, (_, k) => CLIPS[code][0](k)), { ...options, transfer }));
+      const [kept] = await ofStream(framesAt(CLIPS[code][0]), { transfer });
       assert.ok([code, 'no-motion'].includes(kept.code), kept.code);
       assert.equal(kept.step, undefined);
     }
@@ -84,28 +90,14 @@ describe('the call for clips gives the same notes', () => {
 
   test('what was asked for, what a person said, and a single live frame have none', async () => {
     const still = CLIPS['no-motion'][0];
-    assert.equal(await notesOf(segmentClip(frames(still), { ...options, motions: 1 })), undefined);
-    assert.equal(await notesOf(segmentClip(frames(still), { ...options, accepted: [0] })), undefined);
-    assert.equal(await notesOf(segmentClip([still(0)], { ...options, lookAhead: 0 })), undefined);
-    assert.equal(await notesOf(segmentClip(frames((k) => frame(2 * k, SIZE)), options)), undefined);
+    assert.equal((await notesOf(framesAt(still), { motions: 1 })).notes, undefined);
+    const { clip, notes } = await notesOf(framesAt(still));
+    assert.equal(notes.length, 1);
+    await clip.annotate({ frame: 0, object: 1, box: [4, 4, 20, 20] });
+    assert.equal((await clip.tracks()).notes, undefined);
+    assert.equal(await ofStream([still(0)], { lookAhead: 0 }), undefined);
+    assert.equal((await notesOf(framesAt((k) => frame(2 * k, SIZE)))).notes, undefined);
   });
-});
-
-test('edits and locks of objects that are not there are said, also of the frames that change alone, and again of a state', async () => {
-  const frames = { length: 5, read: (k) => frame(2 * k, SIZE) };
-  const edit = async (options) => {
-    const clip = segmentClip(frames, { quality: 'fast', ...options });
-    while (!(await clip.next()).done);
-    return [clip.tracks().notes?.map(({ code, message }) => [code, message.replace(/^.*: (?=.*;)/, '')]), await clip.state()];
-  };
-  const missing = (said) => [['object-missing', said]];
-  const [none, state] = await edit({ edits: { names: { 1: 'square' } }, prompts: [{ frame: 1, object: 9, clicks: [[90, 60, 1]] }], locked: [9] });
-  assert.equal(none, undefined);
-  assert.deepEqual((await edit({ state, locked: [1, 7], changesOnly: true }))[0], missing('7; the objects are 1, 9'));
-  const [gone, after] = await edit({ state, edits: { merge: [[1, 12], [30, 1]], names: { 8: 'a' } }, locked: [] });
-  assert.deepEqual(gone, missing('8, 12, 30; the objects are 1, 9'));
-  assert.equal((await edit({ state: after, edits: { merge: [[1, 9]], delete: [] } }))[0], undefined);
-  assert.equal((await edit({ state: after, edits: { delete: [1] } }))[0], undefined);
 });
 
 test('a pair with one motion says why, in a worker too; what was asked for says nothing', async () => {
@@ -142,7 +134,7 @@ test('an object that is likely to be the ground is named', async (t) => {
 test('so is one that is smaller and has all of the border', async () => {
   const still = (x, y) => Math.abs(x - 48) < 40 && Math.abs(y - 36) < 30;
   const read = (k) => picture((x, y) => (still(x, y) ? wave(3 * x, y) : wave(x + 3 * k, y + 2 * k)));
-  const clip = segmentClip({ length: 6, read }, { quality: 'fast' });
-  for await (const { objects } of clip) assert.ok(objects.every(({ pixels }) => pixels < 0.4 * SIZE.width * SIZE.height));
-  assert.deepEqual(clip.tracks().notes.map(({ code }) => code), ['object-is-ground']);
+  const clip = await openClip({ length: 6, read });
+  for await (const { objects } of clip.segment({ quality: 'fast' })) assert.ok(objects.every(({ pixels }) => pixels < 0.4 * SIZE.width * SIZE.height));
+  assert.deepEqual((await clip.tracks()).notes.map(({ code }) => code), ['object-is-ground']);
 });

@@ -70,7 +70,7 @@ test('the worker of browsers is one file: bundlers that copy files copy it alone
 
 test('the element loads the code for clips when there is one', () => {
   const scripts = loadedBy('dist/element.js');
-  assert.ok(!scripts.has('dist/element-later.js') && !scripts.has('dist/png-file.js'));
+  assert.ok(!scripts.has('dist/element-later.js') && !scripts.has('dist/png-writer.js'));
   assert.match(read('dist/element-class.js').toString(), /import\("\.\/element-later\.js"\)/);
 });
 

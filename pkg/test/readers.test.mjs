@@ -3,46 +3,27 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import * as formats from 'veronese/formats';
+import { encode, readAnnotations } from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
+import { document } from './support/encoded.mjs';
 import { drawn } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
 import { cases, soaking } from './support/soak.mjs';
 
-const { labels, width, height } = drawn('00000', '01120', '01020', '01120', '30000');
-const META = { image: 'f0.png', names: { 1: 'car', 2: 'car', 3: 'dog' }, labels: [1, 2, 3] };
-const all = [labels, width, height, META];
+const [width, height] = [5, 5];
+const { labels } = drawn('00000', '01120', '01020', '01120', '30000');
+const metadata = { names: { 1: 'car', 2: 'car', 3: 'dog' }, labels: [1, 2, 3] };
+const one = { labels, width, height, image: 'f0.png' };
 const frames = [0, 1, 2].map((k) => ({ labels: labels.map((label) => (label === k ? 0 : label)), width, height, image: `f${k}.png` }));
-const clip = { ...META, image: undefined, tracked: true };
-const datumaro = {
-  info: {},
-  categories: { label: { labels: [{ name: 'car' }] } },
-  items: [{ id: 'f0', image: { path: 'f0.png', size: [height, width] }, annotations: formats.encodeCoco(...all).annotations.map(({ segmentation, bbox }, id) => ({ id, type: id === 0 ? 'bbox' : 'mask', label_id: 0, group: 0, bbox, rle: segmentation })) }],
-};
 
-const DOCUMENTS = {
-  coco: formats.encodeCoco(...all),
-  'coco-polygon': formats.encodeCoco(...all, { shape: 'polygon' }),
-  'youtube-vis': formats.encodeCocoVideo(frames, clip),
-  labelme: formats.encodeLabelMe(...all),
-  'labelme-polygon': formats.encodeLabelMe(...all, { shape: 'polygon' }),
-  supervisely: formats.encodeSupervisely(...all),
-  'label-studio': [formats.encodeLabelStudio(...all)],
-  'label-studio-polygon': [formats.encodeLabelStudio(...all, { shape: 'polygon' })],
-  datumaro,
-  veronese: formats.encodeVeronese(...all),
-};
-const FILES = {
-  cvat: formats.encodeCvatXml(...all),
-  'cvat-polygon': formats.encodeCvatXml(...all, { shape: 'polygon' }),
-  'cvat-video': formats.encodeCvatVideo(frames, clip),
-  'cvat-boxes': formats.encodeCvatVideo(frames, clip, { shape: 'box' }),
-  mots: formats.encodeMots(frames, clip).gt,
-  yolo: `${formats.encodeYolo(...all).text}1 0.5 0.5 0.25 0.5\n`,
-  'cvat-mots': formats.encodeCvatMots(frames, clip),
-  davis: formats.encodeDavis(labels, width, height),
-  ...Object.fromEntries(Object.entries(DOCUMENTS).map(([name, document]) => [name, JSON.stringify(document)])),
-};
+const DOCUMENTS = {};
+for (const format of ['coco', 'coco-polygon', 'label-studio', 'label-studio-polygon']) DOCUMENTS[format] = await document(format, one, metadata);
+DOCUMENTS['youtube-vis'] = await document('youtube-vis', frames, metadata);
+const FILES = Object.fromEntries(Object.entries(DOCUMENTS).map(([format, value]) => [format, JSON.stringify(value)]));
+for (const format of ['cvat', 'cvat-polygon', 'davis']) [{ content: FILES[format] }] = await encode(format, one, metadata);
+for (const format of ['cvat-video', 'mots', 'cvat-mots']) [{ content: FILES[format] }] = await encode(format, frames, metadata);
+FILES['cvat-boxes'] = await document('cvat-video', frames, { ...metadata, shape: 'box' });
+FILES.yolo = `${await document('yolo', one, metadata)}1 0.5 0.5 0.25 0.5\n`;
 const CODES = ['invalid-input', 'unreadable-image', 'frame-size-mismatch'];
 const JUNK = [null, -1, 0, 0.5, 1e9, 2 ** 53, 'x', '', '..', [], {}, [null], true, [[1, 2, 3]], { size: [4, 4] }];
 /** Seconds: far more than any of these files takes on a machine that does other things too. */
@@ -54,7 +35,7 @@ const bytesOf = (content) => (typeof content === 'string' ? new TextEncoder().en
 function outcome(content, what) {
   const seconds = stopwatch();
   try {
-    const { frames, boxes, notes } = formats.readAnnotations([{ name: 'folder/the.file', bytes: bytesOf(content) }], { size: { width, height } });
+    const { frames, boxes, notes } = readAnnotations([{ name: 'folder/the.file', bytes: bytesOf(content) }], { size: { width, height } });
     for (const frame of frames.values()) assert.equal(frame.read().length, frame.width * frame.height, what);
     for (const { message } of notes) assert.match(message, /the\.file/);
     assert.ok(frames.size + boxes.length > 0 || notes.length > 0, `${what}: nothing, and no word`);
@@ -135,7 +116,7 @@ describe('files with ten thousand entries', () => {
     test(name, () => outcome(JSON.stringify(document), name));
   }
   test('of which one is wrong: it is named', () => {
-    const [frame] = formats.readAnnotations([{ name: 'a.json', bytes: bytesOf(JSON.stringify(LONG_FILES['of which the last is wrong'])) }]).frames.values();
+    const [frame] = readAnnotations([{ name: 'a.json', bytes: bytesOf(JSON.stringify(LONG_FILES['of which the last is wrong'])) }]).frames.values();
     assert.throws(() => frame.read(), { code: 'invalid-input', message: /^'a\.json': image "f0\.png", annotation 9999: a polygon must have three vertices/ });
   });
 });

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { decode } from 'fast-png';
-import { Segmenter, segmentClip, segmentPair } from 'veronese';
+import { openClip, Segmenter, segmentPair, segmentStream } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { frame, pair, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
@@ -49,10 +49,14 @@ test('results are those of the scaled frames, in workers too, and say their size
   assert.deepEqual(timeless(await segmenter.segmentPair(...large, { ...FAST, maxSize: 64 })), expected);
   assert.deepEqual(timeless(await segmentPair(...small, { ...FAST, maxSize: 64 })), expected, 'what is not larger stays');
   const frames = Array.from({ length: 3 }, (_, k) => frame(k / 2, { width: 128, height: 96 }));
-  const whole = (list) => ({ length: list.length, read: (index) => list[index] });
-  const clip = await clipOf(segmentClip(whole(frames.map(halved)), FAST));
-  assert.deepEqual(await clipOf(segmentClip(whole(frames), { ...FAST, maxSize: 64 })), clip);
-  assert.deepEqual(await clipOf(segmenter.segmentClip(frames, { ...FAST, maxSize: 64 })), await clipOf(segmentClip(frames.map(halved), FAST)));
+  const clipIn = async (place, given, options) => {
+    const clip = await place(given, options);
+    return clipOf(clip.segment(FAST));
+  };
+  const clip = await clipIn(openClip, frames.map(halved));
+  assert.deepEqual(await clipIn(openClip, frames, { maxSize: 64 }), clip);
+  assert.deepEqual(await clipIn((...given) => segmenter.openClip(...given), frames, { maxSize: 64 }), clip);
+  assert.deepEqual(await clipOf(segmenter.segmentStream(frames, { ...FAST, maxSize: 64 })), await clipOf(segmentStream(frames.map(halved), FAST)));
 });
 
 test('any factor: a plane stays one, and its mean does', async () => {

@@ -6,7 +6,7 @@ import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import Ajv from 'ajv/dist/2020.js';
-import { encodeDavis } from 'veronese/formats';
+import { davisPng } from '../build/formats/pictures.js';
 import { clip as framesOf, tracksOf } from './support/folders.mjs';
 import { frame } from './support/frames.mjs';
 import { veronese } from './support/program.mjs';
@@ -58,7 +58,7 @@ test('tracks.json of clips, with corrections too', async (t) => {
   check('tracks', tracksOf(out));
   mkdirSync(path('said'));
   writeFileSync(path('said', 'edits.json'), '{"names": {"1": "square"}}');
-  writeFileSync(path('said', 'f0.png'), encodeDavis(new Uint8Array(64 * 48).map((_, p) => (p < 64 * 24 ? 3 : 255)), 64, 48));
+  writeFileSync(path('said', 'f0.png'), davisPng(new Uint8Array(64 * 48).map((_, p) => (p < 64 * 24 ? 3 : 255)), 64, 48));
   await run('clip', frames, '--out', out, '--corrections', path('said'));
   check('tracks', tracksOf(out));
   const still = framesOf(t, 2, () => frame(0));

@@ -109,7 +109,7 @@ test('a call ends the warm-up of its worker and gives the same bits; so does a c
   assert.deepEqual(timeless(found), timeless(await segmentPair(...pair())));
   const again = segmenter.warmUp();
   const indices = [];
-  for await (const { index } of segmenter.segmentClip(pair(), { quality: 'fast' })) indices.push(index);
+  for await (const { index } of segmenter.segmentStream(pair(), { quality: 'fast' })) indices.push(index);
   await again;
   assert.deepEqual(indices, [0, 1]);
 });

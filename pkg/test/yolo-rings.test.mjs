@@ -2,9 +2,8 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { encodeYolo } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
-import { stopwatch } from './support/processor.mjs';
 
 /** Labels of rectangles [left, top, right, bottom, label], the later on top. */
 function image(width, height, ...rectangles) {
@@ -16,13 +15,13 @@ function image(width, height, ...rectangles) {
 }
 
 /** By label the vertices of its ring, pixels. */
-function ringsOf({ labels, width, height }, options) {
-  const { text, names } = encodeYolo(labels, width, height, { labels: [1, 2] }, options);
+async function ringsOf({ labels, width, height }, options) {
+  const [{ content: text }, { content: names }] = await encode('yolo', { labels, width, height }, { labels: [1, 2], ...options });
   return text.trimEnd().split('\n').map((line) => {
     const [number, ...shares] = line.split(' ').map(Number);
     assert.ok(shares.every((share) => share >= 0 && share <= 1));
     const points = Array.from({ length: shares.length / 2 }, (_, k) => [shares[2 * k] * width, shares[2 * k + 1] * height]);
-    return { label: Number(names[number].slice(7)), points };
+    return { label: Number(names.split('\n')[number].slice(7)), points };
   });
 }
 
@@ -60,8 +59,8 @@ const PARTS = image(120, 80, [10, 10, 50, 50, 1], [20, 20, 40, 40, 0], [28, 28, 
 
 describe('rings of YOLO', () => {
   for (const tolerance of [0, 0.5]) {
-    test(`parts far apart, with tolerance ${tolerance}: IoU as Ultralytics draws them`, () => {
-      for (const { label, points } of ringsOf(PARTS, { tolerance })) {
+    test(`parts far apart, with tolerance ${tolerance}: IoU as Ultralytics draws them`, async () => {
+      for (const { label, points } of await ringsOf(PARTS, { tolerance })) {
         const drawn = iou(filled(points, PARTS, { whole: true }), PARTS.labels, label);
         assert.ok(drawn >= 0.95, `label ${label}: ${drawn}`);
         const exact = iou(filled(points, PARTS, { whole: false }), PARTS.labels, label);
@@ -70,35 +69,23 @@ describe('rings of YOLO', () => {
     });
   }
 
-  test('one part is drawn as it is, whatever its corners are', () => {
+  test('one part is drawn as it is, whatever its corners are', async () => {
     const next = random(3);
     for (let round = 0; round < 20; round++) {
       const some = Array.from({ length: 6 }, () => [Math.floor(next() * 12), Math.floor(next() * 12)]);
       // All have the middle.
       const one = image(40, 30, ...some.map(([left, top]) => [left, top, left + 16 + (top % 5), top + 13 + (left % 4), 1]));
-      const [{ points }] = ringsOf(one);
+      const [{ points }] = await ringsOf(one);
       assert.equal(iou(filled(points, one, { whole: true }), one.labels, 1), 1);
       assert.equal(iou(filled(points, one, { whole: false }), one.labels, 1), 1);
     }
   });
 
-  test('the ring begins on the largest part, and bridges are short', () => {
+  test('the ring begins on the largest part, and bridges are short', async () => {
     const three = image(100, 20, [2, 1, 3, 2, 1], [10, 2, 40, 18, 1], [44, 2, 60, 18, 1]);
-    const [{ points: [first, ...points] }] = ringsOf(three);
+    const [{ points: [first, ...points] }] = await ringsOf(three);
     assert.deepEqual(first.map(Math.round), [10, 2]);
     const longest = Math.max(...points.map(([x, y], k) => Math.hypot(x - (points[k - 1] ?? first)[0], y - (points[k - 1] ?? first)[1])));
     assert.ok(longest < 31, `${longest}`);
-  });
-
-  test('a mask of noise does not take long', () => {
-    const next = random(5);
-    const labels = Uint8Array.from({ length: 500 * 500 }, () => Number(next() < 0.3));
-    const seconds = stopwatch();
-    const [{ points }] = ringsOf({ labels, width: 500, height: 500 });
-    assert.ok(seconds() < 10, `${seconds()} s`);
-    assert.ok(points.length > 100_000);
-    const few = { labels: labels.map((label, p) => Number(label > 0 && p % 500 < 60 && p < 120 * 500)), width: 500, height: 500 };
-    const [own] = ringsOf(few);
-    assert.equal(iou(filled(own.points, few, { whole: false }), few.labels, 1), 1);
   });
 });

@@ -29,16 +29,15 @@ export interface DecodeOptions {
  */
 export function decodeImage(file: Uint8Array, options?: DecodeOptions): Promise<Picture>;
 
-/** An 8-bit indexed PNG: one palette index per pixel. Rejects with code `invalid-option`. */
-export function encodeIndexedPng(
-  width: number,
-  height: number,
-  indices: Uint8Array,
-  palette: readonly (readonly [number, number, number])[],
-): Promise<Uint8Array>;
+export interface PngOptions {
+  /** Red, green and blue of each index, 0 to 255: the data are indices into it. `davisPalette()` is that of label images. */
+  palette?: readonly (readonly [number, number, number])[] | undefined;
+}
 
-/** An 8-bit grey PNG: one byte per pixel. Rejects with code `invalid-option`. */
-export function encodeGreyPng(width: number, height: number, grey: Uint8Array): Promise<Uint8Array>;
-
-/** An RGB PNG of three bytes per pixel, or an RGBA PNG of four. Rejects with code `invalid-option`. */
-export function encodeColourPng(width: number, height: number, pixels: Uint8Array): Promise<Uint8Array>;
+/**
+ * A PNG file of 8 bits. `data` has, row by row, for each pixel one index with a palette; without one a grey level, three bytes (RGB) or four
+ * (RGBA): as many as its length says.
+ *
+ * Rejects with code `invalid-option` for a palette, or for data that do not fill the picture.
+ */
+export function encodePng(width: number, height: number, data: Uint8Array, options?: PngOptions): Promise<Uint8Array>;

@@ -3,7 +3,7 @@
 import { readFile, readdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
-import { decodeImage, encodeIndexedPng } from '../../pkg/dist/codecs.js';
+import { decodeImage, encodePng } from '../../pkg/dist/codecs.js';
 import { Segmenter, davisPalette } from '../../pkg/dist/node.js';
 
 const [folder, quality] = process.argv.slice(2);
@@ -42,7 +42,7 @@ const known = await run({ knownPairs: (k) => told[k] });
 segmenter.close();
 const encoding = seconds();
 let png = 0;
-for (const { labels } of whole.all) png += (await encodeIndexedPng(size.width, size.height, labels, davisPalette())).length;
+for (const { labels } of whole.all) png += (await encodePng(size.width, size.height, labels, { palette: davisPalette() })).length;
 const encode = (seconds() - encoding) / n;
 
 const [pair, track] = [(whole.tracked - known.tracked) / (n - 1), known.tracked / n];

@@ -19,7 +19,8 @@ mod running;
 mod shown;
 mod view;
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::VecDeque;
+use std::sync::Arc;
 
 use super::annotation::is_object;
 use super::command::Command;
@@ -30,10 +31,11 @@ use super::segmenter::FramePairs;
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 
-use history::{Difference, History, Remembered, State};
+use history::{ByFrame, Difference, History, State};
 use log::{Kind, Log, Written, range_record, result};
 use ranges::RangeJob;
 use running::Running;
+use shown::Shown;
 
 pub use events::{ClipStage, Events, Settled, StepId, Wanted};
 pub use journal::Recovered;
@@ -117,22 +119,24 @@ pub struct Clip {
     /// Commands other than ranges, in the order in which they were given.
     waiting: VecDeque<Waiting>,
     running: Option<Running>,
-    /// The records of each step that has not taken effect: its command, and the ends of its range. Labels take less memory so.
-    given: BTreeMap<u32, Vec<(Kind, Written)>>,
+    /// The records of the steps that have not taken effect, in ascending order of steps: of each its command, then the ends of its range. Labels
+    /// take less memory so.
+    given: Vec<(u32, Kind, Written)>,
     /// Ranges to segment; the first is under way.
     ranges: VecDeque<RangeJob>,
     /// Solved pairs of frames of ranges that are not complete.
-    pairs: BTreeMap<usize, FramePairs>,
+    pairs: ByFrame<FramePairs>,
     /// The frame whose labels come before other work.
     looked_at: Option<usize>,
     /// Labels of frames that the command under way has changed.
-    remembered: Remembered,
+    remembered: ByFrame<Shown>,
     /// The number of the next step.
     next: u32,
     log: Log,
     settled: Vec<Settled>,
     cancelled: Vec<StepId>,
-    changed: BTreeSet<usize>,
+    /// For each frame, whether its labels have changed.
+    changed: Vec<bool>,
 }
 
 impl Clip {
@@ -156,16 +160,16 @@ impl Clip {
             history: History::new(SegmentedClip::empty(frames)),
             waiting: VecDeque::new(),
             running: None,
-            given: BTreeMap::new(),
+            given: Vec::new(),
             ranges: VecDeque::new(),
-            pairs: BTreeMap::new(),
+            pairs: vec![None; frames],
             looked_at: None,
-            remembered: Remembered::new(),
+            remembered: vec![None; frames],
             next: 1,
             log,
             settled: Vec::new(),
             cancelled: Vec::new(),
-            changed: BTreeSet::new(),
+            changed: vec![false; frames],
         }
     }
 
@@ -317,10 +321,19 @@ impl Clip {
         self.waiting.retain(|waiting| waiting.step != step);
         self.ranges.retain(|range| range.step != step);
         if let Some(running) = self.running.take_if(|running| running.step == step) {
-            self.changed.extend((0..self.len()).filter(|&index| running.has_changed(index)));
-            self.remembered.clear();
+            for (index, changed) in self.changed.iter_mut().enumerate() {
+                *changed |= running.has_changed(index);
+            }
+            self.remembered.fill(None);
         }
-        self.given.remove(&step).is_some()
+        self.forget_given(step)
+    }
+
+    /// Forgets the records of a step. Returns whether there were some.
+    fn forget_given(&mut self, step: u32) -> bool {
+        let before = self.given.len();
+        self.given.retain(|(of, ..)| *of != step);
+        self.given.len() < before
     }
 
     /// Ends a range after the frames that are in, for instance because the next one cannot be read. It fails if these are fewer than two. The
@@ -373,15 +386,15 @@ impl Clip {
                 match running.take(frame) {
                     Err(error @ (Error::FrameSizeMismatch { .. } | Error::OtherFrame { .. })) => return Err(error),
                     Err(error) => self.fail(error),
-                    Ok(()) => self.changed.extend(running.has_changed(index).then_some(index)),
+                    Ok(()) => self.changed[index] |= running.has_changed(index),
                 }
             }
             ClipStage::Pairs => {
                 let clip = &self.history.current().clip;
                 let Some(range) = self.ranges.front_mut() else { return Ok(()) };
-                if let Some(entry) = range.take(clip, frame, solved, self.pairs.get(&index))? {
+                if let Some(entry) = range.take(clip, frame, solved, self.pairs[index].as_deref())? {
                     self.log.append(Kind::Pairs, &entry);
-                    self.pairs.insert(entry.0, entry.1);
+                    self.pairs[entry.0] = Some(Arc::new(entry.1));
                 }
             }
         }
@@ -451,7 +464,7 @@ impl Clip {
     }
 
     fn failed(&mut self, step: u32, error: Error) {
-        self.given.remove(&step);
+        self.forget_given(step);
         self.log.append(Kind::Dropped, &(step as usize));
         self.settled.push(Settled { step: StepId(step), changes: Err(error) });
     }
@@ -460,9 +473,9 @@ impl Clip {
     fn commit(&mut self, mut running: Running) {
         let step = running.step;
         if let Some(range) = &running.range {
-            self.pairs.retain(|frame, _| !range.contains(frame));
+            self.pairs[range.clone()].fill(None);
         }
-        self.given.remove(&step);
+        self.forget_given(step);
         running.clip.mark_used();
         let changes = running.changes();
         let before = self.state();
@@ -473,7 +486,9 @@ impl Clip {
         let (parent, difference) = (parent.step, Difference::between(&parent.clip, &mut running.clip));
         let before_clip = before.clip.clone();
         let mut remembered = before.remembered.clone();
-        remembered.append(&mut self.remembered);
+        for (of, newer) in remembered.iter_mut().zip(&mut self.remembered) {
+            *of = newer.take().or(of.take());
+        }
         if is_same {
             self.log.append(Kind::Dropped, &(step as usize));
             self.history.current_mut().remembered = remembered;
@@ -492,7 +507,8 @@ impl Clip {
     /// Adds the frames whose labels differ from those of a state before.
     fn add_changed(&mut self, before: &SegmentedClip) {
         let now = &self.history.current().clip;
-        let differs = |&index: &usize| before.key(index, false) != now.key(index, false);
-        self.changed.extend((0..now.len()).filter(differs));
+        for (index, changed) in self.changed.iter_mut().enumerate() {
+            *changed |= before.key(index, false) != now.key(index, false);
+        }
     }
 }

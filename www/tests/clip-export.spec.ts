@@ -28,7 +28,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     expect(differences(await shown(), found[3]!)).toBe(0);
 
     await formats.selectOption({ label: 'YOLO segmentation' });
-    await expect(listed).toHaveText(['yolo/labels/f00.txt … f03.txt, 4 files', 'yolo/names.txt']);
+    await expect(listed).toHaveText(['yolo/labels/f00.txt … f03.txt, 4 files', 'yolo/names.txt … data.yaml, 2 files']);
     const yolo = unzipSync((await savedClip(page, 'YOLO segmentation')).bytes);
     const beginning = (await preview.locator('pre').textContent())!.replace(/…$/, '');
     expect(beginning.length).toBeGreaterThan(40);
@@ -39,9 +39,9 @@ test('a clip is exported in the formats of annotation tools, with the objects th
     await expect(listed).toHaveText(['cvat-mots.zip']);
     await expect(preview.locator('img')).toBeVisible();
     expect(await preview.locator('img').evaluate((image: HTMLImageElement) => image.decode().then(() => [image.naturalWidth, image.naturalHeight]))).toEqual([100, 70]);
-    await formats.selectOption({ label: 'MOTChallenge' });
-    await expect(listed).toHaveText(['mot/gt/gt.txt … labels.txt, 2 files', 'mot/seqinfo.ini']);
-    await expect(preview.locator('pre')).toHaveText(/^1,1,/);
+    await formats.selectOption({ label: 'MOTS' });
+    await expect(listed).toHaveText(['mots/gt/gt.txt … labels.txt, 2 files', 'mots/seqinfo.ini']);
+    await expect(preview.locator('pre')).toHaveText(/^1 1001 1 70 100 /);
     await formats.selectOption({ label: 'YouTube-VIS' });
     await expect(preview.locator('pre')).toContainText('"videos":');
     await expect(caption).toHaveText(/^youtube-vis\.json with frame 3 alone: \d/);
@@ -87,7 +87,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   expect(text(mots['mots/gt/gt.txt']).trim().split('\n')).toHaveLength(4);
 
   const yolo = unzipSync((await savedClip(page, 'YOLO segmentation')).bytes);
-  expect(Object.keys(yolo)).toEqual([...files.map((file) => `yolo/labels/${file.name.replace('.png', '.txt')}`), 'yolo/names.txt']);
+  expect(Object.keys(yolo)).toEqual([...files.map((file) => `yolo/labels/${file.name.replace('.png', '.txt')}`), 'yolo/names.txt', 'yolo/data.yaml']);
   expect(text(yolo['yolo/labels/f03.txt'])).toMatch(/^0( \d[\d.e-]*){6,}\n$/);
 
   const tasks = JSON.parse((await savedClip(page, 'Label Studio')).bytes.toString()) as { data: { image: string }; predictions: { result: unknown[] }[] }[];

@@ -201,7 +201,7 @@ test('masks are exported as files of their own and in the formats of annotation 
     const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
 
     // Read back by the package, whose own tests decode what it encodes.
-    for (const [format, near] of [['COCO, RLE', 0], ['CVAT', 0], ['LabelMe', 0], ['COCO, polygons', 0.01]] as const) {
+    for (const [format, near] of [['COCO, RLE', 0], ['CVAT', 0], ['COCO, polygons', 0.01]] as const) {
       const { name, bytes } = await savedAs(page, format);
       const { frames, names } = readAnnotations([{ name, bytes }]);
       const labels = frames.get('f00')!.read();
@@ -224,10 +224,10 @@ test('masks are exported as files of their own and in the formats of annotation 
     const [task] = (await json('Label Studio')) as [{ predictions: { result: { value: { brushlabels: string[]; rle: number[] } }[] }[] }];
     expect(task.predictions[0]!.result.map(({ value }) => value.brushlabels[0])).toContain('White car');
     const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
-    const lines = new TextDecoder().decode(yolo['labels/f00.txt']).trim().split('\n');
+    const lines = new TextDecoder().decode(yolo['yolo/labels/f00.txt']).trim().split('\n');
     expect(lines.length).toBe(objects.length);
     for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
-    expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
+    expect(new TextDecoder().decode(yolo['yolo/data.yaml'])).toContain('White car');
 
     await page.keyboard.press('Escape');
     await page.getByLabel('Show White car').uncheck();

@@ -1,8 +1,8 @@
 //! Masks of annotation tools, imported into a clip as corrections of its frames.
 
 import { type Page } from '@playwright/test';
-import { encodeGreyPng } from 'veronese/codecs';
-import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe, encodeMots, encodeYolo } from 'veronese/formats';
+import { encodePng } from 'veronese/codecs';
+import { encode } from 'veronese/formats';
 
 import { type Upload, clipFrames, differences, expect, give, goTo, labelsOnCanvas, masksOf, openEmpty, openExport, openSegmented, said, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
@@ -11,6 +11,8 @@ const SIZE = { width: 100, height: 70 };
 
 const corrected = (page: Page): Promise<void> => said(page, /^Corrected: the masks of \w+ frames have changed\.$/);
 const json = (name: string, value: unknown): Upload => ({ name, mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(value)) });
+const text = (name: string, content: string): Upload => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
+const encoded = async (...given: Parameters<typeof encode>): Promise<string> => String((await encode(...given))[0]!.content);
 
 /** The labels with a rectangle as another object. */
 function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
@@ -27,10 +29,10 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   const nothing = new Uint8Array(SIZE.width * SIZE.height);
   const drawn = [2, 3].map((index) => withBox(nothing, 7, 10 + 2 * index));
   const frames = [...drawn, withBox(nothing, 7, 0)].map((labels, k) => ({ labels, ...SIZE, image: `data/${['f02', 'f03', 'f99'][k]}.jpg` }));
-  const document = encodeCocoImages(frames, { names: { 7: 'Plate' }, labels: [7], tracked: true });
+  const document = await encoded('coco', frames, { names: { 7: 'Plate' } });
   await openExport(page);
   await expect(page.locator('#import-masks')).toBeEnabled();
-  await page.locator('#import-masks').setInputFiles([json('instances.json', document)]);
+  await page.locator('#import-masks').setInputFiles([text('instances.json', document)]);
   // The notice goes by itself, maybe before all is corrected.
   await expect(page.locator('#notice-sentence')).toHaveText('Took the masks of 2 of 3 frames. No frame with masks here is called f99.');
   await corrected(page);
@@ -50,16 +52,16 @@ test('a file of annotations corrects the frames that it is of, in one step that 
   await test.step('masks that are dropped on the clip are no frames, and frames are', async () => {
     const drop = (files: Upload[]): Promise<void> => give(page, 'drop', files);
     const drawn = withBox(found[2]!, 3, 50);
-    await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(drawn, SIZE.width, SIZE.height)) }]);
+    await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from((await encode('davis', { labels: drawn, ...SIZE }))[0]!.content) }]);
     await corrected(page);
     await goTo(page, 1);
     expect(differences(await labelsOnCanvas(page), drawn)).toBe(0);
 
     // A file that cannot be taken says why, and changes nothing.
     const notice = page.locator('#notice-sentence');
-    await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
+    await drop([text('f01.json', await encoded('coco', { labels: new Uint8Array(4).fill(1), width: 2, height: 2, image: 'f01.png' }))]);
     await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 100 × 70.');
-    await drop([json('f01.json', encodeLabelMe(drawn, SIZE.width, SIZE.height, { image: 'other.png' }))]);
+    await drop([text('f01.json', await encoded('coco', { labels: drawn, ...SIZE, image: 'other.png' }))]);
     await expect(notice).toHaveText('No frame with masks here is called other.');
     await drop([json('f01.json', { shapes: [] })]);
     await expect(notice).toHaveText(/^'f01\.json' is not an annotation in a format that is read/);
@@ -79,7 +81,7 @@ test('masks of which nobody knows how to read them are read as a person chooses'
   const [sentence, choices, close] = [page.locator('#notice-sentence'), page.locator('#notice-choices button'), page.locator('#notice-close')];
   const shareAt = (p: number): number => Math.min(1, Math.max(0, (14 - Math.hypot((p % SIZE.width) - 70, Math.floor(p / SIZE.width) - 40)) / 4 + 0.5));
   const soft = Uint8Array.from({ length: SIZE.width * SIZE.height }, (_, p) => Math.round(255 * shareAt(p)));
-  const grey = { name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodeGreyPng(SIZE.width, SIZE.height, soft)) };
+  const grey = { name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(await encodePng(SIZE.width, SIZE.height, soft)) };
   await openExport(page);
   await expect(page.locator('#import-masks')).toBeEnabled();
   const choose = async (file: Upload, name: string): Promise<void> => {
@@ -99,13 +101,12 @@ test('masks of which nobody knows how to read them are read as a person chooses'
 
   const drawn = withBox(new Uint8Array(SIZE.width * SIZE.height), 7, 10);
   const frames = [new Uint8Array(drawn.length), drawn].map((labels, k) => ({ labels, ...SIZE, image: `f0${k}.png` }));
-  const { gt } = encodeMots(frames, { names: { 7: 'Plate' }, labels: [7] });
-  const text = { name: 'gt.txt', mimeType: 'text/plain', buffer: Buffer.from(gt) };
-  await page.locator('#import-masks').setInputFiles([text]);
+  const gt = text('gt.txt', await encoded('mots', frames, { names: { 7: 'Plate' } }));
+  await page.locator('#import-masks').setInputFiles([gt]);
   await expect(sentence).toHaveText("'gt.txt': nothing tells whether its first frame is 0 or 1.");
   await expect(choices).toHaveText(['It is 1', 'It is 0']);
   await close.click();
-  await choose(text, 'It is 0');
+  await choose(gt, 'It is 0');
   await expect.poll(async () => differences((await masksOf(page, [2]))[0]!.map((label) => (label === 7 ? 7 : 0)), drawn)).toBe(0);
 });
 
@@ -124,9 +125,8 @@ test('boxes without masks point to objects; what is left out is said', { tag: '@
   await goTo(page, 1);
   await expect(page.locator('#lane-names button')).toContainText([/^Disc/]);
   // YOLO's texts lack the size of their images: it is that of the clip.
-  const text = (name: string, content: string): Upload => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
-  const { text: lines, names } = encodeYolo(withBox(new Uint8Array(SIZE.width * SIZE.height), 1, 50), SIZE.width, SIZE.height, { names: { 1: 'Plate' }, labels: [1] });
-  await give(page, 'drop', [text('f02.txt', lines), text('classes.txt', names.join('\n'))]);
+  const [lines, names] = await encode('yolo', { labels: withBox(new Uint8Array(SIZE.width * SIZE.height), 1, 50), ...SIZE }, { names: { 1: 'Plate' } });
+  await give(page, 'drop', [text('f02.txt', String(lines!.content)), text('classes.txt', String(names!.content))]);
   await corrected(page);
   await expect(page.locator('#class-names option')).toHaveText(['Disc', 'Plate']);
   const labels = await labelsOnCanvas(page);
@@ -141,7 +141,7 @@ test('the frames of a video are known by their numbers', { tag: '@soak' }, async
   // Frames without a shape are not said: the first that is, is number 4.
   const drawn = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));
   const frames = Array.from({ length: 5 }, (_, k) => ({ labels: k < 4 ? new Uint8Array(drawn.length) : drawn, width: WIDTH, height: HEIGHT }));
-  const xml = encodeCvatVideo(frames, { names: { 9: 'Strip' }, labels: [9] });
+  const xml = await encoded('cvat-video', frames, { names: { 9: 'Strip' } });
   await upload(page, [{ name: 'annotations.xml', mimeType: 'application/xml', buffer: Buffer.from(xml) }]);
   await corrected(page);
   await goTo(page, 4);

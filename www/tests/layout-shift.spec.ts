@@ -1,7 +1,7 @@
 //! Nothing that is done, found or said shifts the layout.
 
 import { type Page } from '@playwright/test';
-import { encodeColourPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 
 import { type Upload, clipDone, clipFrames, differences, done, drag, expect, labelsOnCanvas, openEmpty, openSampleClip, openSegmented, said, screen, segmentClip, shown, test, upload, withSmallSampleClip } from './support.js';
 
@@ -95,7 +95,7 @@ function greyFrames(count: number, grey: (x: number, y: number, k: number) => nu
   return Promise.all(
     Array.from({ length: count }, async (_, k) => {
       const pixels = Uint8Array.from({ length: 3 * 96 * 72 }, (_, i) => grey(Math.floor(i / 3) % 96, Math.floor(i / 288), k));
-      return { name: `g${k}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(96, 72, pixels)) };
+      return { name: `g${k}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodePng(96, 72, pixels)) };
     }),
   );
 }

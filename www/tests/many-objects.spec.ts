@@ -1,7 +1,7 @@
 //! Many objects: they are found in the list, and handled together. What is for the first visit makes way for them.
 
 import type { Page } from '@playwright/test';
-import { encodeDavis } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 
 import { clipDone, clipFrames, expect, goTo, openClip, openSegmented, said, test, upload } from './support.js';
 
@@ -17,7 +17,7 @@ async function openMany(page: Page): Promise<void> {
     const cell = 5 * Math.floor(y / 17.5) + Math.floor(x / 20);
     return x % 20 > 3 && y % 17.5 > 3 ? cell + 1 : 0;
   });
-  await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(labels, width, height)) }]);
+  await upload(page, [{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from((await encode('davis', { labels, width, height }))[0]!.content) }]);
   await said(page, /^Corrected/);
   await expect(page.locator('#objects > li')).toHaveCount(1 + COUNT);
 }

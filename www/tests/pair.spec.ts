@@ -1,7 +1,7 @@
 //! Two frames are a clip: found, corrected, undone and kept like any other. The motions of the two are a view, which changes nothing.
 
 import { type Page } from '@playwright/test';
-import { encodeColourPng } from 'veronese/codecs';
+import { encodePng } from 'veronese/codecs';
 
 import { type Upload, chooseMotions, clipDone, clipFrames, differences, done, drag, expect, goTo, kept, labelsOnCanvas, masksOf, motionsChosen, openAdvanced, openEmpty, openExport, reloadEmpty, rename, said, shown, square, test, undoAll, upload, withoutStorage } from './support.js';
 
@@ -176,7 +176,7 @@ async function parts(name: string, t: number): Promise<Upload> {
     const [u, seed] = upper ? [x - 6 * t, 2] : lower ? [x - 4.2 * t, 3] : [x, 1];
     for (let c = 0; c < 3; c++) pixels[3 * p + c] = wave(u + 37 * c, y, seed);
   }
-  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodePng(width, height, pixels)) };
 }
 
 test('a part that moves by itself becomes an object of its own', async ({ page }) => {

@@ -6,8 +6,9 @@ import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
-import { type ClipOptions, type Segmentation, type SegmentOptions, davisPalette, segmentClip as segmentFrames, segmentPair } from 'veronese';
-import { decodeImage, encodeColourPng } from 'veronese/codecs';
+import { type Segmentation, type SegmentOptions, Segmenter, davisPalette, segmentPair } from 'veronese';
+import type { ClipOptions } from '../src/segmented.js';
+import { decodeImage, encodePng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
 import { SAMPLES } from '../src/frames/samples.js';
@@ -193,7 +194,7 @@ export const smallSampleClip = once(async (): Promise<Upload[]> => {
       for (let k = 0; k < by * by; k++) sum += data[4 * ((by * y + Math.floor(k / by)) * width + by * x + (k % by)) + c]!;
       return sum / (by * by);
     });
-    frames.push({ name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(w, h, means)) });
+    frames.push({ name, mimeType: 'image/png', buffer: Buffer.from(await encodePng(w, h, means)) });
   }
   return frames;
 });
@@ -480,7 +481,7 @@ export async function square(name: string, width: number, height: number, dx: nu
       pixels.set(inside ? texture(u + 500, v + 300, 0.7) : texture(x, y, 0.45), i);
     }
   }
-  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodePng(width, height, pixels)) };
 }
 
 /** A smooth texture, nowhere flat, that differs between the channels. */
@@ -499,7 +500,12 @@ export const segmentedInNode = once(
 export const clipInNode = once(async (files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> => {
   const labels: Uint8Array[] = [];
   const frames = { length: files.length, read: async (index: number) => decodeImage(files[index]!.buffer) };
-  for await (const frame of segmentFrames(frames, options)) labels.push(frame.labels);
+  const segmenter = new Segmenter();
+  try {
+    for await (const frame of segmenter.segmentClip(frames, options)) labels.push(frame.labels);
+  } finally {
+    segmenter.close();
+  }
   return labels;
 }, keyOf);
 
@@ -622,7 +628,7 @@ const clipFrame = once(async (k: number, width: number, height: number): Promise
       pixels.set(disc ? texture(x - 4 * k + 500, y - k + 300, 0.7) : box ? texture(x + 3 * k + 900, y + 100, 0.9) : texture(x, y, 0.45), i);
     }
   }
-  return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+  return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodePng(width, height, pixels)) };
 });
 
 /** The serious and critical violations that axe finds, of some rules or of all. */

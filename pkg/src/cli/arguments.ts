@@ -8,7 +8,8 @@ import { MOST_JOBS } from '../pool/segmenter.js';
 import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf } from './commands.js';
 import type { Range } from './sequence.js';
 import { type Shown, SHOWN, shownOf } from './showing.js';
-import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
+import type { Format } from '../../types/formats.js';
+import { FORMATS, isFormat } from '../formats/encode.js';
 
 /** Shortest side of a frame, and largest look-ahead, as in the core. */
 const SHORTEST_SIDE = 16;
@@ -184,10 +185,10 @@ function seed(text: string): number {
   throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
 }
 
-function formats(text: string): SequenceFormatName[] {
+function formats(text: string): Format[] {
   return [...new Set(text.split(','))].map((name) => {
-    if (isSequenceFormatName(name)) return name;
-    const known = Object.keys(SEQUENCE_FORMATS);
+    if (isFormat(name)) return name;
+    const known = Object.keys(FORMATS);
     throw new VeroneseError('invalid-option', `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`);
   });
 }

@@ -50,9 +50,9 @@ export function openBatch(folder: string, range: Range, background: boolean, gro
       const taken = new Set<string>();
       for (const pair of pairs) {
         const frame = await readFrame(join(folder, pair.name), pair.frame, grouped);
-        const stem = keyOf(frame.stem);
-        if (taken.has(stem)) throw new VeroneseError('invalid-input', `two frames have the name '${frame.stem}'`);
-        taken.add(stem);
+        const stem = frame.image.slice(0, frame.image.length - extname(frame.image).length);
+        if (taken.has(keyOf(stem))) throw new VeroneseError('invalid-input', `two frames have the name '${stem}'`);
+        taken.add(keyOf(stem));
         yield frame;
       }
     },
@@ -65,5 +65,5 @@ async function readFrame(folder: string, frame: string, grouped: boolean): Promi
   if (!isFileName(first)) throw new VeroneseError('invalid-input', `'${join(folder, 'result.json')}' does not name its frames: it is not of 'veronese batch'`);
   // A frame of a video is no file: it is called what ffmpeg would write it to.
   const image = /#\d+$/.test(first) ? `${frame}.png` : first;
-  return { labels, width, height, image, stem: image.slice(0, image.length - extname(image).length), motions };
+  return { labels, width, height, image, motions };
 }

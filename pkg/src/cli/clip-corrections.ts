@@ -2,7 +2,7 @@
 
 import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import type { AnnotationNote } from '../../types/formats.js';
+import type { AnnotationNote, Levels } from '../../types/formats.js';
 import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf, isObjectNumber, RANGE } from '../calls/segmented/edits.js';
 import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/segmented/annotations.js';
@@ -13,10 +13,10 @@ import type { ClipCommand } from './arguments.js';
 import type { ClipFrames } from './clip-frames.js';
 import { UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
-import { encodeColourPng } from '../entries/codecs.js';
+import { encodePng } from '../entries/codecs.js';
 import { readAnnotations } from '../formats/reading/annotations.js';
 import { Canvas } from '../formats/reading/canvas.js';
-import { isPng, type Levels } from '../formats/reading/frame.js';
+import { isPng } from '../formats/reading/frame.js';
 import { readInput, sha256 } from './files.js';
 import { decoded } from './pair.js';
 
@@ -186,7 +186,7 @@ async function pngOf(path: string): Promise<Uint8Array> {
   if (isPng(bytes)) return bytes;
   const { width, height, data, range } = await decoded({ name: path, bytes });
   if (range) throw new VeroneseError('invalid-input', `'${path}' has samples of 16 bits, and 8 of them would be lost: save it as PNG`);
-  return encodeColourPng(width, height, data);
+  return encodePng(width, height, data);
 }
 
 function isFolder(path: string): boolean {

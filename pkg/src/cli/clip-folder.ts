@@ -1,7 +1,7 @@
 // The folder of a clip: labels/NAME.png for each frame, and tracks.json, which is written last.
 
 import { join } from 'node:path';
-import type { ClipMeta, FormatMotion } from '../../types/formats.js';
+import type { Metadata, FormatMotion } from '../../types/formats.js';
 import type { Matrix } from '../../types/index.js';
 import { FRAME_RATES, isFrameRate, isListOf, isObject, isRising, isWhole, keyOf, LONGEST_SIDE, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
@@ -62,7 +62,7 @@ export async function openClip(folder: string, range: Range, background: boolean
   };
 }
 
-function timesOf({ frameRate, timestamps }: Tracks, from: number, until: number): Pick<ClipMeta, 'frameRate' | 'timestamps'> {
+function timesOf({ frameRate, timestamps }: Tracks, from: number, until: number): Pick<Metadata, 'frameRate' | 'timestamps'> {
   const times = timestamps?.slice(from, until + 1).map((time) => time - (timestamps[from] as number));
   return { ...(frameRate !== undefined && { frameRate }), ...(times && { timestamps: times }) };
 }
@@ -90,8 +90,8 @@ async function readFrame(
   }
   checkPixels(labels, known, path);
   const motions: FormatMotion[] = background ? [{ label: 0, matrix: background }] : [];
-  for (const [label, { matrix, pixels }] of known) if (matrix) motions.push({ label, matrix, pixels });
-  return { labels, width, height, image: tracks.files[frame] as string, stem, motions };
+  for (const [label, { matrix }] of known) if (matrix) motions.push({ label, matrix });
+  return { labels, width, height, image: tracks.files[frame] as string, motions };
 }
 
 /** Throws unless the objects are those of tracks.json, with as many pixels. */

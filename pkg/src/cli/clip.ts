@@ -5,9 +5,9 @@ import type { Clip, ClipChange, ClipFrame, ClipProgress, Note, Segmenter as Segm
 import { version } from '../calls/version.js';
 import { UNLABELLED } from '../common/checks.js';
 import { davisPalette } from '../common/palette.js';
-import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
+import { encodePng } from '../entries/codecs.js';
 import { SegmenterPool } from '../entries/node.js';
-import { USUAL_RATE } from '../formats/frames.js';
+import { USUAL_RATE } from '../formats/metadata.js';
 import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
@@ -187,10 +187,10 @@ class Passes {
 /** The pictures of a frame by their folders. */
 async function images(frames: ClipFrames, frame: ClipFrame, withOverlay: boolean, showing: Showing | undefined): Promise<{ [folder: string]: Uint8Array }> {
   const { index, labels, width, height } = frame;
-  const files = { labels: await encodeIndexedPng(width, height, labels, davisPalette()) };
+  const files = { labels: await encodePng(width, height, labels, { palette: davisPalette() }) };
   if (!withOverlay && !showing) return files;
   const picture = await frames.read(index);
-  const painted = withOverlay && { overlay: await encodeColourPng(width, height, overlay(picture.data, labels)) };
+  const painted = withOverlay && { overlay: await encodePng(width, height, overlay(picture.data, labels)) };
   return { ...files, ...painted, ...(await showing?.add(frame, picture)) };
 }
 

@@ -1,7 +1,6 @@
 // The commands and options of the program, once: what is parsed, and what help and the site say about it.
 
-import { isFormatName } from './formats.js';
-import { SEQUENCE_FORMATS } from './sequence-formats.js';
+import { FORMATS } from '../formats/encode.js';
 
 /** As parseArgs takes it, with the word for its value and what it is for. */
 export interface Option {
@@ -12,11 +11,11 @@ export interface Option {
   text: string;
 }
 
-/** Those of the formats that are for these folders. */
-const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
-  Object.entries(SEQUENCE_FORMATS)
-    .flatMap(([name, { tracks }]) => (tracks === ofTracks && isFormatName(name) === ofPair ? [name] : []))
-    .join(', ');
+/** The formats that hold tracks, or the others. */
+const formatsOf = (tracks: boolean): string => {
+  const all = Object.entries(FORMATS).filter(([, format]) => (format.tracks ?? false) === tracks);
+  return all.map(([name]) => name).join(', ');
+};
 
 /** The format of `convert` that reads masks back. */
 export const BACK = 'corrections';
@@ -69,8 +68,7 @@ export const OPTIONS = {
     type: 'string',
     value: 'FORMATS',
     text:
-      `formats, separated by commas: ${formatsFor(true, false)}; only of clip: ${formatsFor(false, true)}; only of pair and clip: ${formatsFor(true, true)}; ` +
-      `only of batch and clip: ${formatsFor(false, false)}; or ${BACK} alone, which reads masks back`,
+      `formats, separated by commas: ${formatsOf(false)}; of tracks, not of batch: ${formatsOf(true)}; or ${BACK} alone, which reads masks back`,
   },
   tolerance: { type: 'string', default: '0.5', value: 'PIXELS', text: "distance by which polygons may deviate from a mask's border; 0 follows its pixels" },
   background: { type: 'boolean', default: false, text: 'convert the background, label 0, as well' },
@@ -154,7 +152,7 @@ export const COMMANDS = {
   convert: {
     usage: ['DIR --to FORMATS [options]', `SOURCE --to ${BACK} --out DIR [--clip DIR] [--force]`],
     about: 'convert results for annotation tools, and annotations back',
-    more: `DIR is a folder of pair, batch or clip. SOURCE is a file, an archive or a folder of annotations: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, PNG masks; of them come NAME.png for each annotated frame, and edits.json, for --corrections of clip.`,
+    more: `DIR is a folder of pair, batch or clip. SOURCE is a file, an archive or a folder of annotations: COCO, YouTube-VIS, CVAT, Label Studio, MOTS, YOLO, PNG masks; of them come NAME.png for each annotated frame, and edits.json, for --corrections of clip.`,
     options: ['to', 'out', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'levels', 'first-frame', 'force'],
     texts: { out: 'output folder (default: the input folder)', grouped: 'of pair and batch: groups instead of motions' },
     examples: [

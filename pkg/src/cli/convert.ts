@@ -7,30 +7,45 @@ import { VeroneseError } from '../common/errors.js';
 import type { ConvertCommand } from './arguments.js';
 import { openBatch, pairFolders } from './batch-folder.js';
 import { LABELS, openClip, TRACKS } from './clip-folder.js';
-import { rateOf, USUAL_RATE } from '../formats/frames.js';
-import { notFound, type OutputFile } from './files.js';
-import { FORMATS, isFormatName, type Masks } from './formats.js';
+import type { LabelFrame, Metadata } from '../../types/formats.js';
+import { FORMATS, FrameEncoder } from '../formats/encode.js';
+import { rateOf, USUAL_RATE } from '../formats/metadata.js';
+import { notFound } from './files.js';
 import type { Io } from './io.js';
 import type { Output } from './output.js';
 import { readPair } from './pair-folder.js';
-import { SEQUENCE_FORMATS } from './sequence-formats.js';
 import { note } from './terminal.js';
 
 /** Writes the files; returns one line of JSON that names them. */
 export async function convert(command: ConvertCommand, output: Output, io: Io): Promise<string> {
-  const kind = kindOf(command.folder);
+  const { folder, to, tolerance, shapes, video } = command;
+  const kind = kindOf(folder);
   checkOptions(command, kind);
-  const written = kind === 'pair' ? await convertPair(command, output) : await convertSequence(command, kind, output);
-  for (const each of written.notes ?? []) note(io, each);
-  return `${JSON.stringify({ version: 1, folder: output.folder, ...written })}\n`;
+  const { frames, metadata, count } = await opened(command, kind);
+  // Names that depend on frames are checked when they are written.
+  if (kind !== 'pair') await output.check(to.flatMap((name) => FORMATS[name].files));
+  const files = await output.stage(async (write) => {
+    for (const name of to) {
+      const clip = ['cvat-video', 'label-studio-video'].includes(name) ? (video ?? metadata.clip) : metadata.clip;
+      const encoder = new FrameEncoder(name, { ...metadata, clip, tolerance, shape: shapes }, kind === 'pair');
+      // Each is written before the next is read: all of them can be larger than the memory.
+      for await (const frame of frames) for (const file of encoder.add(frame)) await write(file.name, file.content);
+      for (const file of encoder.finish()) await write(file.name, file.content);
+    }
+  });
+  const isAssumed = kind === 'clip' && to.some((name) => FORMATS[name].timed) && rateOf(metadata) === undefined;
+  const message = `the frame rate of '${folder}' is not known: ${USUAL_RATE} frames per second are assumed; '--frame-rate' says another`;
+  const notes: Note[] = isAssumed ? [{ code: 'frame-rate-assumed', message }] : [];
+  for (const each of notes) note(io, each);
+  return `${JSON.stringify({ version: 1, folder: output.folder, files, ...(kind !== 'pair' && { frames: count }), ...(isAssumed && { notes }) })}\n`;
 }
 
 type Kind = 'pair' | 'batch' | 'clip';
 
-interface Written {
-  files: string[];
-  frames?: number;
-  notes?: Note[];
+interface Source {
+  frames: Iterable<LabelFrame> | AsyncIterable<LabelFrame>;
+  metadata: Metadata;
+  count: number;
 }
 
 /** Which command the folder is of. Throws `file-not-found`. */
@@ -69,38 +84,19 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
   for (const [name, isGiven, kinds] of given) {
     if (isGiven && !kinds.includes(kind)) throw new VeroneseError('invalid-option', `option '--${name}' is not for '${folder}', a folder of '${kind}'`);
   }
-  for (const name of to) {
-    if (kind === 'batch' && SEQUENCE_FORMATS[name].tracks) {
-      const sentence = `'${name}' holds tracks, and '${folder}' has none: a batch does not know an object again; use 'veronese clip'`;
-      throw new VeroneseError('invalid-input', sentence);
-    }
-    if (kind === 'pair' && !isFormatName(name)) {
-      throw new VeroneseError('invalid-input', `'${name}' is for many frames, and '${folder}' is a folder of 'pair'; use 'veronese clip'`);
-    }
-  }
+  const tracks = kind === 'batch' && to.find((name) => FORMATS[name].tracks);
+  if (!tracks) return;
+  const sentence = `'${tracks}' holds tracks, and '${folder}' has none: a batch does not know an object again; use 'veronese clip'`;
+  throw new VeroneseError('invalid-input', sentence);
 }
 
-async function convertPair(command: ConvertCommand, output: Output): Promise<Written> {
-  const { folder, to, grouped, image, background, tolerance } = command;
+async function opened({ folder, range, background, grouped, image, frameRate }: ConvertCommand, kind: Kind): Promise<Source> {
+  if (kind !== 'pair') {
+    const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
+    return { frames: sequence, metadata: sequence.meta, count: sequence.count };
+  }
   const { labels, width, height, motions, ...pair } = await readPair(folder, grouped);
   const names = pair.grouped && { names: Object.fromEntries(motions.map(({ label }) => [label, `group-${label}`])) };
   const wanted = motions.map(({ label }) => label).filter((label) => label > 0 || background);
-  const masks: Masks = { labels, width, height, meta: { ...(image !== undefined && { image }), motions, labels: wanted, ...names } };
-  const files: OutputFile[] = to.filter(isFormatName).flatMap((name) => FORMATS[name](masks, tolerance));
-  await output.writeAll(files);
-  return { files: files.map(({ name }) => name) };
-}
-
-async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', output: Output): Promise<Written> {
-  const { folder, to, range, background, grouped, frameRate, shapes = 'polygon', tolerance, video } = command;
-  const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
-  // Names that depend on frames are checked when they are written.
-  await output.check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
-  const settings = { shapes, tolerance, ...(video !== undefined && { video }) };
-  const files = await output.stage(async (write) => {
-    for (const name of to) await SEQUENCE_FORMATS[name].convert(sequence, settings, write);
-  });
-  const isAssumed = to.some((name) => SEQUENCE_FORMATS[name].timed) && rateOf(sequence.meta) === undefined;
-  const message = `the frame rate of '${folder}' is not known: ${USUAL_RATE} frames per second are assumed; '--frame-rate' says another`;
-  return { files, frames: sequence.count, ...(isAssumed && { notes: [{ code: 'frame-rate-assumed', message }] }) };
+  return { frames: [{ labels, width, height, motions, ...(image !== undefined && { image }) }], metadata: { labels: wanted, ...names }, count: 1 };
 }

@@ -4,7 +4,8 @@ import { readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import type { AnnotationFile } from '../../types/formats.js';
 import { VeroneseError } from '../common/errors.js';
-import { encodeDavis, readAnnotations } from '../formats/index.js';
+import { davisPng } from '../formats/pictures.js';
+import { readAnnotations } from '../formats/reading/annotations.js';
 import type { CorrectionsCommand } from './arguments.js';
 import { EDITS } from './clip-corrections.js';
 import { TRACKS, tracksOf } from './clip-folder.js';
@@ -29,7 +30,7 @@ export async function convertBack({ source, clip, levels, firstFrame }: Correcti
   for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {
-      for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
+      for (const [name, frame] of annotated) await write(`${name}.png`, davisPng(frame.read(), frame.width, frame.height));
       await write(EDITS, `${JSON.stringify({ names, ...(boxes.length > 0 && { prompts: boxes, size: [size.width, size.height] }) })}\n`);
     },
     (path) => /^[^/]+\.png$/.test(path),

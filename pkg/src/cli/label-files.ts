@@ -1,9 +1,9 @@
 // Label images and JSON, as the program wrote them, read back.
 
+import type { Levels } from '../../types/formats.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { readInput } from './files.js';
-import { decodeIndices } from '../formats/indexed-png.js';
-import type { Levels } from '../formats/reading/frame.js';
+import { decodeIndices } from '../formats/png-reader.js';
 import { crispLevels } from '../formats/reading/smoothed.js';
 
 /** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */

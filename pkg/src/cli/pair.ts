@@ -6,7 +6,7 @@ import { groupLabels, maskOf } from '../calls/labels.js';
 import { LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
-import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng, isTooLarge } from '../entries/codecs.js';
+import { api, decodeImage, encodePng, isTooLarge } from '../entries/codecs.js';
 import type { OutputFile } from './files.js';
 import { overlay } from './overlay.js';
 
@@ -47,16 +47,16 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
   const { width, height, motions } = segmentation;
   const labels = grouped ? groupLabels(segmentation) : segmentation.labels;
   const numbers = new Set(motions.map(({ label, group }) => (grouped ? group : label)));
-  const files = [{ name: 'labels.png', bytes: await encodeIndexedPng(width, height, labels, davisPalette()) }];
+  const files = [{ name: 'labels.png', bytes: await encodePng(width, height, labels, { palette: davisPalette() }) }];
   for (const number of numbers) {
-    files.push({ name: `mask-${number}.png`, bytes: await encodeGreyPng(width, height, maskOf(labels, number)) });
+    files.push({ name: `mask-${number}.png`, bytes: await encodePng(width, height, maskOf(labels, number)) });
   }
   if (segmentation.confidence) {
-    files.push({ name: 'confidence.png', bytes: await encodeGreyPng(width, height, segmentation.confidence) });
+    files.push({ name: 'confidence.png', bytes: await encodePng(width, height, segmentation.confidence) });
   }
   if (wanted) {
     const rgb = overlay(first.data, labels);
-    files.push({ name: 'overlay.png', bytes: await encodeColourPng(width, height, rgb) });
+    files.push({ name: 'overlay.png', bytes: await encodePng(width, height, rgb) });
   }
   return files;
 }

@@ -1,18 +1,17 @@
 // Labelled frames in a folder of `batch` or `clip`: what the two have in common.
 
 import { basename, resolve } from 'node:path';
-import type { ClipMeta, LabelFrame } from '../../types/formats.js';
+import type { LabelFrame, Metadata } from '../../types/formats.js';
 import { VeroneseError } from '../common/errors.js';
 
 export interface SequenceFrame extends LabelFrame {
-  /** Its file's name, and what its own output files are called by. */
+  /** Its file's name. */
   image: string;
-  stem: string;
 }
 
 /** Frames in their order. They are read one by one, as often as somebody asks for them. */
 export interface Sequence extends AsyncIterable<SequenceFrame> {
-  meta: ClipMeta & Required<Pick<ClipMeta, 'clip' | 'names' | 'labels' | 'tracked'>>;
+  meta: Metadata & Required<Pick<Metadata, 'clip' | 'names' | 'labels' | 'tracked'>>;
   /** How many frames there are. */
   count: number;
 }

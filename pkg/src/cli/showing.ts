@@ -7,7 +7,7 @@ import type { ClipFrame, Pixels } from '../../types/index.js';
 import { isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaled } from '../common/scaling.js';
-import { encodeColourPng } from '../entries/codecs.js';
+import { encodePng } from '../entries/codecs.js';
 import { overlay } from './overlay.js';
 
 /** N is the number of an object. */
@@ -98,7 +98,7 @@ export class Showing {
       if (kind === 'cutout') {
         const cut = cutOut(data, labels, object);
         if (format) await this.#film(shown, width, height).take(cut);
-        else pictures[name] = await encodeColourPng(width, height, cut);
+        else pictures[name] = await encodePng(width, height, cut);
         continue;
       }
       painted ??= overlay(data as Uint8Array, labels);
@@ -210,5 +210,5 @@ async function sheetOf(tiles: readonly Pixels[]): Promise<Uint8Array> {
     const [left, top] = [(k % columns) * (width + SHEET.space), Math.floor(k / columns) * (height + SHEET.space)];
     for (let y = 0; y < height; y++) sheet.set(data.subarray(3 * y * width, 3 * (y + 1) * width), 3 * ((top + y) * w + left));
   }
-  return encodeColourPng(w, h, sheet);
+  return encodePng(w, h, sheet);
 }

@@ -1,6 +1,6 @@
 // Image files under Node: the WebAssembly build that has everything of the others and reads and writes files.
 
-import type { DecodeOptions, Picture } from '../../types/codecs.js';
+import type { DecodeOptions, Picture, PngOptions } from '../../types/codecs.js';
 import { Api } from '../calls/api.js';
 import { taken } from '../calls/taking.js';
 import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
@@ -40,37 +40,22 @@ function decoding(options: unknown): { allowDamaged: boolean; range: Uint16Array
   return { allowDamaged, range: Uint16Array.from(range), maxSize };
 }
 
-export async function encodeIndexedPng(
-  width: number,
-  height: number,
-  indices: Uint8Array,
-  palette: readonly (readonly [number, number, number])[],
-): Promise<Uint8Array> {
-  checkSize(width, height);
-  const bytes = takenBytes('the indices', indices);
-  const colours = reading(() => colourBytes(palette));
-  return core.call((glue) => glue.encodeIndexedPng(width, height, bytes, colours));
-}
-
-export async function encodeGreyPng(width: number, height: number, grey: Uint8Array): Promise<Uint8Array> {
-  checkSize(width, height);
-  const bytes = takenBytes('the pixels', grey);
-  return core.call((glue) => glue.encodeGreyPng(width, height, bytes));
-}
-
-export async function encodeColourPng(width: number, height: number, pixels: Uint8Array): Promise<Uint8Array> {
-  checkSize(width, height);
-  const bytes = takenBytes('the pixels', pixels);
-  return core.call((glue) => glue.encodeColourPng(width, height, bytes));
+export async function encodePng(width: number, height: number, data: Uint8Array, options?: PngOptions): Promise<Uint8Array> {
+  if (!isWhole(width, 1, LONGEST_PNG_SIDE) || !isWhole(height, 1, LONGEST_PNG_SIDE)) {
+    throw invalidInput(`width and height must be whole numbers of pixels from 1 to ${LONGEST_PNG_SIDE}`);
+  }
+  const bytes = takenBytes('the pixels', data);
+  const colours = reading(() => {
+    const { palette } = entriesOf(options, ['palette']);
+    return palette === undefined ? undefined : colourBytes(palette);
+  });
+  return core.call((glue) => {
+    if (colours) return glue.encodeIndexedPng(width, height, bytes, colours);
+    return bytes.length === width * height ? glue.encodeGreyPng(width, height, bytes) : glue.encodeColourPng(width, height, bytes);
+  });
 }
 
 /** The module may be loaded only later: the bytes are taken now. */
 function takenBytes(which: string, bytes: unknown): Uint8Array {
   return taken([checkedBytes(which, bytes)], false)[0] as Uint8Array;
-}
-
-/** Sides of more bits would lose them on the way into the module. */
-function checkSize(width: unknown, height: unknown): void {
-  if (isWhole(width, 1, LONGEST_PNG_SIDE) && isWhole(height, 1, LONGEST_PNG_SIDE)) return;
-  throw invalidInput(`width and height must be whole numbers of pixels from 1 to ${LONGEST_PNG_SIDE}`);
 }

@@ -93,7 +93,7 @@ function lock(name: string, path: string): void {
     } catch (thrown) {
       const isThere = (thrown as NodeJS.ErrnoException).code === 'EEXIST';
       if (!isThere) throw failed(name, thrown);
-      if (attempt > 0 || isHeld(path)) throw new VeroneseError('invalid-option', `option 'journal': another clip has '${name}' open: close it first`);
+      if (attempt > 0 || isHeld(path)) throw new VeroneseError('invalid-option', `option 'journal': another clip has '${name}' open: close it first; if there is none, delete '${path}'`);
       unlock(path);
     }
   }

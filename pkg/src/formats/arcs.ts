@@ -8,7 +8,7 @@
 // every pixel stays, because pixel centres are ½ away from the border. The tolerance, in x and in y, is added to it, but less in masks
 // that are narrow as a whole, of which it would change too much, and where the next border is near, so that lines stay apart.
 
-import type { Mask } from './input.js';
+import type { Mask } from './masks.js';
 
 /** The masks of one image. */
 export interface Masks {

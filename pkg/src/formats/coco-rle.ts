@@ -1,21 +1,14 @@
 // COCO's run lengths of one mask: column by column over the whole image.
 
-import type { CocoRle, CocoRleCounts } from '../../types/formats.js';
-import { checkLabels, type Mask, masksOf } from './input.js';
+import type { Mask } from './masks.js';
 import { columnRuns } from './runs.js';
 
-export function encodeCocoRle(mask: Uint8Array, width: number, height: number): CocoRle {
-  const { size, counts } = encodeCocoRleCounts(mask, width, height);
-  return { size, counts: compressed(counts) };
+export interface CocoRle {
+  size: [height: number, width: number];
+  counts: string;
 }
 
-export function encodeCocoRleCounts(mask: Uint8Array, width: number, height: number): CocoRleCounts {
-  checkLabels(mask, width, height);
-  const [set] = masksOf(mask.map((value) => (value === 0 ? 0 : 1)), width, height, { labels: [1] });
-  return { size: [height, width], counts: set ? columnRuns(set, width, height) : [width * height] };
-}
-
-export function cocoRle(mask: Mask, width: number, height: number): CocoRle {
+export function cocoRle(mask: Mask, { width, height }: { width: number; height: number }): CocoRle {
   return { size: [height, width], counts: compressed(columnRuns(mask, width, height)) };
 }
 
@@ -23,7 +16,7 @@ export function cocoRle(mask: Mask, width: number, height: number): CocoRle {
  * The ASCII form of maskApi.c: from the fourth count on the difference to the one two before, in groups of five bits from the
  * lowest; bit 5 says that more follow, and 48 is added to make a character. The last group's highest bit is the sign.
  */
-function compressed(counts: readonly number[]): string {
+export function compressed(counts: readonly number[]): string {
   const characters: string[] = [];
   counts.forEach((count, at) => {
     let value = at > 2 ? count - (counts[at - 2] as number) : count;

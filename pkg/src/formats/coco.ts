@@ -1,72 +1,108 @@
 // A COCO instances file. Polygons are filled ring by ring and united there: holes hang on their outline by a bridge.
 
-import type { ClipMeta, CocoDocument, CocoRle, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
-import { type Frame, gathered, type Gathering, idOf } from './frames.js';
-import { checkedMeta, checkedOptions, imageOf, masksOf } from './input.js';
+import { type Encoder, idOf, json } from './frames.js';
+import type { Settings } from './metadata.js';
 import { Outlines } from './outline.js';
 
-export function encodeCoco(
-  labels: Uint8Array,
-  width: number,
-  height: number,
-  meta: FormatMeta = {},
-  options?: FormatOptions<'rle' | 'polygon'>,
-): CocoDocument {
-  const instances = new Instances(options, 'image', checkedMeta(meta));
-  const masks = masksOf(labels, width, height, meta);
-  instances.add({ index: 0, image: imageOf(meta), width, height, masks });
-  return instances.finish();
+const INFO = { description: 'Masks of what moves together' };
+
+/** The document of many images. */
+export function cocoImages(file: string, shape: 'rle' | 'polygon') {
+  return ({ one, classes, tracked, tolerance }: Settings): Encoder => {
+    const outlines = new Outlines(tolerance, one ? 'image' : 'clip');
+    const images: object[] = [];
+    const annotations: object[] = [];
+    const categories = new Categories(classes);
+    return {
+      add(frame) {
+        const { index, image, width, height, masks } = frame;
+        images.push({ id: index + 1, file_name: image, width, height });
+        const segmentations = shape === 'rle' ? masks.map((mask) => cocoRle(mask, frame)) : outlines.bridged(frame);
+        for (const [at, mask] of masks.entries()) {
+          const attributes = { ...(tracked && { track_id: idOf(mask.label) }), ...(mask.motion && { matrix: mask.motion.matrix }) };
+          annotations.push({
+            id: annotations.length + 1,
+            image_id: index + 1,
+            category_id: categories.idOf(mask),
+            iscrowd: 0,
+            area: mask.area,
+            bbox: [mask.left, mask.top, mask.width, mask.height],
+            segmentation: segmentations[at],
+            ...(Object.keys(attributes).length > 0 && { attributes }),
+          });
+        }
+      },
+      finish: () => [json(file, { info: INFO, images, categories: categories.all, annotations })],
+    };
+  };
 }
 
-export function encodeCocoImages<Frames extends LabelFrames>(
-  frames: Frames,
-  meta?: ClipMeta,
-  options?: FormatOptions<'rle' | 'polygon'>,
-): Encoded<Frames, CocoDocument> {
-  return gathered(frames, meta, (clip) => new Instances(options, 'clip', clip));
+interface Annotation {
+  id: number;
+  video_id: number;
+  category_id: number;
+  iscrowd: 0;
+  width: number;
+  height: number;
+  segmentations: (object | null)[];
+  bboxes: (number[] | null)[];
+  areas: (number | null)[];
 }
 
-class Instances implements Gathering<CocoDocument> {
-  readonly #shape: 'rle' | 'polygon';
-  readonly #outlines: Outlines;
-  readonly #tracked: boolean;
-  readonly #images: CocoDocument['images'] = [];
-  readonly #annotations: CocoDocument['annotations'] = [];
-  /** Names by number. */
-  readonly #categories: Map<number, string>;
-
-  constructor(options: unknown, kind: 'image' | 'clip', { classes = [], tracked = false }: Pick<ClipMeta, 'classes' | 'tracked'>) {
-    const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
-    this.#shape = shape;
-    this.#outlines = new Outlines(tolerance, kind);
-    this.#tracked = tracked;
-    this.#categories = new Map(classes.entries());
-  }
-
-  add({ index, image, width, height, masks }: Frame): void {
-    this.#images.push({ id: index + 1, file_name: image, width, height });
-    const rle = this.#shape === 'rle';
-    const segmentations = rle ? masks.map((mask) => cocoRle(mask, width, height)) : this.#outlines.bridged({ masks, width, height });
-    for (const [at, mask] of masks.entries()) {
-      this.#categories.set(mask.category, mask.name);
-      const attributes = { ...(this.#tracked && { track_id: idOf(mask.label) }), ...(mask.motion && { matrix: mask.motion.matrix }) };
-      this.#annotations.push({
-        id: this.#annotations.length + 1,
-        image_id: index + 1,
-        category_id: mask.category + 1,
-        iscrowd: 0,
-        area: mask.area,
-        bbox: [mask.left, mask.top, mask.width, mask.height],
-        segmentation: segmentations[at] as CocoRle | number[][],
-        ...(Object.keys(attributes).length > 0 && { attributes }),
+/** YouTube-VIS: COCO for a video. One annotation per label, with a mask for each frame, or null where it is not to be seen. */
+export function cocoVideo({ classes, tracked }: Settings): Encoder {
+  const names: string[] = [];
+  const categories = new Categories(classes);
+  const annotations = new Map<number, Annotation>();
+  return {
+    add(frame) {
+      const { index, image, width, height, masks } = frame;
+      names.push(image);
+      for (const mask of masks) {
+        const seen = { segmentations: [], bboxes: [], areas: [] };
+        const annotation = annotations.get(mask.label) ?? { id: 0, video_id: 1, category_id: categories.idOf(mask), iscrowd: 0, width, height, ...seen };
+        annotations.set(mask.label, annotation);
+        fillUp(annotation, index);
+        annotation.segmentations.push(cocoRle(mask, frame));
+        annotation.bboxes.push([mask.left, mask.top, mask.width, mask.height]);
+        annotation.areas.push(mask.area);
+      }
+    },
+    finish({ width, height, length }) {
+      const videos = [{ id: 1, width, height, length, file_names: names }];
+      const all = byNumber(annotations).map(([label, annotation], at) => {
+        fillUp(annotation, length);
+        return { ...annotation, id: tracked ? idOf(label) : at + 1 };
       });
-    }
+      return [json('youtube-vis.json', { info: INFO, videos, categories: categories.all, annotations: all })];
+    },
+  };
+}
+
+/** Null for the frames up to `index` in which the label was not seen. */
+function fillUp({ segmentations, bboxes, areas }: Annotation, index: number): void {
+  for (const list of [segmentations, bboxes, areas]) while (list.length < index) list.push(null);
+}
+
+/** COCO counts from 1: the first class is category 1, and without a list label 0. */
+class Categories {
+  readonly #names: Map<number, string>;
+
+  constructor(classes: readonly string[]) {
+    this.#names = new Map(classes.entries());
   }
 
-  finish(): CocoDocument {
-    // COCO counts from 1: the first class is category 1, and without a list label 0.
-    const categories = [...this.#categories].sort(([a], [b]) => a - b).map(([category, name]) => ({ id: category + 1, name }));
-    return { info: { description: 'Masks of what moves together' }, images: this.#images, categories, annotations: this.#annotations };
+  idOf({ category, name }: { category: number; name: string }): number {
+    this.#names.set(category, name);
+    return category + 1;
   }
+
+  get all(): { id: number; name: string }[] {
+    return byNumber(this.#names).map(([category, name]) => ({ id: category + 1, name }));
+  }
+}
+
+function byNumber<T>(map: ReadonlyMap<number, T>): [number, T][] {
+  return [...map].sort(([a], [b]) => a - b);
 }

@@ -1,24 +1,35 @@
 // The flow field that labels and motions describe: displacements u to the right and v down of each pixel to the next frame, as 32-bit floats.
 // `flo` is that of the Middlebury benchmark (Baker et al., IJCV 2011), `npy` NumPy's with the shape (height, width, 2).
 
-import type { FormatMeta } from '../../types/formats.js';
-import { checkedMeta, checkedOptions, checkLabels } from './input.js';
+import { type Encoder, type Frame, Stems } from './frames.js';
+import type { Settings } from './metadata.js';
 
 /** Of a pixel without a motion: any number above 1e9, as Middlebury's own code writes it. */
 const UNKNOWN = 1e10;
 /** NumPy aligns the data to so many bytes. */
 const ALIGNMENT = 64;
 
-export function encodeFlow(labels: Uint8Array, width: number, height: number, meta: FormatMeta = {}, options?: { shape?: 'flo' | 'npy' }): Uint8Array {
-  const { shape } = checkedOptions(options, ['flo', 'npy']);
-  checkLabels(labels, width, height);
-  const { motions = [] } = checkedMeta(meta);
+/** Of a clip, a file for each frame that moves on to a next one. */
+export function flow(layout: 'flo' | 'npy') {
+  return ({ one }: Settings): Encoder => {
+    const stems = new Stems();
+    return {
+      add: (frame) => {
+        const name = one ? `flow.${layout}` : `${layout}/${stems.of(frame)}.${layout}`;
+        return one || frame.motions.length > 0 ? [{ name, content: field(frame, layout) }] : [];
+      },
+      finish: () => [],
+    };
+  };
+}
+
+function field({ labels, width, height, motions }: Frame, layout: 'flo' | 'npy'): Uint8Array<ArrayBuffer> {
   const matrices = new Map(motions.map(({ label, matrix }) => [label, matrix]));
-  const header = shape === 'flo' ? floHeader(width, height) : npyHeader(width, height);
+  const header = layout === 'flo' ? floHeader(width, height) : npyHeader(width, height);
   const bytes = new Uint8Array(header.length + 8 * labels.length);
   bytes.set(header);
   const view = new DataView(bytes.buffer, header.length);
-  const unknown = shape === 'flo' ? UNKNOWN : Number.NaN;
+  const unknown = layout === 'flo' ? UNKNOWN : Number.NaN;
   labels.forEach((label, pixel) => {
     const matrix = matrices.get(label);
     const [x, y] = [pixel % width, Math.floor(pixel / width)];

@@ -1,30 +1,22 @@
-// The frames of a clip, one after another: each is checked and encoded before the next is asked for, so that one is held at a time.
+// The frames to encode, one after another: each is checked, and encoded before the next is asked for, so that one is held at a time.
 
-import type { ClipMeta, Encoded, FormatMeta, LabelFrame, LabelFrames } from '../../types/formats.js';
-import { invalidInput, isFrameRate, isObject, isRising, reading, UNLABELLED, unreadable } from '../common/checks.js';
+import type { EncodedFile, FormatMotion, LabelFrame } from '../../types/formats.js';
+import { invalidInput, isArrayOf, isListOf, isObject, isWhole, keyOf, LONGEST_SIDE, reading, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
-import { checkedMeta, checkLabels, imageOf, isFinite, isText, type Mask, masksOf } from './input.js';
+import { type Mask, masksOf } from './masks.js';
+import { isLabel, isText, type Settings } from './metadata.js';
+import { checkPath } from './file-names.js';
 
-/** Metadata of a clip, checked. */
-export interface Clip extends FormatMeta {
-  name: string;
-  tracked: boolean;
-  /** Frames per second. */
-  rate: number;
-  /** How many frames have a time, if any. */
-  times: number | undefined;
-  /** The time of a frame in seconds. */
-  time(index: number): number;
-  /** Seconds to the end of the last of so many frames. */
-  duration(length: number): number;
-}
-
+/** A frame, checked. */
 export interface Frame {
+  /** Its place among the frames, from 0. */
   index: number;
   /** Name of its file. */
   image: string;
+  labels: Uint8Array;
   width: number;
   height: number;
+  motions: FormatMotion[];
   masks: Mask[];
 }
 
@@ -35,111 +27,69 @@ export interface Extent {
   length: number;
 }
 
-/** The content of a document, frame by frame. */
-export interface Gathering<Document> {
-  add(frame: Frame): void;
-  finish(extent: Extent): Document;
+/** What writes the files of a format. */
+export interface Encoder {
+  /** The files of this frame alone. */
+  add(frame: Frame): EncodedFile[] | void;
+  /** Those that are about all frames. */
+  finish(extent: Extent): EncodedFile[];
 }
 
-type Start<Document> = () => { add: (frame: LabelFrame) => void; finish: () => Document };
-
-/** Frames per second where none are given and a format has to have them. */
-export const USUAL_RATE = 25;
-
-/**
- * The document of all frames. Throws, or rejects with, `invalid-input` where there is none or one is no frame, and
- * `frame-size-mismatch`.
- */
-export function gathered<Frames extends LabelFrames, Document>(
-  frames: Frames,
-  meta: unknown,
-  begin: (clip: Clip) => Gathering<Document>,
-): Encoded<Frames, Document> {
-  const start: Start<Document> = () => {
-    const clip = checkedClip(meta);
-    const gathering = begin(clip);
-    let extent: Extent | undefined;
+/** The frame after those of the `extent`. Throws `invalid-input`, or `frame-size-mismatch`. */
+export function frameOf(given: unknown, extent: Extent | undefined, settings: Settings): Frame {
+  return reading(() => {
+    const index = extent?.length ?? 0;
+    if (!isObject(given)) throw noFrames();
+    const { labels, width, height, image, index: own = index } = given as unknown as LabelFrame;
+    if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) {
+      throw invalidInput(`width and height must be whole numbers from 1 to ${LONGEST_SIDE}`);
+    }
+    if (!isArrayOf(labels, 'Uint8Array') || labels.length !== width * height) {
+      throw invalidInput(`the labels must be a Uint8Array of ${width} × ${height} entries`);
+    }
+    if (image !== undefined && !isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
+    if (!isWhole(own, 0, Number.MAX_SAFE_INTEGER)) throw invalidInput("a frame's index must be a whole number from 0");
+    if (settings.times !== undefined && index >= settings.times) throw invalidInput('timestamps must have a number for each frame');
+    if (!Number.isFinite(settings.duration(index + 1))) throw invalidInput('the times of the frames are too large');
+    if (extent && (width !== extent.width || height !== extent.height)) {
+      throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
+    }
+    const motions = motionsOf(given as unknown as LabelFrame);
+    let masks: Mask[] | undefined;
     return {
-      add(given) {
-        const frame = checkedFrame(given, extent, clip);
-        gathering.add(frame);
-        extent = { width: frame.width, height: frame.height, length: frame.index + 1 };
-      },
-      finish() {
-        if (!extent) throw invalidInput('there must be one frame at least');
-        return gathering.finish(extent);
+      index,
+      image: image ?? (settings.one ? 'first.png' : `${String(own).padStart(5, '0')}.png`),
+      labels,
+      width,
+      height,
+      motions,
+      get masks() {
+        return (masks ??= masksOf(this, settings));
       },
     };
-  };
-  return (isAsync(frames) ? fromAsync(frames, start) : fromSync(frames, start)) as Encoded<Frames, Document>;
-}
-
-function isAsync(frames: LabelFrames): frames is AsyncIterable<LabelFrame> {
-  return reading(() => isObject(frames) && Symbol.asyncIterator in frames);
-}
-
-function fromSync<Document>(frames: Iterable<LabelFrame>, start: Start<Document>): Document {
-  const { add, finish } = start();
-  reading(() => {
-    if (typeof Object(frames)[Symbol.iterator] !== 'function') throw noFrames();
-    for (const frame of frames) add(frame);
-  });
-  return finish();
-}
-
-async function fromAsync<Document>(frames: AsyncIterable<LabelFrame>, start: Start<Document>): Promise<Document> {
-  const { add, finish } = start();
-  try {
-    for await (const frame of frames) add(frame);
-  } catch (thrown) {
-    throw unreadable(thrown);
-  }
-  return finish();
-}
-
-/** The frame after those of the `extent`. */
-function checkedFrame(given: unknown, extent: Extent | undefined, clip: Clip): Frame {
-  const index = extent?.length ?? 0;
-  if (!isObject(given)) throw noFrames();
-  const { labels, width, height, image, motions } = given as unknown as LabelFrame;
-  checkLabels(labels, width, height);
-  if (!isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
-  if (clip.times !== undefined && index >= clip.times) throw invalidInput('timestamps must have a number for each frame');
-  if (!isFinite(clip.duration(index + 1))) throw invalidInput('the times of the frames are too large');
-  if (extent && (width !== extent.width || height !== extent.height)) {
-    throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
-  }
-  const { names, classes, labels: wanted, motions: always } = clip;
-  const meta = { names, classes, labels: wanted, motions: motions === undefined ? always : motions };
-  const masks = masksOf(labels, width, height, meta as FormatMeta);
-  return { index, image: image ?? (index === 0 ? imageOf(clip) : `frame-${index}.png`), width, height, masks };
-}
-
-function noFrames(): VeroneseError {
-  return invalidInput('the frames must be a list of { labels, width, height }, or what gives one after another');
-}
-
-function checkedClip(meta: unknown): Clip {
-  const known = checkedMeta(meta, ['clip', 'frameRate', 'timestamps', 'tracked']);
-  return reading(() => {
-    const given = (meta ?? {}) as ClipMeta;
-    const { clip = 'clip', frameRate, timestamps, tracked = false } = given;
-    if (typeof clip !== 'string') throw invalidInput('clip must be text, a name');
-    if (typeof tracked !== 'boolean') throw invalidInput('tracked must be true or false');
-    if (frameRate !== undefined && !(isFinite(frameRate) && frameRate > 0)) throw invalidInput('frameRate must be a number above 0');
-    if (timestamps !== undefined && !isRising(timestamps)) throw invalidInput('timestamps must be numbers, none below the one before it');
-    const rate = rateOf(given) ?? USUAL_RATE;
-    const time = (index: number) => timestamps?.[index] ?? index / rate;
-    return { ...known, name: clip, tracked, rate, times: timestamps?.length || undefined, time, duration: (length) => (timestamps ? time(length - 1) - time(0) + 1 / rate : length / rate) };
   });
 }
 
-/** The number of frames per second, the mean where only times are given. */
-export function rateOf({ frameRate, timestamps = [] }: Pick<ClipMeta, 'frameRate' | 'timestamps'>): number | undefined {
-  if (frameRate !== undefined) return frameRate;
-  const [first, last] = [timestamps[0], timestamps.at(-1)];
-  const rate = (timestamps.length - 1) / ((last ?? 0) - (first ?? 0));
-  return isFrameRate(rate) ? rate : undefined;
+export function noFrames(): VeroneseError {
+  return invalidInput('the frames must be { labels, width, height }, or what gives some one after another');
+}
+
+/** Of a segmented pair or a frame of a clip. */
+function motionsOf({ motions, objects = [], background }: LabelFrame): FormatMotion[] {
+  if (motions === undefined) {
+    if (!isListOf(objects, isObject)) throw invalidInput("a frame's objects must each have an id and a matrix");
+    const ofObjects = objects.flatMap(({ id, matrix }) => (matrix ? [{ label: id, matrix }] : []));
+    return motionsOf({ motions: [...(background ? [{ label: 0, matrix: background }] : []), ...ofObjects] } as unknown as LabelFrame);
+  }
+  if (!isListOf(motions, isMotion)) throw invalidInput('motions must each have a label and a matrix of six numbers');
+  if (new Set(motions.map(({ label }) => label)).size < motions.length) throw invalidInput('motions has a label twice');
+  return motions.map(({ label, matrix }) => ({ label, matrix: [...matrix] }));
+}
+
+function isMotion(value: unknown): value is FormatMotion {
+  if (!isObject(value)) return false;
+  const { label, matrix } = value;
+  return isLabel(label) && isListOf(matrix, (entry): entry is number => Number.isFinite(entry)) && matrix.length === 6;
 }
 
 /** A label as a number where 0 means none: no mask has 255. */
@@ -159,4 +109,26 @@ export class Numbering {
     const found = this.entries.indexOf(entry);
     return found < 0 ? this.entries.push(entry) : found + 1;
   }
+}
+
+/** Names of the frames' own files: those of their images without extension. */
+export class Stems {
+  readonly #taken = new Set<string>();
+
+  /** Throws `invalid-input` where the file would be elsewhere, or another frame's. */
+  of({ image }: Frame): string {
+    const stem = image.replace(/\.[^./]*$/, '');
+    checkPath(stem);
+    if (this.#taken.has(keyOf(stem))) throw invalidInput(`two frames have the name '${stem}'`);
+    this.#taken.add(keyOf(stem));
+    return stem;
+  }
+}
+
+export function json(name: string, document: object): EncodedFile {
+  return { name, content: `${JSON.stringify(document)}\n` };
+}
+
+export function lines(texts: readonly string[]): string {
+  return texts.map((text) => `${text}\n`).join('');
 }

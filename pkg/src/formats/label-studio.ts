@@ -1,36 +1,37 @@
 // A Label Studio task with predictions. A brush stroke is the mask as RGBA, every pixel four times its 0 or 255, packed as
 // @thi.ng/rle-pack does. That library comes with three others and walks over each of the four bytes: ours goes from run to run.
 
-import type { FormatMeta, FormatOptions, LabelStudioResult, LabelStudioTask } from '../../types/formats.js';
-import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
+import type { Encoder } from './frames.js';
+import type { Mask } from './masks.js';
+import type { Settings } from './metadata.js';
 import { Outlines, points, type Ring } from './outline.js';
 
-/** Names of the labelling configuration, and who made the prediction. */
-const NAMES = { fromName: 'tag', toName: 'image', modelVersion: 'veronese' };
-
-export function encodeLabelStudio(
-  labels: Uint8Array,
-  width: number,
-  height: number,
-  meta: FormatMeta = {},
-  options?: FormatOptions<'brush' | 'polygon'> & Partial<typeof NAMES>,
-): LabelStudioTask {
-  const { shape, tolerance, fromName, toName, modelVersion } = checkedOptions(options, ['brush', 'polygon'], NAMES);
-  const shared = { from_name: fromName, to_name: toName, original_width: width, original_height: height, image_rotation: 0 as const };
-  const masks = masksOf(labels, width, height, meta);
-  const polygons = shape === 'polygon' ? new Outlines(tolerance).bridged({ masks, width, height }) : [];
-  const result = masks.flatMap((mask, at): LabelStudioResult[] => {
-    const id = `motion-${mask.label}`;
-    if (shape === 'brush') {
-      const value = { format: 'rle' as const, rle: packed(mask, width, height), brushlabels: [mask.name] };
-      return [{ id, type: 'brushlabels', ...shared, value }];
-    }
-    return (polygons[at] as Ring[]).map((ring, part) => {
-      const value = { points: percentages(ring, width, height), closed: true as const, polygonlabels: [mask.name] };
-      return { id: `${id}-${part}`, type: 'polygonlabels' as const, ...shared, value };
-    });
-  });
-  return { data: { image: imageOf(meta) }, predictions: [{ model_version: modelVersion, result }] };
+/** A task for each frame. */
+export function labelStudio(file: string, shape: 'brush' | 'polygon') {
+  return ({ tolerance, fromName = 'tag', toName = 'image', modelVersion }: Settings): Encoder => {
+    const tasks: string[] = [];
+    return {
+      add(frame) {
+        const { image, width, height, masks } = frame;
+        const shared = { from_name: fromName, to_name: toName, original_width: width, original_height: height, image_rotation: 0 };
+        const polygons = shape === 'polygon' ? new Outlines(tolerance).bridged(frame) : [];
+        const result = masks.flatMap((mask, at): object[] => {
+          const id = `motion-${mask.label}`;
+          if (shape === 'brush') {
+            const value = { format: 'rle', rle: packed(mask, width, height), brushlabels: [mask.name] };
+            return [{ id, type: 'brushlabels', ...shared, value }];
+          }
+          return (polygons[at] as Ring[]).map((ring, part) => {
+            const value = { points: percentages(ring, width, height), closed: true, polygonlabels: [mask.name] };
+            return { id: `${id}-${part}`, type: 'polygonlabels', ...shared, value };
+          });
+        });
+        // As text: the numbers of run lengths take several times as much memory.
+        tasks.push(JSON.stringify({ data: { image }, predictions: [{ model_version: modelVersion, result }] }));
+      },
+      finish: () => [{ name: file, content: `[${tasks.join(',\n')}]\n` }],
+    };
+  };
 }
 
 function percentages(ring: Ring, width: number, height: number): [number, number][] {

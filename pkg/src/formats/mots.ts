@@ -1,22 +1,26 @@
-// MOTS in text: a line for each mask, "frame id class height width run-lengths"; frames count from 1.
+// MOTS: ids are 1000 × class + instance. As text, a line for each mask, and as CVAT's archive of 16-bit grey images.
 
-import type { ClipMeta, Encoded, FormatMeta, LabelFrames, MotFiles } from '../../types/formats.js';
+import { type Zippable, zipSync } from 'fflate';
 import { VeroneseError } from '../common/errors.js';
 import { cocoRle } from './coco-rle.js';
-import { gathered, type Gathering, idOf, Numbering } from './frames.js';
-import { nameOf } from './input.js';
-import { oneLine, seqinfo } from './mot-challenge.js';
+import { type Encoder, type Extent, idOf, lines, Numbering, Stems } from './frames.js';
+import { nameOf, type Settings } from './metadata.js';
+import { png } from './pictures.js';
 
 const CLASS = 1000;
 /** The largest value is 1000 × 65 + 255: more classes do not fit the 16 bits of the PNG form. */
 const MOST = 64;
 
+const LABELS = 'default/instances/labels.txt';
+/** Archives hold times: the earliest that a zip can have, so that the same masks give the same bytes. In local time, as fflate reads it. */
+const EPOCH = { mtime: new Date(1980, 0, 1) };
+
 /** Numbers of objects: 1000 × class + instance. */
-export class MotsIds {
+class MotsIds {
   readonly #classes: Numbering;
 
   /** Of a list that leaves no room for the classes of all objects, only those that objects have are numbered. */
-  constructor({ classes = [], names = {}, labels = Object.keys(names).map(Number) }: FormatMeta) {
+  constructor({ classes, names = {}, labels = Object.keys(names).map(Number) }: Settings) {
     const used = new Set(labels.map((label) => oneLine(nameOf(label, { names }))));
     const listed = classes.map(oneLine);
     const fits = new Set([...listed, ...used]).size <= MOST;
@@ -29,26 +33,78 @@ export class MotsIds {
     return number * CLASS + idOf(label);
   }
 
-  /** Of the classes, each on one line. */
-  get names(): string[] {
-    return this.#classes.entries;
+  /** The names of the classes, a line for each. */
+  get text(): string {
+    return lines(this.#classes.entries);
   }
 }
 
-export function encodeMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles> {
-  return gathered(frames, meta, (clip): Gathering<MotFiles> => {
-    const ids = new MotsIds(clip);
-    const lines: string[] = [];
-    const images: string[] = [];
-    return {
-      add({ index, image, width, height, masks }) {
-        images.push(image);
-        for (const mask of masks) {
-          const id = ids.of(mask.name, mask.label);
-          lines.push(`${index + 1} ${id} ${Math.floor(id / CLASS)} ${height} ${width} ${cocoRle(mask, width, height).counts}\n`);
-        }
-      },
-      finish: (extent) => ({ gt: lines.join(''), seqinfo: seqinfo(clip, extent, images), names: ids.names }),
-    };
-  });
+/** A line is "frame id class height width run-lengths"; frames count from 1. */
+export function mots(settings: Settings): Encoder {
+  const ids = new MotsIds(settings);
+  const written: string[] = [];
+  const images: string[] = [];
+  return {
+    add(frame) {
+      images.push(frame.image);
+      for (const mask of frame.masks) {
+        const id = ids.of(mask.name, mask.label);
+        written.push(`${frame.index + 1} ${id} ${Math.floor(id / CLASS)} ${frame.height} ${frame.width} ${cocoRle(mask, frame).counts}`);
+      }
+    },
+    finish: (extent) => [
+      { name: 'mots/gt/gt.txt', content: lines(written) },
+      { name: 'mots/gt/labels.txt', content: ids.text },
+      { name: 'mots/seqinfo.ini', content: seqinfo(settings, extent, images) },
+    ],
+  };
+}
+
+/** An archive to import as "MOTS PNG"; class 1 is the first of labels.txt. */
+export function cvatMots(settings: Settings): Encoder {
+  const ids = new MotsIds(settings);
+  // Where labels are no objects, each is a class of its own and its number is that of its track as well.
+  const tracks = new Numbering();
+  const stems = new Stems();
+  const files: Zippable = { [LABELS]: new Uint8Array() };
+  return {
+    add(frame) {
+      const { width, height, masks } = frame;
+      const samples = new Uint8Array(width * height * 2);
+      for (const mask of masks) {
+        const value = ids.of(mask.name, settings.tracked ? mask.label : tracks.of(String(mask.label)));
+        mask.pixels.forEach((set, at) => {
+          if (!set) return;
+          const pixel = (mask.top + Math.floor(at / mask.width)) * width + mask.left + (at % mask.width);
+          samples[2 * pixel] = value >> 8;
+          samples[2 * pixel + 1] = value & 255;
+        });
+      }
+      files[`default/instances/${stems.of(frame)}.png`] = [png(width, height, samples, { depth: 16 }), EPOCH];
+    },
+    finish() {
+      files[LABELS] = [new TextEncoder().encode(ids.text), EPOCH];
+      return [{ name: 'cvat-mots.zip', content: zipSync(files) }];
+    },
+  };
+}
+
+/** The properties of a sequence that readers need. They want the frame rate as a whole number. */
+function seqinfo({ clip, rate }: Settings, { width, height, length }: Extent, images: readonly string[]): string {
+  const [extension = '.jpg'] = /\.[^./\\]+$/.exec(images[0] ?? '') ?? [];
+  const entries = {
+    name: oneLine(clip),
+    imDir: 'img1',
+    frameRate: Math.max(1, Math.round(rate)),
+    seqLength: length,
+    imWidth: width,
+    imHeight: height,
+    imExt: oneLine(extension),
+  };
+  return lines(['[Sequence]', ...Object.entries(entries).map(([key, value]) => `${key}=${value}`)]);
+}
+
+/** A name that does not end the line it stands in. */
+function oneLine(name: string): string {
+  return name.replace(/[\s\p{Cc}]+/gu, ' ');
 }

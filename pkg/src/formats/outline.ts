@@ -7,7 +7,7 @@
 
 import { VeroneseError } from '../common/errors.js';
 import { Borders, type Masks, thinned } from './arcs.js';
-import type { Mask } from './input.js';
+import type { Mask } from './masks.js';
 import { joined, type Ring } from './joining.js';
 
 export type { Ring };
@@ -42,19 +42,6 @@ export class Outlines {
     this.#tolerance = tolerance;
     this.#most = MOST_VERTICES[kind];
     this.#left = this.#most;
-  }
-
-  /** Of each mask every border as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
-  rings(image: Masks): Ring[][] {
-    const borders = this.#bordersOf(image);
-    return image.masks.map((mask) => {
-      const cracks = traced(mask);
-      return cracks.from.slice(0, -1).map((begin, ring) => {
-        const way = new Int32Array((cracks.from[ring + 1] as number) - begin);
-        for (let at = 0; at < way.length; at++) way[at] = begin + at;
-        return this.#ring(mask, cracks, way, borders);
-      });
-    });
   }
 
   /**

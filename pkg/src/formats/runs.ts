@@ -1,6 +1,6 @@
 // Run lengths of a mask, alternating 0s and 1s, the first of 0s: it is 0 where the first pixel is set.
 
-import type { Mask } from './input.js';
+import type { Mask } from './masks.js';
 
 /** Row by row over the mask's own box. */
 export function rowRuns(pixels: Uint8Array): number[] {

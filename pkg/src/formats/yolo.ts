@@ -1,8 +1,8 @@
 // YOLO segmentation: one line per label, its class and one ring in shares of the image's sides.
 
-import type { FormatMeta, YoloFiles } from '../../types/formats.js';
-import { invalidInput, invalidOption, isListOf, reading } from '../common/checks.js';
-import { checkedMeta, checkedOptions, classNames, type Mask, masksOf } from './input.js';
+import { type Encoder, lines, Numbering, Stems } from './frames.js';
+import type { Mask } from './masks.js';
+import { nameOf, type Settings } from './metadata.js';
 import { Outlines, type Ring } from './outline.js';
 
 /** Enough for an error far below a thousandth of a pixel. */
@@ -10,39 +10,38 @@ const DECIMALS = 8;
 /** How far inside of its pixel a corner is moved, pixels: more than numbers of 32 bits are rounded by, and less than anybody sees. */
 const INSIDE = 0.002;
 
-export function encodeYolo(
-  labels: Uint8Array,
-  width: number,
-  height: number,
-  meta: FormatMeta = {},
-  options?: { tolerance?: number; classes?: readonly string[] },
-): YoloFiles {
-  const { tolerance, classes } = checkedOptions(options, [], {}, ['classes']);
-  const masks = masksOf(labels, width, height, meta);
-  const names = reading(() => listed(classes)) ?? classNames(masks, checkedMeta(meta));
-  const [shareX, shareY] = [shares(width), shares(height)];
-  const lines = new Outlines(tolerance).singles({ masks, width, height }).map((ring, at) => {
-    const mask = masks[at] as Mask;
-    const share: (string | undefined)[] = [];
-    for (let k = 0; k < ring.length; k += 2) {
-      const [left, up] = sideOf(mask, ring, k);
-      share.push(shareX[left][2 * (ring[k] as number)], shareY[up][2 * (ring[k + 1] as number)]);
-    }
-    return `${numberOf(mask.name, names)} ${share.join(' ')}\n`;
-  });
-  return { text: lines.join(''), names };
+/** A text for each frame, and the classes, which have the same numbers in all of them. */
+export function yolo(settings: Settings): Encoder {
+  const { one, tolerance, labels = [] } = settings;
+  const classes = new Numbering([...settings.classes, ...labels.map((label) => nameOf(label, settings))]);
+  const stems = new Stems();
+  return {
+    add(frame) {
+      const sides: Sides = [shares(frame.width), shares(frame.height)];
+      const rings = new Outlines(tolerance).singles(frame);
+      const content = frame.masks.map((mask, at) => `${classes.of(mask.name) - 1} ${outline(mask, rings[at] as Ring, sides)}\n`).join('');
+      return [{ name: one ? 'yolo.txt' : `yolo/labels/${stems.of(frame)}.txt`, content }];
+    },
+    finish() {
+      const names = lines(classes.entries);
+      if (one) return [{ name: 'yolo-names.txt', content: names }];
+      // Labels are looked for in the folder beside that of the images, where the frames belong. Quoted as JSON, names are YAML too.
+      const numbered = classes.entries.map((name, number) => `  ${number}: ${JSON.stringify(name)}`);
+      return [{ name: 'yolo/names.txt', content: names }, { name: 'yolo/data.yaml', content: lines(['train: images', 'val: images', 'names:', ...numbered]) }];
+    },
+  };
 }
 
-function listed(classes: unknown): string[] | undefined {
-  const isName = (name: unknown) => typeof name === 'string';
-  if (classes === undefined || isListOf(classes, isName)) return classes && [...classes];
-  throw invalidOption('classes', 'a list of names', classes);
-}
+/** By which side of a half pixel, its share of the width and of the height. */
+type Sides = readonly [x: [string[], string[]], y: [string[], string[]]];
 
-function numberOf(name: string, classes: readonly string[]): number {
-  const number = classes.indexOf(name);
-  if (number < 0) throw invalidInput(`'${name}' is not among the classes`);
-  return number;
+function outline(mask: Mask, ring: Ring, [shareX, shareY]: Sides): string {
+  const share: (string | undefined)[] = [];
+  for (let k = 0; k < ring.length; k += 2) {
+    const [left, up] = sideOf(mask, ring, k);
+    share.push(shareX[left][2 * (ring[k] as number)], shareY[up][2 * (ring[k + 1] as number)]);
+  }
+  return share.join(' ');
 }
 
 /** Just behind half pixels up to a side, and just before them, as shares of it: as text, once each and not for every vertex. */

@@ -11,11 +11,10 @@ import { veronese } from '../support/program.mjs';
 import { decoded, fiftyone, python, skip as withoutDecoders, withoutFiftyone } from '../support/python.mjs';
 
 const FORMATS =
-  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,cvat-points,cvat-mots,mots,mot,label-studio,label-studio-polygon,label-studio-video,labelme,yolo,davis,supervisely,masks';
+  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,cvat-mots,mots,label-studio,label-studio-polygon,label-studio-video,yolo,davis,masks';
 const WAYS = {
   'coco-polygon': ['coco-polygon', 'coco, read by datumaro', 'coco-polygon, read by datumaro'],
   'cvat-video': ['cvat-video, polygons', 'cvat-video, boxes'],
-  mot: ['mot', 'mot, read by datumaro'],
   yolo: ['yolo', 'yolo, read by ultralytics'],
 };
 /** Names of comparisons: some formats are written in two ways or read by two tools. */

@@ -6,7 +6,7 @@ import { readFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { describe, test } from 'node:test';
 import { segmentClip, segmentPair } from 'veronese';
-import { encodeLabelStudio } from 'veronese/formats';
+import { encode } from 'veronese/formats';
 import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
@@ -53,7 +53,8 @@ describe('the Label Studio backend', { timeout: 120_000 }, () => {
     assert.equal((await (await fetch(`${address}/health`)).json()).status, 'UP');
     const { result, score } = await predicted(address, requests.pairs);
     const { labels } = await segmentPair(...frames);
-    const [expected] = encodeLabelStudio(labels, 64, 48, { labels: [1] }).predictions[0].result;
+    const [{ content }] = await encode('label-studio', { labels, width: 64, height: 48 }, { labels: [1] });
+    const [expected] = JSON.parse(content)[0].predictions[0].result;
     const [{ from_name: from, to_name: to, value }] = result;
     assert.deepEqual([result.length, from, to, value.brushlabels, value.rle], [1, 'moving', 'first', ['moving-1'], expected.value.rle]);
     assert.ok(score > 0.5 && score <= 1, String(score));

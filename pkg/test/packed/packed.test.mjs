@@ -8,6 +8,7 @@ import { describe, test } from 'node:test';
 import { build, createServer } from 'vite';
 import { outcomeOf, serve } from './browser.mjs';
 import { checkOutcome, expected, isWhole } from './outcome.mjs';
+import { random } from '../../../scripts/lib/random.mjs';
 import { app, browser } from './installed.mjs';
 import { run } from './packed.mjs';
 
@@ -51,6 +52,31 @@ test('no bundler: pictures of the browser are segmented as their pixels', async 
   const [pretended, number] = outcome.errors.slice(-2);
   assert.match(pretended, /^invalid-input: the second frame is no picture: /);
   assert.match(number, /^invalid-input: the second frame must be .* in browsers an ImageBitmap, VideoFrame, Blob, image or canvas, /);
+});
+
+test('no bundler: a clip whose page is closed at any moment has all that was settled when it is opened again', async (t) => {
+  const { address } = await serve(t, app);
+  const context = await browser.newContext();
+  t.after(() => context.close());
+  const straight = await outcomeOf(t, browser, `${address}journal.html`);
+  assert.deepEqual([straight.outcome.error, straight.complaints], [undefined, []]);
+  const next = random(3);
+  let settled = 0;
+  for (let run = 0; run < 12 && settled < 9; run++) {
+    const page = await context.newPage();
+    await page.goto(`${address}journal.html?journal=drive`);
+    await page.waitForFunction(() => globalThis.begun !== undefined);
+    const begun = await page.evaluate(() => globalThis.begun);
+    assert.ok(begun >= settled && begun <= settled + 1, `${settled} steps were settled, ${begun} are there`);
+    const wanted = Math.min(9, begun + Math.floor(3 * next()));
+    await page.waitForFunction((wanted) => globalThis.settled >= wanted, wanted);
+    settled = await page.evaluate(() => globalThis.settled);
+    await page.close();
+  }
+  assert.equal(settled, 9);
+  const { outcome } = await outcomeOf(t, context, `${address}journal.html?journal=drive`);
+  assert.match(outcome.second, /another clip has 'drive' open/);
+  assert.deepEqual([outcome.error, outcome.damaged, outcome.labels === straight.outcome.labels], [undefined, false, true]);
 });
 
 describe('Vite 8', () => {

@@ -2,7 +2,7 @@
 
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { encodeDavis } from 'veronese/formats';
+import { davisPng } from '../../build/formats/pictures.js';
 
 const [WIDTH, HEIGHT, LENGTH] = [37, 23, 7];
 
@@ -62,7 +62,7 @@ export function tracksOf(frames, { width = WIDTH, height = HEIGHT, names = {}, .
 export function clipFolder(folder, { frames = drawnClip(), ...options } = {}) {
   const tracks = tracksOf(frames, options);
   mkdirSync(join(folder, 'labels'), { recursive: true });
-  frames.forEach((labels, frame) => writeFileSync(join(folder, 'labels', `${tracks.frames[frame]}.png`), encodeDavis(labels, tracks.width, tracks.height)));
+  frames.forEach((labels, frame) => writeFileSync(join(folder, 'labels', `${tracks.frames[frame]}.png`), davisPng(labels, tracks.width, tracks.height)));
   writeFileSync(join(folder, 'tracks.json'), `${JSON.stringify(tracks)}\n`);
   return { frames, tracks };
 }

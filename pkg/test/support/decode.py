@@ -27,10 +27,9 @@ def bare(*names):
         sys.modules[name] = module
 
 
-bare("cvat_sdk", "label_studio_sdk")
+bare("label_studio_sdk")
 bare("label_studio_sdk.converter")
 
-from cvat_sdk.masks import decode_mask  # noqa: E402
 from label_studio_sdk.converter import brush  # noqa: E402
 
 
@@ -52,9 +51,6 @@ def taken(package, place, *wanted, **given):
     return [names[name] for name in wanted]
 
 
-(sly_decode,) = taken("supervisely", ["geometry", "bitmap.py"], "base64_2_data")
-img_b64_to_arr, *_ = taken("labelme", ["utils", "image.py"], "img_b64_to_arr", "img_data_to_arr", "img_data_to_pil")
-shapes_to_label, *_ = taken("labelme", ["utils", "shape.py"], "shapes_to_label", "shape_to_mask")
 # Of Ultralytics what it does between a file and the masks of a batch; its functions take tensors too, and there are none.
 NO_TENSORS = types.SimpleNamespace(Tensor=())
 segments2boxes, resample_segments, *_ = taken("ultralytics", ["utils", "ops.py"], "segments2boxes", "resample_segments", "xyxy2xywh", "empty_like", torch=NO_TENSORS)

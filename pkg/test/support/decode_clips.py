@@ -16,15 +16,14 @@ import yaml
 from PIL import Image
 
 import decode
-from clips import Clip, coco_mask, counted, placed, rasterised, report, united
-from decode import COCO, brush, decode_mask, img_b64_to_arr, shapes_to_label, sly_decode
+from clips import Clip, coco_mask, counted, rasterised, report, united
+from decode import COCO, brush
 
 decode.bare("trackeval", "trackeval.datasets")
 
 from datumaro import AnnotationType, Dataset  # noqa: E402
 from label_studio_sdk._extensions.label_studio_tools.postprocessing.video import extract_key_frames  # noqa: E402
 from trackeval.datasets.davis import DAVIS  # noqa: E402
-from trackeval.datasets.mot_challenge_2d_box import MotChallenge2DBox  # noqa: E402
 from trackeval.datasets.mots_challenge import MOTSChallenge  # noqa: E402
 
 
@@ -125,11 +124,6 @@ def cvat_boxes(clip):
     return {key: tuple(a.get_bbox()) for key, a in cvat_tracks(clip, "boxes/cvat-video.xml").items()}
 
 
-def cvat_points(clip):
-    shapes = clip.json("cvat-points.json")
-    return counted((s["frame"], decode_mask(s["points"], image_width=clip.shape[1], image_height=clip.shape[0])) for s in shapes)
-
-
 def cvat_mots(clip):
     with zipfile.ZipFile(clip.path("cvat-mots.zip")) as files:
         files.extractall(clip.path("unzipped"))
@@ -172,28 +166,6 @@ def mots(clip):
     return masks
 
 
-def mot(clip):
-    """The benchmark counts pixels from 1."""
-    data = track_eval(MotChallenge2DBox, clip, "mot")
-    names = classes_of(clip, "mot")
-    boxes = {}
-    for t in range(data["num_timesteps"]):
-        assert (data["gt_extras"][t]["zero_marked"] == 1).all()
-        for number, kind, (left, top, width, height) in zip(data["gt_ids"][t], data["gt_classes"][t], data["gt_dets"][t]):
-            clip.check_class(number, names[kind - 1])
-            boxes[(t, int(number))] = (left - 1, top - 1, width, height)
-    return boxes
-
-
-def mot_datumaro(clip):
-    boxes = {}
-    for item, kind, a in datumaro(clip.path("mot"), "mot_seq"):
-        clip.check_class(a.attributes["track_id"], kind)
-        assert not a.attributes["ignored"] and not a.attributes["occluded"]
-        boxes[(int(item.id) - 1, a.attributes["track_id"])] = (a.x - 1, a.y - 1, a.w, a.h)
-    return boxes
-
-
 def label_studio_results(clip, name):
     tasks = clip.json(name)
     assert [task["data"]["image"] for task in tasks] == clip.files
@@ -232,18 +204,6 @@ def label_studio_video(clip):
             share = [box["x"] * width, box["y"] * height, box["width"] * width, box["height"] * height]
             boxes[(box["frame"] - 1, thing)] = tuple(np.round(np.array(share) / 100, 9))
     return boxes
-
-
-def labelme(clip):
-    masks = {}
-    for t, name in enumerate(clip.names):
-        document = clip.json("labelme", f"{name}.json")
-        assert document["imagePath"] == clip.files[t]
-        for s in document["shapes"]:
-            clip.check_class(s["group_id"], s["label"])
-            _, instances = shapes_to_label(clip.shape, [{**s, "mask": img_b64_to_arr(s["mask"]).astype(bool)}], {s["label"]: 1})
-            masks[(t, s["group_id"])] = instances > 0
-    return masks
 
 
 def yolo(clip):
@@ -288,15 +248,6 @@ def davis(clip):
     return masks
 
 
-def supervisely(clip):
-    pairs = []
-    for t, file in enumerate(clip.files):
-        for thing in clip.json("supervisely", "ann", f"{file}.json")["objects"]:
-            left, top = thing["bitmap"]["origin"]
-            pairs.append((t, placed(sly_decode(thing["bitmap"]["data"]), left, top, clip.shape)))
-    return counted(pairs)
-
-
 def masks(clip):
     found = {}
     for place in clip.path("masks").glob("*/*.png"):
@@ -317,19 +268,14 @@ DECODERS = {
     "cvat-polygon": (cvat_polygons, Clip.by_class),
     "cvat-video, polygons": (cvat_video, lambda clip: clip.masks),
     "cvat-video, boxes": (cvat_boxes, Clip.boxes),
-    "cvat-points": (cvat_points, Clip.in_order),
     "cvat-mots": (cvat_mots, lambda clip: clip.masks),
     "mots": (mots, lambda clip: clip.masks),
-    "mot": (mot, Clip.boxes),
-    "mot, read by datumaro": (mot_datumaro, Clip.boxes),
     "label-studio": (label_studio, lambda clip: clip.masks),
     "label-studio-polygon": (label_studio_polygons, lambda clip: clip.masks),
     "label-studio-video": (label_studio_video, Clip.boxes),
-    "labelme": (labelme, lambda clip: clip.masks),
     "yolo": (yolo, Clip.by_class),
     "yolo, read by ultralytics": (yolo_ultralytics, Clip.by_class, 0.99),
     "davis": (davis, lambda clip: clip.masks),
-    "supervisely": (supervisely, Clip.in_order),
     "masks": (masks, lambda clip: clip.masks),
 }
 

@@ -1,5 +1,6 @@
 // Label images to encode: the cases that break encoders, then random ones. Seeded: the same every time.
 
+import { compressed as compress } from '../../build/formats/coco-rle.js';
 import { random } from '../../../scripts/lib/random.mjs';
 
 /** A label image of rows of text: `.` is 255, digits are labels. */
@@ -56,7 +57,15 @@ export function labelImages(count) {
   return images;
 }
 
-/** The labels that are there, without 255. */
-export function present(labels) {
-  return [...new Set(labels)].filter((label) => label !== 255).sort((a, b) => a - b);
+/** COCO's run lengths of the pixels that are not 0, column by column. */
+export function rleOf(mask, width, height, { compressed = true } = {}) {
+  const counts = [0];
+  let value = 0;
+  for (let at = 0; at < mask.length; at++) {
+    const pixel = Number(mask[(at % height) * width + Math.floor(at / height)] !== 0);
+    if (pixel === value) counts[counts.length - 1]++;
+    else counts.push(1);
+    value = pixel;
+  }
+  return { size: [height, width], counts: compressed ? compress(counts) : counts };
 }

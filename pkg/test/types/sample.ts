@@ -28,7 +28,7 @@ import {
   version,
 } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
-import { type CocoVideoDocument, encodeCocoRle, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
+import { encode, type EncodedFile, type Format, type LabelFrame, type LabelImage, readMask } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function pictures(bitmap: ImageBitmap, frame: VideoFrame, file: File, image: HTMLImageElement, canvas: HTMLCanvasElement | OffscreenCanvas): Promise<void> {
@@ -74,15 +74,18 @@ export async function node(first: Uint8Array, second: Uint8Array): Promise<Motio
 }
 
 export async function clip(frames: LabelFrame[], later: AsyncIterable<LabelFrame>): Promise<string> {
-  const document: CocoVideoDocument = encodeCocoVideo(frames, { tracked: true, frameRate: 25 });
-  const promise: Promise<string> = encodeCvatVideo(later, { clip: 'a.mp4' }, { shape: 'box' });
-  // @ts-expect-error frames that come later give a promise
-  const text: string = encodeCvatVideo(later);
-  return `${document.videos.length} ${await promise} ${text}`;
+  const formats: Format[] = ['youtube-vis', 'davis'];
+  const files: EncodedFile[] = await encode('cvat-video', frames, { clip: 'a.mp4', shape: 'box', frameRate: 25 });
+  // @ts-expect-error that is no format
+  await encode('labels', later);
+  for (const format of formats) files.push(...(await encode(format, later, { names: { 1: 'car' }, classes: ['car'] })));
+  const { labels }: LabelImage = readMask(new ImageData(64, 48), { levels: 'exact' });
+  return files.map(({ name, content }) => `${name} ${content.length} ${labels.length}`).join();
 }
 
 export async function follow(frames: AsyncIterable<ImageData>, read: (index: number) => Promise<Pixels>): Promise<ClipTracks> {
   const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', onProgress: ({ frame, of }) => console.log(frame, of) });
+  await encode('coco', stream);
   for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
   const segmenter = new Segmenter();
   const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', markUnknown: true, signal: AbortSignal.timeout(1000) });
@@ -102,7 +105,7 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
     { frame: 0, labels: new Uint8Array(64 * 48) },
     { frame: 1, labels: new ImageData(64, 48), propagate: 'none' },
     { frame: 1, png: new Uint8Array(99) },
-    { frame: 2, id: 7, rle: encodeCocoRle(new Uint8Array(64 * 48), 64, 48) },
+    { frame: 2, id: 7, rle: { size: [48, 64], counts: [64 * 48] } },
   ];
   const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => console.log(index, (await segmented()).labels.length);
   void segmentClip({ length: 32, read }, { masks, locked: [2], onChange });

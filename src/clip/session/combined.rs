@@ -1,8 +1,5 @@
 //! Annotations that are given together, over those that were given before.
 
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-
 use super::phase::{Phase, invalid, some_labels};
 use crate::answer::UNLABELLED;
 use crate::clip::annotation::{Painted, Prompt, Spread, check_labels, is_object};
@@ -193,13 +190,8 @@ impl<'a> Combined<'a> {
 
     /// A label map with the current numbers of its objects.
     fn current_labels(&self, labels: &[u8]) -> Result<Vec<u8>> {
-        let mut numbers: BTreeMap<u8, u8> = [0, UNLABELLED].map(|label| (label, label)).into();
-        for &label in labels {
-            if let Entry::Vacant(number) = numbers.entry(label) {
-                number.insert(self.clip.objects.current(label)?);
-            }
-        }
-        Ok(labels.iter().map(|label| numbers[label]).collect())
+        let number = |&label: &u8| if is_object(label) { self.clip.objects.current(label) } else { Ok(label) };
+        labels.iter().map(number).collect()
     }
 }
 

@@ -1,6 +1,5 @@
 //! The states of a clip, one after each step: undo and redo choose among them. States share all parts in which they do not differ.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::shown::Shown;
@@ -12,8 +11,8 @@ use crate::clip::runs::Runs;
 use crate::clip::saved::saved;
 use crate::clip::segmented_clip::SegmentedClip;
 
-/// The labels of frames as they are shown, by index, as far as they are known.
-pub(super) type Remembered = BTreeMap<usize, Arc<Shown>>;
+/// What is known of each frame.
+pub(super) type ByFrame<T> = Vec<Option<Arc<T>>>;
 
 /// A state, and the step that has led to it.
 #[derive(Clone, Debug)]
@@ -21,7 +20,8 @@ pub(super) struct State {
     /// The step; 0 for the clip as it was opened.
     pub(super) step: u32,
     pub(super) clip: SegmentedClip,
-    pub(super) remembered: Remembered,
+    /// The labels of frames as they are shown.
+    pub(super) remembered: ByFrame<Shown>,
     /// The object that the step described, if it did nothing else.
     pub(super) describes: Option<u8>,
     /// Bytes of what differs from the state before.
@@ -39,7 +39,8 @@ pub(super) struct History {
 impl History {
     /// The clip as it was opened.
     pub(super) fn new(clip: SegmentedClip) -> History {
-        let opened = State { step: 0, clip, remembered: Remembered::new(), describes: None, bytes: 0 };
+        let remembered = vec![None; clip.len()];
+        let opened = State { step: 0, clip, remembered, describes: None, bytes: 0 };
         History { states: vec![opened], current: 0 }
     }
 
@@ -119,15 +120,21 @@ impl History {
 impl State {
     /// Bytes of the labels that another state remembers and this one does not.
     fn labels_unlike(&self, before: &State) -> usize {
-        let is_same =
-            |index: &usize, shown: &Arc<Shown>| self.remembered.get(index).is_some_and(|own| Arc::ptr_eq(own, shown));
-        before.remembered.iter().filter(|(index, shown)| !is_same(index, shown)).map(|(_, shown)| shown.bytes()).sum()
+        let mut bytes = 0;
+        for (own, shown) in self.remembered.iter().zip(&before.remembered) {
+            if let Some(shown) = shown
+                && !own.as_ref().is_some_and(|own| Arc::ptr_eq(own, shown))
+            {
+                bytes += shown.bytes();
+            }
+        }
+        bytes
     }
 
     pub(super) fn new(
         step: u32,
         clip: SegmentedClip,
-        remembered: Remembered,
+        remembered: ByFrame<Shown>,
         describes: Option<u8>,
         bytes: usize,
     ) -> State {
@@ -242,7 +249,7 @@ mod tests {
         };
         let mut history = History::new(clip());
         for (parent, &bytes) in bytes.iter().enumerate() {
-            history.push(parent as u32, State::new(parent as u32 + 1, clip(), Remembered::new(), None, bytes));
+            history.push(parent as u32, State::new(parent as u32 + 1, clip(), Vec::new(), None, bytes));
         }
         history
     }

@@ -55,7 +55,7 @@ impl Clip {
         clip.history.forget(options.undo);
         clip.log = Log::after(&reader, clip.history.bytes());
         clip.advance();
-        clip.changed.clear();
+        clip.changed.fill(false);
         Ok(Recovered { clip, used: reader.used, is_damaged: is_damaged || reader.is_damaged() })
     }
 
@@ -67,16 +67,16 @@ impl Clip {
             Kind::Open => return None,
             Kind::Pairs => {
                 let (frame, pairs) = Saved::read(bytes)?;
-                self.pairs.insert(frame, pairs);
+                *self.pairs.get_mut::<usize>(frame)? = Some(pairs);
             }
             Kind::Command => {
                 let step: usize = Saved::read(bytes)?;
                 let command = Command::read(bytes)?;
                 self.note_step(step)?;
                 self.history.after(step as u32).is_none().then_some(())?;
+                self.given.iter().all(|(of, ..)| *of as usize != step).then_some(())?;
                 self.wait(step as u32, command).ok()?;
-                let is_new = self.given.insert(step as u32, vec![(kind, Written(content.to_vec()))]).is_none();
-                is_new.then_some(())?;
+                self.keep(step as u32, kind, Written(content.to_vec()));
             }
             Kind::Result => {
                 let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
@@ -90,7 +90,7 @@ impl Clip {
                 let describes = Some(describes).filter(|&object| object > 0);
                 let state = State::new(step as u32, clip, remembered, describes, content.len());
                 self.forget_waiting(step as u32);
-                segmented.iter().for_each(|frame| drop(self.pairs.remove(frame)));
+                segmented.iter().for_each(|&frame| self.pairs[frame] = None);
                 self.note_step(step)?;
                 match is_first {
                     true => self.history = History::first(state),
@@ -106,7 +106,7 @@ impl Clip {
                 // A range whose frames have all been in has found what was there.
                 let complete = self.ranges.iter().find(|range| range.step as usize == step && range.is_complete);
                 if let Some(range) = complete {
-                    self.pairs.retain(|frame, _| !range.frames.contains(frame));
+                    self.pairs[range.frames.clone()].fill(None);
                 }
                 self.forget_waiting(step as u32);
             }
@@ -117,7 +117,7 @@ impl Clip {
                     true => range.is_complete = true,
                     false => drop(range.finish(Some(end))),
                 }
-                self.given.get_mut(&(step as u32))?.push((kind, Written(content.to_vec())));
+                self.keep(step as u32, kind, Written(content.to_vec()));
             }
             Kind::Shown => {
                 let (frame, shown): (usize, Shown) = Saved::read(bytes)?;
@@ -125,7 +125,7 @@ impl Clip {
                 state.clip.frames.get(frame)?.found.as_ref()?;
                 let [width, height] = state.clip.size;
                 shown.is_valid(width * height).then_some(())?;
-                state.remembered.insert(frame, Arc::new(shown));
+                state.remembered[frame] = Some(Arc::new(shown));
             }
         }
         bytes.is_empty().then_some(())
@@ -146,7 +146,7 @@ impl Clip {
             self.log.replace(compacted);
         }
         let (records, replaces) = self.log.take();
-        let frames = std::mem::take(&mut self.changed).into_iter().collect();
+        let frames = (0..self.len()).filter(|&index| std::mem::take(&mut self.changed[index])).collect();
         let (settled, cancelled) = (std::mem::take(&mut self.settled), std::mem::take(&mut self.cancelled));
         Events { records, replaces, frames, settled, cancelled }
     }
@@ -168,29 +168,36 @@ impl Clip {
         }
         let current = self.state();
         log.append(Kind::Current, &(current.step as usize));
-        let is_valid = |index: &usize| self.is_known(*index, current);
-        for (index, shown) in current.remembered.iter().filter(|(index, _)| is_valid(index)) {
-            log.append(Kind::Shown, &(*index, shown.clone()));
+        for (index, shown) in current.remembered.iter().enumerate() {
+            if let Some(shown) = shown
+                && shown.key == current.clip.key(index, self.options.mark_unknown)
+            {
+                log.append(Kind::Shown, &(index, shown.clone()));
+            }
         }
-        self.pairs.iter().for_each(|(index, pairs)| log.append(Kind::Pairs, &(*index, pairs.clone())));
-        self.given.values().flatten().for_each(|(kind, content)| log.append(*kind, content));
+        for (index, pairs) in self.pairs.iter().enumerate() {
+            if let Some(pairs) = pairs {
+                log.append(Kind::Pairs, &(index, pairs.clone()));
+            }
+        }
+        self.given.iter().for_each(|(_, kind, content)| log.append(*kind, content));
         log
-    }
-
-    fn is_known(&self, index: usize, state: &State) -> bool {
-        let key = || state.clip.key(index, self.options.mark_unknown);
-        state.remembered.get(&index).is_some_and(|shown| shown.key == key())
     }
 
     /// Writes a record of a step that has not taken effect.
     pub(super) fn note(&mut self, step: u32, kind: Kind, content: Written) {
         self.log.append(kind, &content);
-        self.given.entry(step).or_default().push((kind, content));
+        self.keep(step, kind, content);
+    }
+
+    fn keep(&mut self, step: u32, kind: Kind, content: Written) {
+        let at = self.given.partition_point(|(of, ..)| *of <= step);
+        self.given.insert(at, (step, kind, content));
     }
 
     /// The command of a step that has not taken effect.
     pub(super) fn command(&self, step: u32) -> Option<Command> {
-        let (_, Written(content)) = self.given.get(&step)?.first()?;
+        let (.., Written(content)) = self.given.iter().find(|(of, ..)| *of == step)?;
         let (_, command): (usize, Command) = Saved::read(&mut &content[..])?;
         Some(command)
     }

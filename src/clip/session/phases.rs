@@ -1,6 +1,6 @@
 //! The phases of each command, and what needs no frame, at once.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::combined::{Combined, over, uncover, uncover_under};
@@ -37,8 +37,8 @@ pub(super) fn phases(clip: &mut SegmentedClip, command: Command) -> Result<VecDe
         Command::Accept { frames, on } => {
             let stays = |index: &usize| clip.frames[*index].accepted && (on || !frames.contains(index));
             let mut accepted: Vec<usize> = (0..clip.len()).filter(stays).collect();
-            let is_new = |index: &&usize| on && !clip.frames[**index].accepted;
-            accepted.extend(frames.iter().filter(is_new).collect::<BTreeSet<_>>());
+            let is_new = |index: &usize| on && !clip.frames[*index].accepted && frames.contains(index);
+            accepted.extend((0..clip.len()).filter(is_new));
             Annotations { accepted: Some(Accepted::as_shown(accepted)), ..Annotations::default() }
         }
         Command::Lock { objects, on } => {
@@ -153,11 +153,11 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     let Declaration { annotations, locked, described, merged: groups, deleted: gone, accepted } = all;
     let objects = Objects::new(clip.objects.dropped);
     let before = std::mem::replace(&mut clip.objects, Arc::new(objects));
-    let mut seen: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    let mut seen: Vec<Option<Vec<u8>>> = vec![None; clip.len()];
     for (index, frame) in clip.frames.iter_mut().enumerate() {
         let FrameState { layer, accepted: was_accepted, .. } = &*frame;
         if let Some(layer) = layer.as_ref().filter(|_| *was_accepted && accepted.contains(&index)) {
-            seen.insert(index, layer.labels.map(|label| before.number(label)).values());
+            seen[index] = Some(layer.labels.map(|label| before.number(label)).values());
         }
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
     }
@@ -174,7 +174,7 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     numbers.extend(deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
         let given = masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
-        let labels = seen.remove(&frame).map(|seen| match given {
+        let labels = seen[frame].take().map(|seen| match given {
             Some(given) => over(Some(seen), given),
             None => seen,
         });

@@ -1,7 +1,6 @@
 //! Ranges of frames that are segmented together, and their place in the clip: the numbers of their objects, and the pairs with the frames
 //! beside them.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -250,7 +249,7 @@ fn numbers_of(run: &SegmentedClip, before: &SegmentedClip, start: usize, now: &m
 /// Pairs of a label before and an object of a run that overlap, those with the largest share in common first. A frame without masks is
 /// compared with its neighbour outside the run.
 fn overlaps(run: &SegmentedClip, before: &SegmentedClip, start: usize, is_layer: bool) -> Vec<(u8, u8)> {
-    let mut common: BTreeMap<(u8, u8), usize> = BTreeMap::new();
+    let mut common = vec![[0usize; 256]; 256];
     let mut areas = [[0usize; 256]; 2];
     for (k, frame) in run.frames.iter().enumerate() {
         let known = |t: usize| before.frames.get(t).is_some_and(|frame| frame.found.is_some());
@@ -267,14 +266,20 @@ fn overlaps(run: &SegmentedClip, before: &SegmentedClip, start: usize, is_layer:
         for (was, is) in labels.into_iter().zip(frame.found_labels().values()) {
             areas[0][usize::from(was)] += 1;
             areas[1][usize::from(is)] += 1;
-            *common.entry((was, is)).or_default() += 1;
+            common[usize::from(was)][usize::from(is)] += 1;
         }
     }
-    let share = |&((was, is), pixels): &((u8, u8), usize)| {
-        pixels as f64 / (areas[0][usize::from(was)] + areas[1][usize::from(is)] - pixels) as f64
-    };
-    let pairs: Vec<((u8, u8), usize)> = common.into_iter().filter(|of| share(of) >= LEAST_SHARE).collect();
-    descending(pairs.iter().map(share)).into_iter().map(|k| pairs[k].0).collect()
+    let (mut pairs, mut shares) = (Vec::new(), Vec::new());
+    for (was, row) in (0..=u8::MAX).zip(common) {
+        for (is, pixels) in (0..=u8::MAX).zip(row).filter(|(_, pixels)| *pixels > 0) {
+            let share = pixels as f64 / (areas[0][usize::from(was)] + areas[1][usize::from(is)] - pixels) as f64;
+            if share >= LEAST_SHARE {
+                pairs.push((was, is));
+                shares.push(share);
+            }
+        }
+    }
+    descending(shares).into_iter().map(|k| pairs[k]).collect()
 }
 
 impl SegmentedClip {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Clip;
+use super::log::Kind;
 use super::shown::Shown;
 use crate::answer::UNLABELLED;
 use crate::clip::description::ClipFrame;
@@ -50,7 +51,7 @@ impl Clip {
         let shown = Shown::of(&clip.described(index, frame, mark_unknown)?, clip.key(index, mark_unknown));
         let is_running = self.is_changing(index);
         let remembered = if is_running { &mut self.remembered } else { &mut self.history.current_mut().remembered };
-        remembered.insert(index, Arc::new(shown));
+        remembered[index] = Some(Arc::new(shown));
         Ok(())
     }
 
@@ -73,7 +74,7 @@ impl Clip {
 
     fn shown(&self, index: usize) -> Option<&Shown> {
         let known = if self.is_changing(index) { &self.remembered } else { &self.state().remembered };
-        let shown = known.get(&index)?;
+        let shown = known.get(index)?.as_deref()?;
         (shown.key == self.clip_of(index).key(index, self.options.mark_unknown)).then_some(shown)
     }
 
@@ -117,8 +118,9 @@ impl Clip {
     pub fn next_object(&self) -> Option<u8> {
         let coming: Vec<u8> = self
             .given
-            .keys()
-            .filter_map(|&step| self.command(step))
+            .iter()
+            .filter(|(_, kind, _)| *kind == Kind::Command)
+            .filter_map(|(step, ..)| self.command(*step))
             .flat_map(|command| command.new_objects())
             .collect();
         let used = &self.state().clip.objects.used;
@@ -132,7 +134,7 @@ impl Clip {
 
     /// Indices of the frames whose pairs are solved, and which are not segmented with these yet.
     pub fn solved_pairs(&self) -> Vec<usize> {
-        self.pairs.keys().copied().collect()
+        (0..self.len()).filter(|&index| self.pairs[index].is_some()).collect()
     }
 
     /// The tracks of all objects in the frames whose labels are known.

@@ -1,24 +1,11 @@
-//! Formats of annotation tools. The encoders are the package's.
+//! Formats of annotation tools. The encoder is the package's.
 
-import { encodeCoco, encodeCvatXml, encodeLabelMe, encodeLabelStudio, encodeYolo, type FormatMeta } from 'veronese/formats';
+import { type Format as ToolFormat, encode } from 'veronese/formats';
+import { inFileNames } from '../common/naming.js';
 import { type Export, type Format, TOLERANCE } from './format.js';
 import { zipped } from './zip.js';
 
-/** The arguments of the encoders. */
-function argumentsFor({ look, labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
-  const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
-  // Those of objects are in the formats of clips.
-  const motions = look.kind === 'objects' ? [] : masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
-  return [labels, width, height, { image, names, motions, labels: annotated }];
-}
-
-function entry(
-  id: string,
-  title: string,
-  file: string,
-  hint: string,
-  encode: (exported: Export) => unknown,
-): Format {
+function entry(format: ToolFormat, id: string, title: string, file: string, hint: string): Format {
   const type = file.endsWith('.json') ? 'application/json' : file.endsWith('.xml') ? 'application/xml' : 'application/zip';
   return {
     id,
@@ -26,35 +13,26 @@ function entry(
     file,
     type,
     hint,
-    async make(exported) {
-      const made = await encode(exported);
-      if (typeof made === 'string') return made;
-      return made instanceof Uint8Array ? new Uint8Array(made) : `${JSON.stringify(made)}\n`;
+    async make({ look, labels, segmentation: { width, height }, masks, annotated, image }: Export) {
+      const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
+      // Those of objects are in the formats of clips.
+      const motions = look.kind === 'objects' ? [] : masks.map(({ id, motions: [main] }) => ({ ...main!, label: id }));
+      const isArchive = file.endsWith('.zip');
+      const frame = { labels, width, height, motions, image: isArchive ? `${inFileNames(image)}.png` : image };
+      const files = await encode(format, [frame], { names, labels: annotated, tracked: false, tolerance: TOLERANCE });
+      return isArchive ? zipped(Object.fromEntries(files.map(({ name, content }) => [name, bytesOf(content)]))) : files[0]!.content;
     },
   };
 }
 
+function bytesOf(content: string | Uint8Array): Uint8Array {
+  return typeof content === 'string' ? new TextEncoder().encode(content) : content;
+}
+
 export const ANNOTATIONS: readonly Format[] = [
-  entry('coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.', (exported) =>
-    encodeCoco(...argumentsFor(exported), { shape: 'rle' }),
-  ),
-  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', (exported) =>
-    encodeCoco(...argumentsFor(exported), { shape: 'polygon', tolerance: TOLERANCE }),
-  ),
-  entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', (exported) =>
-    encodeCvatXml(...argumentsFor(exported), { shape: 'mask' }),
-  ),
-  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.', (exported) => [
-    encodeLabelStudio(...argumentsFor(exported), { shape: 'brush' }),
-  ]),
-  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes; save the file next to the image.', (exported) =>
-    encodeLabelMe(...argumentsFor(exported), { shape: 'mask' }),
-  ),
-  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', (exported) => {
-    const { text, names } = encodeYolo(...argumentsFor(exported), { tolerance: TOLERANCE });
-    const list = names.map((name, k) => `  ${k}: ${JSON.stringify(name)}\n`).join('');
-    const bytes = (content: string): Uint8Array => new TextEncoder().encode(content);
-    const stem = exported.image.replace(/\.[^.]*$/, '').replace(/[\\/:*?"<>|#]/g, '_');
-    return zipped({ [`labels/${stem}.txt`]: bytes(text), 'data.yaml': bytes(`names:\n${list}`) });
-  }),
+  entry('coco', 'coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.'),
+  entry('coco-polygon', 'coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.'),
+  entry('cvat', 'cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.'),
+  entry('label-studio', 'label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.'),
+  entry('yolo', 'yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.'),
 ];

@@ -1,6 +1,6 @@
 //! The masks of a clip as they are exported: one frame after another at the size of the file, with the objects that are ticked.
 
-import type { ClipMeta, LabelFrame } from 'veronese/formats';
+import type { LabelFrame, Metadata } from 'veronese/formats';
 import type { Clip } from '../clips/clip.js';
 import { inFileNames } from '../common/naming.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
@@ -22,7 +22,7 @@ export interface ClipFile extends LabelFrame {
 
 /** Frames in their order, and the facts about all of them. */
 interface Sequence {
-  readonly meta: ClipMeta & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
+  readonly meta: Metadata & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
   /** The frames in their order, each made when it is asked for. */
   frames(): AsyncGenerator<ClipFile, void, undefined>;
 }
@@ -45,7 +45,7 @@ export interface ClipFormat {
   readonly title: string;
   readonly hint: string;
   /** The names of all files that `make` gives, in their order. */
-  names(exported: ClipExport): readonly string[];
+  names(exported: ClipExport): readonly string[] | Promise<readonly string[]>;
   make(exported: ClipExport): Promise<Record<string, string | Uint8Array | Blob>>;
   /** A picture of a frame, if the file itself cannot show it. */
   picture?(exported: ClipExport): Promise<Blob>;

@@ -30,7 +30,7 @@ const BEGINNING = 480;
 export async function previewOf(format: ClipFormat, tracked: Tracked, shown: Pick<State, 'look' | 'classList'>, index: number): Promise<Preview | null> {
   const whole = exportOfClip(tracked, shown);
   if (whole.objects.length === 0) return null;
-  const folders = foldersOf(format.names(whole));
+  const folders = foldersOf(await format.names(whole));
   const one = exportOfFrame(tracked, shown, index);
   if (one === null) return { folders, file: null, shown: null };
   if (format.picture !== undefined) return { folders, file: null, shown: await format.picture(one) };

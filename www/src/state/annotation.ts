@@ -1,6 +1,6 @@
 //! An annotation of an object in a frame: pixels, or clicks and a box that point to it. It is kept as it was given.
 
-import type { ClipPropagation } from 'veronese';
+import type { ClipPropagation } from '../segmented.js';
 import { type Runs, over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 

@@ -1,6 +1,6 @@
 //! A person's annotations of a clip, and the masks as they are before these have been carried to the other frames.
 
-import type { ClipOptions, ClipPropagation } from 'veronese';
+import type { ClipOptions, ClipPropagation } from '../segmented.js';
 import { over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly, overlaid, relabelled } from './exact.js';

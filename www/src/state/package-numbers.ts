@@ -1,6 +1,6 @@
 //! A person's annotations as the package takes them, by its own numbers of objects.
 
-import type { ClipOptions } from 'veronese';
+import type { ClipOptions } from '../segmented.js';
 import { type Runs, resized, unpacked } from '../correction/runs.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { MOST_OBJECTS } from './spans.js';

@@ -1,7 +1,7 @@
 //! Parts of a clip that were segmented on their own. The package numbers their objects anew in each run; here an object keeps its
 //! number, in other parts and when its frames are segmented again.
 
-import type { ClipOptions } from 'veronese';
+import type { ClipOptions } from '../segmented.js';
 import { type Runs, overlapsOf, resized } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { exactly } from './exact.js';

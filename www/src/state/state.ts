@@ -1,6 +1,7 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
-import type { ClipPropagation, Segmentation } from 'veronese';
+import type { Segmentation } from 'veronese';
+import type { ClipPropagation } from '../segmented.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { ImageFolder } from '../frames/files.js';

@@ -1,6 +1,7 @@
 //! The objects of a whole clip: how far their segmentation is, the masks of each frame, and a person's annotations.
 
-import type { ClipFrame, ClipOptions, ClipProgress, Note } from 'veronese';
+import type { ClipFrame, Note } from 'veronese';
+import type { ClipOptions, ClipProgress } from '../segmented.js';
 import type { Clip } from '../clips/clip.js';
 import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';

@@ -1,6 +1,6 @@
 //! The tools: view, brush, eraser, polygon, box; the size of the brush, what follows, whether drawing is exact; undo and redo.
 
-import type { ClipPropagation } from 'veronese';
+import type { ClipPropagation } from '../segmented.js';
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';

@@ -62,6 +62,8 @@ export class OpenedClip implements Clip, StepClip {
   /** Settled when all calls so far have been answered: they are made one after another. */
   #turn: Promise<unknown> = Promise.resolve();
   #isRunning = false;
+  /** The steps that are not settled: all, and by number those that the core has. */
+  readonly #given = new Set<Step>();
   readonly #pending = new Map<number, Step>();
   #requests: Request[] = [];
   /** The frames of the range that is being segmented. */
@@ -70,6 +72,8 @@ export class OpenedClip implements Clip, StepClip {
   #poke = () => {};
   /** What tracks need of the labels of each frame. */
   readonly #seen = new Map<number, Seen>();
+  /** Whether one motion was asked for: then nobody asks why there is no object. */
+  #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
   #closed: VeroneseError | undefined;
   isDamaged = false;
@@ -156,6 +160,7 @@ export class OpenedClip implements Clip, StepClip {
     }
     const { range, signal } = asked;
     const { first, last, options: settings } = range;
+    this.#isOneMotion = settings['motions'] === 1;
     const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
     if (signal) {
       const cancel = () => step.cancel();
@@ -213,7 +218,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   cancel(): void {
-    for (const step of this.#pending.values()) step.cancel();
+    for (const step of this.#given) step.cancel();
   }
 
   cancelStep(step: Step): void {
@@ -268,7 +273,7 @@ export class OpenedClip implements Clip, StepClip {
     tracks.names = new Map(objects.flatMap(({ number, name }) => (name === '' ? [] : [[number, name]])));
     const isComplete = frames.length > 1 && frames.every(({ hasMasks }) => hasMasks);
     const isAnnotated = frames.some(({ annotated }) => annotated) || objects.some(({ number, became }) => number !== became);
-    if (isComplete && !isAnnotated && (tracks.isEmpty || tracks.grounds().length > 0)) {
+    if (isComplete && !isAnnotated && !this.#isOneMotion && (tracks.isEmpty || tracks.grounds().length > 0)) {
       const { notesOn } = await import('../clip/notes.js');
       const segment = (first: Pixels, second: Pixels) => this.#segmentPair(first, second);
       tracks.notes = await notesOn(tracks, { length: this.length, read: (index) => this.#parts.frames.read(index), segment });
@@ -299,7 +304,8 @@ export class OpenedClip implements Clip, StepClip {
     this.#closed = reason;
     this.#poke();
     this.#leave();
-    for (const step of this.#pending.values()) step.reject(reason);
+    for (const step of this.#given) step.reject(reason);
+    this.#given.clear();
     this.#pending.clear();
     for (const { reject } of [...this.#requests]) reject(reason);
     const { writer, journal } = this.#parts;
@@ -335,13 +341,20 @@ export class OpenedClip implements Clip, StepClip {
     this.#poke();
     // A copy: it is given again if the home is lost.
     const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
-    this.#send<ClipAnswer>(task).then((answer) => {
-      step.number = answer.step as number;
-      this.#pending.set(step.number, step);
-      this.#answered(answer, step);
-      if (step.isCancelled) this.#end(step, 'cancel');
-      void this.#run();
-    }, step.reject);
+    this.#given.add(step);
+    this.#send<ClipAnswer>(task).then(
+      (answer) => {
+        step.number = answer.step as number;
+        this.#pending.set(step.number, step);
+        void this.#answered(answer, step);
+        if (step.isCancelled) this.#end(step, 'cancel');
+        void this.#run();
+      },
+      (thrown) => {
+        this.#given.delete(step);
+        step.reject(thrown);
+      },
+    );
     return step;
   }
 
@@ -441,6 +454,7 @@ export class OpenedClip implements Clip, StepClip {
     this.#pending.delete(number);
     if (this.#ahead?.step === step) this.#ahead = undefined;
     if (!step) return undefined;
+    this.#given.delete(step);
     const { range } = step;
     const isIn = (index: number) => range !== undefined && index >= range.first && index <= range.last;
     step.frames = range ? this.frames.flatMap(({ hasMasks }, index) => (hasMasks && isIn(index) ? [index] : [])) : frames;

@@ -1,7 +1,7 @@
 // Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
 
 import { unzipSync } from 'fflate';
-import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations } from '../../../types/formats.js';
+import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations, Levels } from '../../../types/formats.js';
 import {
   checkedBytes,
   entriesOf,
@@ -9,25 +9,21 @@ import {
   invalidOption,
   isListOf,
   isObject,
-  isWhole,
   keyOf,
   reading,
   UNLABELLED,
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import { checkPath } from '../names.js';
-import { decodeVeronese } from '../veronese-json.js';
+import { checkPath } from '../file-names.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { checkSize, type Context, isObjectNumber, type Known, isPng, known, type Levels, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
-import { readDatumaro } from './datumaro.js';
-import { readLabelMe } from './labelme.js';
+import { checkSize, type Context, type Known, isPng, naming, type ReadFrame, type Source, wrong } from './frame.js';
 import { readLabelStudio } from './label-studio.js';
+import { isLevels, wrongLevels } from './mask.js';
 import { readMasks } from './masks.js';
 import { IGNORED, isMots, numbersOfMots, readMots, readMotsPng } from './mots.js';
 import { sizeOfPicture } from './pictures.js';
-import { readSupervisely } from './supervisely.js';
 import { isYolo, namesInYaml, readYolo } from './yolo.js';
 
 /** Most bytes in an archive: more than the annotations of any clip. */
@@ -36,6 +32,8 @@ const LARGEST = 2 ** 30;
 const BEFORE = [0xef, 0xbb, 0xbf, 0x20, 0x09, 0x0a, 0x0d];
 /** Lists of the names of YOLO's classes: of Ultralytics, of Darknet and CVAT (obj.names), of Roboflow (_darknet.labels) and of labelImg. */
 const NAMES = /\.(ya?ml|names|labels)$|(^|\/)(names|(predefined_)?classes)\.txt$/i;
+/** What stands beside annotations and is none: whatever it begins with, such as a class that is called <other>. */
+const BESIDE = /(^|\/)(labels|seqinfo)\.(txt|ini)$/i;
 /** The class of what is no object. */
 const BACKGROUND = 'background';
 
@@ -103,7 +101,7 @@ interface Size {
   height: number;
 }
 
-/** What is known of the clip, and said of the files. */
+/** {@link AnnotationOptions}, checked. */
 interface Clip {
   names: readonly string[] | undefined;
   size: Size | undefined;
@@ -116,7 +114,7 @@ function clipOf(options: unknown): Clip {
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (frames !== undefined && !isListOf(frames, isName)) throw invalidOption('frames', 'a list of names', frames);
   if (size !== undefined && !isObject(size)) throw invalidOption('size', 'a width and a height', size);
-  if (levels !== undefined && levels !== 'exact' && !isWhole(levels, 1, 65_535)) throw invalidOption('levels', "'exact' or a level from 1 to 65535", levels);
+  if (levels !== undefined && !isLevels(levels)) throw wrongLevels(levels);
   if (firstFrame !== undefined && firstFrame !== 0 && firstFrame !== 1) throw invalidOption('firstFrame', '0 or 1', firstFrame);
   return { names: frames, size: size && checkSize(size['width'], size['height'], 'the frames'), levels, firstFrame };
 }
@@ -130,12 +128,12 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-/** What is to be said of files: what was assumed, and what they have and is not read, counted. */
+/** Notes on files: what was assumed, and what they have and is not read, counted. */
 class Remarks {
   readonly #notes: AnnotationNote[] = [];
   readonly #counts = new Map<string, Map<string, number>>();
 
-  readonly say = (note: AnnotationNote): void => void this.#notes.push(note);
+  readonly note = (note: AnnotationNote): void => void this.#notes.push(note);
 
   readonly leaveOut = (file: string, kind: string): void => {
     const kinds = this.#counts.get(file) ?? new Map<string, number>();
@@ -151,7 +149,7 @@ class Remarks {
   }
 }
 
-function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, say }: Remarks): Context {
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, note }: Remarks): Context {
   const lists = all.filter(({ name }) => NAMES.test(name)).map(({ name, bytes }) => ({
     folder: folderOf(name),
     names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
@@ -182,7 +180,7 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
       return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
     },
     leaveOut,
-    say,
+    note,
     count: names?.length,
     firstFrame,
   };
@@ -191,6 +189,7 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
 /** The format of the file, unless it is none of those known. Throws `invalid-input` where it begins like one and is damaged. */
 function recognised(source: Source): Recognised[] {
   const { name, bytes } = source;
+  if (NAMES.test(name) || BESIDE.test(name)) return [];
   const start = bytes.find((byte) => !BEFORE.includes(byte));
   if (start === 0x3c) return [{ source, format: 'cvat', read: (context) => readCvat(textOf(bytes), name, context) }];
   if (start === 0x7b || start === 0x5b) return recognisedJson(source);
@@ -209,11 +208,7 @@ function recognisedJson(source: Source): Recognised[] {
   const found = (format: AnnotationFormat, read: (context: Context) => ReadFrame[]): Recognised[] => [{ source, format, read }];
   if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
   if ('annotations' in json && 'images' in json) return found('coco', (context) => readCoco(json, name, context));
-  if ('shapes' in json && 'imagePath' in json) return found('labelme', (context) => [readLabelMe(json, name, context)]);
-  if (json['format'] === 'veronese') return found('veronese', () => [readVeronese(json, name)]);
   if (isTask(json)) return found('label-studio', (context) => readLabelStudio([json], name, context));
-  if ('items' in json && 'categories' in json) return found('datumaro', (context) => readDatumaro(json, name, context));
-  if ('size' in json && 'objects' in json) return found('supervisely', (context) => [readSupervisely(json, name, context)]);
   return [];
 }
 
@@ -236,14 +231,7 @@ function parsed(text: string): unknown {
 
 function nothingIn(files: readonly Pick<Source, 'name'>[]): string {
   const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
-  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, Label Studio, Datumaro, MOTS, Supervisely, YOLO, PNG masks, veronese`;
-}
-
-function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
-  const { width, height, image, meta } = decodeVeronese(document);
-  const named = Object.entries(meta.names ?? {}).filter(([label]) => isObjectNumber(Number(label)));
-  const objects = named.map(([label, name]) => known(label, Number(label), name));
-  return { name: stemOf(image), file, width, height, objects, draw: ({ labels }) => labels.set(decodeVeronese(document).labels) };
+  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, Label Studio, MOTS, YOLO, PNG masks`;
 }
 
 /**

@@ -75,13 +75,10 @@ export class Canvas {
     });
   }
 
-  /** The pixels of a box that are not 0. */
-  stamp(pixels: Uint8Array, box: Box, label: number): void {
+  /** The pixels of the whole frame that are not 0. */
+  stamp(pixels: Uint8Array, label: number): void {
     this.#spend(pixels.length);
-    for (let y = 0, at = 0; y < box.height; y++) {
-      const start = (box.top + y) * this.width + box.left;
-      for (let x = 0; x < box.width; x++) if (pixels[at++]) this.labels[start + x] = label;
-    }
+    for (let at = 0; at < pixels.length; at++) if (pixels[at]) this.labels[at] = label;
   }
 
   /** The ground inside a box: whether it is of an object there is not known. */

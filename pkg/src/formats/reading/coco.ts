@@ -93,7 +93,7 @@ function categoriesOf(document: Json): Map<unknown, string> {
   );
 }
 
-export function isId(id: unknown): id is number | string {
+function isId(id: unknown): id is number | string {
   return typeof id === 'number' || typeof id === 'string';
 }
 
@@ -130,7 +130,7 @@ function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, b
 }
 
 /** Run lengths with their size. */
-export function columnsOf(canvas: Canvas, { size, counts }: Json, label: number): void {
+function columnsOf(canvas: Canvas, { size, counts }: Json, label: number): void {
   const { width, height } = canvas;
   if (!Array.isArray(size) || size.length !== 2 || size[0] !== height || size[1] !== width) {
     throw invalidInput(`run lengths must be of the frame's size, [${height}, ${width}], not ${JSON.stringify(size)?.slice(0, 40)}`);

@@ -3,7 +3,7 @@
 import type { AnnotationNote } from '../../../types/formats.js';
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import { checkPath } from '../names.js';
+import { checkPath } from '../file-names.js';
 import type { Canvas } from './canvas.js';
 
 /** Objects with the same key are one, in all frames. */
@@ -55,9 +55,6 @@ export interface Source {
   bytes: Uint8Array;
 }
 
-/** What levels between others mean in masks: each is an object of its own, or those from a level on are one object. */
-export type Levels = 'exact' | number;
-
 /** Information that a reader may need beside the file. */
 export interface Context {
   /** The name of the frame of this index, where the format only counts frames. */
@@ -74,8 +71,8 @@ export interface Context {
   count: number | undefined;
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
   leaveOut: (file: string, kind: string) => void;
-  /** Says what was assumed of a file. */
-  say: (note: AnnotationNote) => void;
+  /** Takes what was assumed of a file. */
+  note: (note: AnnotationNote) => void;
 }
 
 /**

@@ -80,7 +80,7 @@ function drawing(type: string, value: Json, { width, height }: { width: number; 
     const { rle } = value;
     const bytes = isArrayOf(rle, 'Uint8Array') ? rle : isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255)) ? Uint8Array.from(rle) : undefined;
     if (value['format'] !== 'rle' || !bytes) throw invalidInput('a brush must have run lengths');
-    return { draw: (canvas, label) => canvas.stamp(unpacked(bytes as Uint8Array, width * height), { left: 0, top: 0, width, height }, label) };
+    return { draw: (canvas, label) => canvas.stamp(unpacked(bytes as Uint8Array, width * height), label) };
   }
   if (type === 'polygonlabels') {
     const { points } = value;

@@ -1,11 +1,11 @@
 // Masks in PNG files, as people have them: numbers of objects as indices or grey levels, white on black, one colour for each object, what is
 // not transparent, a folder for each object. What a file is taken for is said in a note; where edges are smoothed, people have to say it.
 
-import type { AnnotationNote } from '../../../types/formats.js';
+import type { AnnotationNote, Levels } from '../../../types/formats.js';
 import { invalidInput, UNLABELLED } from '../../common/checks.js';
 import { davisPalette } from '../../common/palette.js';
-import { decodeSamples, type Samples } from '../indexed-png.js';
-import { decoding, isObjectNumber, type Known, known, type Levels, naming, type ReadFrame, type Source, stemOf } from './frame.js';
+import { decodePng, type Samples } from '../png-reader.js';
+import { decoding, isObjectNumber, type Known, known, naming, type ReadFrame, type Source, stemOf } from './frame.js';
 import { checkCrisp } from './smoothed.js';
 
 const [BLACK, WHITE] = [0, 0xffffff];
@@ -20,8 +20,8 @@ interface Values {
   values: Int32Array;
   width: number;
   height: number;
-  /** The levels, or else the colours, that a person sees. */
-  seen: () => { levels: Int32Array } | { colours: Int32Array };
+  /** What a person sees: levels or, where these differ, colours; of indices those of the palette. */
+  seen: { kind: 'level' | 'colour'; values: Int32Array };
   /** Whether these may be smoothed. */
   isPlain: boolean;
   /** The level that says nothing beside others: the largest one. */
@@ -40,10 +40,11 @@ interface Reading {
 }
 
 /** Frames of masks, and what was assumed of the files. */
-export function readMasks(sources: readonly Source[], said: Levels | undefined): { frames: ReadFrame[]; notes: AnnotationNote[] } {
+export function readMasks(sources: readonly Source[], levels: Levels | undefined): { frames: ReadFrame[]; notes: AnnotationNote[] } {
   const files = sources.map((source) => naming(source.name, (): MaskFile => {
-    const { width, height, ...values } = valuesOf(source, said);
-    return { source, said, width, height, ...readingOf({ width, height, ...values }, said) };
+    const values = valuesOf(source, levels);
+    const { width, height } = values;
+    return { source, levels, width, height, ...readingOf(values, levels) };
   }));
   const folders = sources.map(({ name }) => /(?:^|\/)(\d+)\/[^/]+$/.exec(name)?.[1]);
   const isOne = ({ meaning }: MaskFile) => [...meaning.keys()].filter((value) => value !== 0).length <= 1;
@@ -59,7 +60,7 @@ export function readMasks(sources: readonly Source[], said: Levels | undefined):
 
 interface MaskFile extends Reading {
   source: Source;
-  said: Levels | undefined;
+  levels: Levels | undefined;
   width: number;
   height: number;
 }
@@ -70,7 +71,7 @@ function closedOf(file: MaskFile): MaskFile {
   return { ...file, meaning: new Map<number, typeof UNLABELLED | 0>([[0, 0], [white, UNLABELLED]]), note };
 }
 
-function frameOf({ source, said, width, height, meaning }: MaskFile): ReadFrame {
+function frameOf({ source, levels, width, height, meaning }: MaskFile): ReadFrame {
   const objects = [...meaning.values()].filter((one): one is Known => typeof one === 'object');
   return {
     name: stemOf(source.name),
@@ -80,7 +81,7 @@ function frameOf({ source, said, width, height, meaning }: MaskFile): ReadFrame 
     objects,
     draw: ({ labels }, labelOf) => {
       const numbers = new Map([...meaning].map(([value, one]) => [value, typeof one === 'object' ? labelOf(one.key) : one]));
-      const { values } = valuesOf(source, said);
+      const { values } = valuesOf(source, levels);
       let [value, number] = [NaN, 0];
       for (let at = 0; at < labels.length; at++) {
         // Most pixels have the value of the one before.
@@ -132,40 +133,38 @@ function notesOf(files: readonly MaskFile[]): AnnotationNote[] {
   });
 }
 
-function valuesOf({ bytes }: Source, said: Levels | undefined): Values {
-  const png = decoding('it', () => decodeSamples(bytes));
+function valuesOf({ bytes }: Source, levels: Levels | undefined): Values {
+  const png = decoding('it', () => decodePng(bytes));
   const found = png.palette ? indexed(png, png.palette) : direct(png);
-  if (typeof said !== 'number') return found;
-  const seen = found.seen();
+  if (typeof levels !== 'number') return found;
   const brightest = (colour: number) => Math.max(colour >> 16, (colour >> 8) & 255, colour & 255);
-  const levels = 'levels' in seen ? seen.levels : seen.colours.map(brightest);
-  return { ...found, isColour: false, white: UNLABELLED, values: levels.map((level) => (level >= said ? UNLABELLED : 0)) };
+  const { kind, values } = found.seen;
+  return { ...found, isColour: false, white: UNLABELLED, values: values.map((value) => ((kind === 'level' ? value : brightest(value)) >= levels ? UNLABELLED : 0)) };
 }
 
 /** Transparent pixels are background; without any colours of its own, what is not transparent is one object. */
 function direct({ width, height, channels, depth, samples }: Samples): Values {
-  const colours = new Int32Array(width * height);
   const byte = (at: number) => Math.round((255 * (samples[at] as number)) / (2 ** depth - 1));
   let isGrey = true;
   for (let at = 0; channels > 2 && isGrey && at < samples.length; at += channels) isGrey = samples[at] === samples[at + 1] && samples[at] === samples[at + 2];
+  const colours = new Int32Array(width * height);
   for (let p = 0, at = 0; p < colours.length; p++, at += channels) {
     colours[p] = isGrey ? (samples[at] as number) : (byte(at) << 16) | (byte(at + 1) << 8) | byte(at + 2);
   }
-  const isClear = (p: number) => channels % 2 === 0 && byte(channels * (p + 1) - 1) === 0;
+  const alphaOf = (p: number) => (channels % 2 === 0 ? byte(channels * (p + 1) - 1) : UNLABELLED);
   // Of 8 bits, each byte is there twice.
-  const isRounded = !isGrey && depth === 16 && samples.some((value, at) => value % 257 !== 0 && at % channels < 3 && !isClear(Math.floor(at / channels)));
-  const plain = { isColour: !isGrey, white: isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE, isPlain: true, isRounded, width, height };
-  const all = { ...plain, values: colours, seen: () => (isGrey ? { levels: colours } : { colours }) };
-  if (channels % 2 === 1) return all;
-  const alpha = Int32Array.from(colours, (_, p) => byte(channels * (p + 1) - 1));
+  const isRounded = !isGrey && depth === 16 && samples.some((value, at) => value % 257 !== 0 && at % channels < 3 && alphaOf(Math.floor(at / channels)) > 0);
+  const of = (values: Int32Array): Values => {
+    const white = isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE;
+    return { isColour: !isGrey, values, seen: { kind: isGrey ? 'level' : 'colour', values }, isPlain: true, white, isRounded, width, height };
+  };
+  if (channels % 2 === 1) return of(colours);
+  const alpha = colours.map((_, p) => alphaOf(p));
   const opaque = valuesIn(colours.filter((_, p) => alpha[p] !== 0));
-  if (!alpha.includes(0) || opaque.size === 0) return all;
-  if (opaque.size > 1 && opaque.size <= OF_A_PICTURE) {
-    const values = colours.map((colour, p) => (alpha[p] === 0 ? BLACK : colour));
-    return { ...plain, values, seen: () => (isGrey ? { levels: values } : { colours: values }) };
-  }
+  if (!alpha.includes(0) || opaque.size === 0) return of(colours);
+  if (opaque.size > 1 && opaque.size <= OF_A_PICTURE) return of(colours.map((colour, p) => (alpha[p] === 0 ? BLACK : colour)));
   const note = { code: 'mask-alpha', message: 'what is not transparent is the object' };
-  return { ...plain, isColour: false, white: UNLABELLED, values: alpha.map((level) => (level > 0 ? UNLABELLED : 0)), seen: () => ({ levels: alpha }), note };
+  return { ...of(alpha.map((level) => (level > 0 ? UNLABELLED : 0))), isColour: false, white: UNLABELLED, isRounded: false, seen: { kind: 'level', values: alpha }, note };
 }
 
 /** Indices are numbers of objects, 0 the background, unless black has another index. */
@@ -176,34 +175,30 @@ function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array
     const [red = 0, green = 0, blue = 0] = isClear(index) ? [] : palette.subarray(3 * index);
     return (red << 16) | (green << 8) | blue;
   });
+  const colourOf = (index: number) => colours[index] as number;
   const used = [...valuesIn(indices)];
-  const seen = () => ({ colours: indices.map((index) => colours[index] as number) });
+  const seen = { kind: 'colour' as const, values: indices.map(colourOf) };
   const isMoved = used.includes(0) && !isClear(0) && colours[0] !== BLACK && used.some((index) => colours[index] === BLACK);
-  if (isMoved) return { isColour: true, values: seen().colours, seen, isPlain: true, white: WHITE, width, height };
-  const isGrey = used.every((index) => colours[index] === ((colours[index] as number) & 255) * 0x010101);
-  const values = alpha?.includes(0) ? indices.map((index) => (isClear(index) ? 0 : index)) : indices;
-  const levels = () => ({ levels: indices.map((index) => (colours[index] as number) & 255) });
-  return { isColour: false, values, seen: isGrey ? levels : seen, isPlain: isGrey, white: UNLABELLED, width, height };
+  if (isMoved) return { isColour: true, values: seen.values, seen, isPlain: true, white: WHITE, width, height };
+  const isGrey = used.every((index) => colourOf(index) === (colourOf(index) & 255) * 0x010101);
+  const values = indices.map((index) => (isClear(index) ? 0 : index));
+  return { isColour: false, values, seen: isGrey ? { kind: 'level', values: seen.values.map((colour) => colour & 255) } : seen, isPlain: isGrey, white: UNLABELLED, width, height };
 }
 
-function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values, said: Levels | undefined): Reading {
+function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values, levels: Levels | undefined): Reading {
   if (isColour && isRounded) throw invalidInput('it has colours of 16 bits that 8 do not hold: save it with 8, or as grey levels');
   const all = [...valuesIn(values)];
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
   const objects = all.filter((value) => value !== ground);
-  if (isPlain && said === undefined) {
-    const looks = seen();
-    const [pixels, channels] = 'levels' in looks ? [looks.levels, 1 as const] : [looks.colours, 3 as const];
-    decoding('it', () => checkCrisp(pixels, { width, height }, { channels, ground, white }));
-  }
+  if (isPlain && levels === undefined) decoding('it', () => checkCrisp(seen.values, { width, height }, { what: seen.kind, ground, white }));
   if (isColour && !all.includes(ground)) throw invalidInput('it has neither black nor white, one of which is the background of colours');
   if (objects.length >= UNLABELLED + Number(objects.includes(white))) throw invalidInput(`it has more than ${UNLABELLED - 1} objects`);
   if (isColour) return colours(objects, ground);
   const [object] = objects;
-  if (objects.length === 1 && object === white && (all.includes(0) || typeof said === 'number')) {
+  if (objects.length === 1 && object === white && (all.includes(0) || typeof levels === 'number')) {
     const taken = { code: 'mask-white', message: `${white} is the object, number 1, and 0 the background` };
     const meaning = new Map<number, Known | 0>([[0, 0], [white, known('number 1', 1, undefined)]]);
-    return { meaning, ...(said === undefined && { note: note ?? taken, isOpen: note === undefined }) };
+    return { meaning, ...(levels === undefined && { note: note ?? taken, isOpen: note === undefined }) };
   }
   const meaningOf = (value: number) => (value === 0 ? 0 : value === white ? UNLABELLED : known(`number ${value}`, value, undefined));
   return { meaning: new Map(all.map((value) => [value, meaningOf(value)])) };

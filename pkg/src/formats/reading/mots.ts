@@ -1,7 +1,7 @@
 // MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; 10000 is a region to ignore.
 
 import { invalidInput, UNLABELLED } from '../../common/checks.js';
-import { decodeDeep, headOf } from '../indexed-png.js';
+import { decodePng, headOf } from '../png-reader.js';
 import type { Canvas } from './canvas.js';
 import { decompressed } from './coco-rle.js';
 import {
@@ -34,7 +34,7 @@ export function isMots(text: string): boolean {
 export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefined {
   if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return undefined;
   const seen = new Set<number>();
-  for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodeDeep(bytes))).levels) seen.add(level);
+  for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodePng(bytes))).samples) seen.add(level);
   seen.delete(0);
   const [first] = seen;
   // White on black is no number, and what is ignored alone an object.
@@ -60,7 +60,7 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
     else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
   }
   if (firstFrame === undefined && !frames.has(0) && !frames.has(count ?? 0)) {
-    context.say({ code: 'first-frame-assumed', message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame` });
+    context.note({ code: 'first-frame-assumed', message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame` });
   }
   const first = frames.has(0) ? 0 : (firstFrame ?? 1);
   return [...frames].sort(([a], [b]) => a - b).map(([frame, { shapes, ignored, ...size }]) => {
@@ -72,10 +72,10 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
 
 export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
   const names = classesOf(source);
-  const { levels, width, height } = decoding('it', () => decodeDeep(source.bytes));
+  const { samples, width, height } = decoding('it', () => decodePng(source.bytes));
   const seen = new Set<number>();
   // Level by level a set would take most of the time.
-  for (let at = 0; at < levels.length; at++) if (levels[at] !== levels[at - 1]) seen.add(levels[at] as number);
+  for (let at = 0; at < samples.length; at++) if (samples[at] !== samples[at - 1]) seen.add(samples[at] as number);
   const values = [...seen].filter((value) => value !== 0);
   return {
     name: stemOf(source.name),
@@ -86,8 +86,8 @@ export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
     draw: ({ labels }, labelOf) => {
       const numbers = new Uint8Array(2 ** 16);
       for (const value of values) numbers[value] = value === IGNORED ? UNLABELLED : labelOf(keyOf(value));
-      const { levels } = decodeDeep(source.bytes);
-      for (let at = 0; at < levels.length; at++) labels[at] = numbers[levels[at] as number] as number;
+      const { samples } = decodePng(source.bytes);
+      for (let at = 0; at < samples.length; at++) labels[at] = numbers[samples[at] as number] as number;
     },
   };
 }

@@ -1,6 +1,6 @@
 // The size of a picture, from the beginning of its file.
 
-import { headOf } from '../indexed-png.js';
+import { headOf } from '../png-reader.js';
 import { decoding, isPng } from './frame.js';
 
 /** Of a PNG or JPEG file; undefined of another one, or if it is not within the bytes. */

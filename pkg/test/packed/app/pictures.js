@@ -1,6 +1,6 @@
 // Pictures of the browser in place of pixels: the same labels, also where they are closed when the call has been made; what cannot be read.
 
-import { Segmenter, segmentClip, segmentPair } from './node_modules/veronese/dist/web.js';
+import { Segmenter, segmentPair, segmentStream } from './node_modules/veronese/dist/web.js';
 import { first, second } from './frames.js';
 
 const images = [first, second].map(({ data, width, height }) => new ImageData(new Uint8ClampedArray(data), width, height));
@@ -41,7 +41,7 @@ async function* closing(make) {
 async function main() {
   const segmenter = new Segmenter();
   const pixels = String((await segmentPair(...images, settings)).labels);
-  const clip = await labelsOf(segmentClip(images, settings));
+  const clip = await labelsOf(segmentStream(images, settings));
   const small = String((await segmentPair(...images, { ...settings, maxSize: 32 })).labels);
   const differ = [];
   const compare = (name, found, expected) => found === expected || differ.push(name);
@@ -54,7 +54,7 @@ async function main() {
     }
     compare(`${kind} scaled down`, String((await segmentPair(...(await all(make)), { ...settings, maxSize: 32 })).labels), small);
     compare(`${kind} beside pixels`, String((await segmentPair(images[0], await make(images[1]), settings)).labels), pixels);
-    compare(`${kind} of a clip`, await labelsOf(segmenter.segmentClip(closing(make), settings)), clip);
+    compare(`${kind} of a clip`, await labelsOf(segmenter.segmentStream(closing(make), settings)), clip);
   }
   segmenter.close();
 

@@ -2,7 +2,7 @@
 
 import { type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
-import { encodeCoco, encodeCocoVideo, type LabelFrame } from 'veronese/formats';
+import { encode, type LabelFrame } from 'veronese/formats';
 import { init, SegmenterPool } from 'veronese/slim';
 
 export type Others = [typeof import('veronese/inline'), typeof import('veronese/worker')];
@@ -11,10 +11,10 @@ export async function pair(file: Uint8Array, module: ArrayBuffer): Promise<strin
   await init(module);
   const first: Pixels = await decodeImage(file);
   const { labels, width, height, motions } = await segmentPair(first, first, { quality: 'fast', motions: 'auto' });
-  const document = encodeCoco(labels, width, height, { motions });
+  const [document] = await encode('coco', { labels, width, height, motions });
   // @ts-expect-error no picture
   await segmentPair(first, {});
-  return `${document.annotations.length} ${new VeroneseError('cancelled', 'a sentence').code}`;
+  return `${document?.name} ${new VeroneseError('cancelled', 'a sentence').code}`;
 }
 
 export async function clip(frames: Pixels[]): Promise<number> {
@@ -25,7 +25,7 @@ export async function clip(frames: Pixels[]): Promise<number> {
   const pool = new SegmenterPool({ worker: () => ({ postMessage: () => undefined, terminate: () => undefined }) });
   pool.close();
   for await (const { segmentation } of segmentPairs([], { jobs: 2 })) print(segmentation?.count);
-  return encodeCocoVideo(found).videos.length;
+  return (await encode('youtube-vis', found)).length;
 }
 
 declare function print(value: unknown): void;

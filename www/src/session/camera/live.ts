@@ -130,7 +130,7 @@ export class LiveView {
       const { motions, subject, markUnknown } = settings;
       let before: { readonly frame: LoadedFrame; readonly segmentation: Segmentation } | null = null;
       try {
-        for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, subject, markUnknown, quality: 'fast', lookAhead: 0 })) {
+        for await (const found of this.#segmenter.segmentStream(frames(wanted), { motions, subject, markUnknown, quality: 'fast', lookAhead: 0 })) {
           answered();
           if (!current()) return;
           const frame = taken.shift()!;

@@ -1,7 +1,7 @@
 //! Drawing objects of a clip: strokes, boxes and clicks, masks copied to other frames, objects split. It becomes annotations of objects in
 //! frames, in pixels of the masks. Loaded when something is drawn.
 
-import type { ClipPropagation } from 'veronese';
+import type { ClipPropagation } from '../../segmented.js';
 import { strings } from '../../common/strings.js';
 import { smallerPieces } from '../../correction/pieces.js';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';

@@ -1,7 +1,7 @@
 //! The edits of a clip's objects: merging and deleting, locks, names, classes and colours; and with `drawing.ts` strokes, boxes
 //! and clicks. Each becomes an annotation of objects, which is then carried through the clip.
 
-import type { ClipOptions } from 'veronese';
+import type { ClipOptions } from '../../segmented.js';
 import { nameOf } from '../../common/naming.js';
 import { strings } from '../../common/strings.js';
 import type { Colour } from '../../drawing/palette.js';

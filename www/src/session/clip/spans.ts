@@ -1,6 +1,7 @@
 //! Corrections of frames that were segmented together, as the package answers them: the next version of the masks. It shows nothing.
 
-import type { ClipEdits, ClipFrame, ClipOptions, ClipProgress, Segmenter } from 'veronese';
+import type { ClipFrame, Segmenter } from 'veronese';
+import type { ClipEdits, ClipOptions, ClipProgress } from '../../segmented.js';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';

@@ -1,4 +1,5 @@
-// The container of a PNG around rows that are filtered and compressed already.
+// PNG files of labels and levels, one sample per pixel. What compresses the rows is the caller's: fflate gives the same bytes everywhere, a
+// browser's own stream comes without any code.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 const COLOUR_TYPE = { grey: 0, indexed: 3 } as const;
@@ -8,12 +9,24 @@ export interface PngOptions {
   depth?: 8 | 16;
   /** Red, green, blue of every index; without a palette the samples are grey. */
   palette?: Uint8Array;
-  /** Alpha of the first indices. */
-  alpha?: Uint8Array;
 }
 
-/** `rows`: a zlib stream of all rows, each after the number of its filter. */
-export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, palette, alpha }: PngOptions): Uint8Array<ArrayBuffer> {
+/** The rows of a PNG before they are compressed: `stride` bytes each, after the number of their filter. 0, none: the others gain nothing on indices. */
+export function rowsOf(samples: Uint8Array, stride: number, height: number): Uint8Array<ArrayBuffer> {
+  const rows = new Uint8Array((stride + 1) * height);
+  for (let y = 0; y < height; y++) rows.set(samples.subarray(y * stride, (y + 1) * stride), y * (stride + 1) + 1);
+  return rows;
+}
+
+/** The samples in {@link rowsOf}. */
+export function samplesIn(rows: Uint8Array, stride: number, height: number): Uint8Array<ArrayBuffer> {
+  const samples = new Uint8Array(stride * height);
+  for (let y = 0; y < height; y++) samples.set(rows.subarray(y * (stride + 1) + 1, (y + 1) * (stride + 1)), y * stride);
+  return samples;
+}
+
+/** The file around rows that are compressed: a zlib stream. */
+export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, palette }: PngOptions): Uint8Array<ArrayBuffer> {
   const header = new Uint8Array(13);
   const view = new DataView(header.buffer);
   view.setUint32(0, width);
@@ -23,7 +36,6 @@ export function pngFile(width: number, height: number, rows: Uint8Array, { depth
     Uint8Array.from(SIGNATURE),
     chunk('IHDR', header),
     ...(palette ? [chunk('PLTE', palette)] : []),
-    ...(alpha ? [chunk('tRNS', alpha)] : []),
     chunk('IDAT', rows),
     chunk('IEND', new Uint8Array()),
   ]);
