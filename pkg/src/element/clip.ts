@@ -55,10 +55,10 @@ export class ElementClip {
   #stream: ClipStream | undefined;
   /** The frames of a stream that are done. */
   readonly #done: Packed[] = [];
-  /** Revisions of the frames that listeners have been told. */
+  /** Revisions of the frames as listeners know them. */
   readonly #told: number[] = [];
-  /** Masks as files, with their revisions. */
-  readonly #files: { revision: number; file: File }[] = [];
+  /** Masks as files, until they change. */
+  readonly #files: Promise<File>[] = [];
   #tracks: ClipTracks = { objects: [], background: [], dropped: 0 };
   /** Until the listeners know of all that has changed. */
   #telling: Promise<void> | undefined;
@@ -69,8 +69,8 @@ export class ElementClip {
   #isSegmenting = false;
   #plays = false;
   #current = 0;
-  /** The frame that is shown, and the revision of its labels. */
-  #drawn = '';
+  /** Whether the frame that is shown has other labels since. */
+  #isStale = false;
   #picture: { index: number; pixels: Promise<Pixels> } | undefined;
   /** Until the frame that is wanted is shown. */
   #showing: Promise<void> | undefined;
@@ -156,7 +156,10 @@ export class ElementClip {
     });
     // A frame that cannot be read is the error before it.
     opening.catch(() => undefined);
-    if (frames.length > 0) this.#draw(0, await this.#pixels(0), undefined);
+    if (frames.length > 0) {
+      const first = await this.#pixels(0);
+      if (!this.#isClosed) this.#draw(0, first, undefined);
+    }
     await opening;
   }
 
@@ -194,8 +197,10 @@ export class ElementClip {
     if (this.#isClosed) return;
     if (event.type === 'progress') this.#report(event);
     if (event.type === 'frames') {
+      for (const index of event.frames) delete this.#files[index];
+      this.#isStale ||= event.frames.includes(this.#current);
+      if (this.#isStale) this.show(this.#current);
       this.#mark();
-      if (this.#drawn !== this.#wanted) this.show(this.#current);
     }
     const isSettled = event.type === 'settled';
     // What is undone or done again is no step of its own.
@@ -244,8 +249,10 @@ export class ElementClip {
     for (const [index, { hasMasks, revision }] of clip.frames.entries()) {
       if ((this.#told[index] ?? 0) === revision) continue;
       isChanged = true;
-      this.#told[index] = revision;
-      if (hasMasks) this.#listeners.frame(await clip.labels(index));
+      const frame = hasMasks ? await clip.labels(index) : undefined;
+      // Another step may be spreading to it, and may be cancelled.
+      this.#told[index] = clip.steps.waiting > 0 ? -1 : revision;
+      if (frame) this.#listeners.frame(frame);
     }
     return isChanged;
   }
@@ -267,22 +274,17 @@ export class ElementClip {
     await this.#showing;
   }
 
-  /** The frame that is to be shown, and the revision of its labels. */
-  get #wanted(): string {
-    return `${this.#current} ${this.clip?.frames[this.#current]?.revision ?? 0}`;
-  }
-
   async #showLatest(): Promise<void> {
-    do {
-      const index = this.#current;
-      this.#drawn = this.#wanted;
+    for (let index = -1; (index !== this.#current || this.#isStale) && !this.#isClosed; ) {
+      index = this.#current;
+      this.#isStale = false;
       try {
         const [picture, labels] = await Promise.all([this.#pixels(index), this.#labels(index)]);
         if (!this.#isClosed) this.#draw(index, picture, labels);
       } catch (thrown) {
         if (!this.#isClosed) this.#listeners.fail(thrown);
       }
-    } while (this.#drawn !== this.#wanted && !this.#isClosed);
+    }
     this.#showing = undefined;
   }
 
@@ -300,7 +302,7 @@ export class ElementClip {
   #pixels(index: number): Promise<Pixels> {
     if (this.#picture?.index === index) return this.#picture.pixels;
     // A copy: whoever reads the frames may have one buffer for all.
-    const pixels = (this.#source as ClipSource).picture(index).then(({ data, ...size }) => ({ ...size, data: data.slice() }));
+    const pixels = (this.#source as ClipSource).picture(index).then(({ data, width, height }) => ({ data: data.slice(), width, height }));
     const picture = { index, pixels };
     this.#picture = picture;
     pixels.catch(() => {
@@ -318,17 +320,15 @@ export class ElementClip {
   }
 
   /** The masks, as `veronese clip` names those of a video. */
-  async files(): Promise<File[]> {
+  files(): Promise<File[]> {
     const named = (index: number, masks: Packed) => fileOf(masks, `${String(index).padStart(5, '0')}.png`);
-    if (!this.clip) return this.#done.map((done, index) => named(index, done));
-    for (const [index, { hasMasks, revision }] of this.clip.frames.entries()) {
-      if (!hasMasks) delete this.#files[index];
-      else if (this.#files[index]?.revision !== revision) {
-        const { labels, width, height } = await this.clip.labels(index);
-        this.#files[index] = { revision, file: named(index, await packed(labels, width, height)) };
-      }
-    }
-    return this.#files.flatMap(({ file }) => file);
+    const { clip } = this;
+    if (!clip) return Promise.resolve(this.#done.map((done, index) => named(index, done)));
+    const made = async (index: number) => {
+      const { labels, width, height } = await clip.labels(index);
+      return named(index, await packed(labels, width, height));
+    };
+    return Promise.all(clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? (this.#files[index] ??= made(index)) : [])));
   }
 
   close(): void {

@@ -46,6 +46,8 @@ export class VeroneseSegmenterElement extends Base {
     change: () => this.#validate(),
     fail: (thrown) => this.#fail(veroneseError(thrown)),
   };
+  /** What a form gets. */
+  #files: File[] = [];
   #carries = 0;
   #planned = false;
   #messages: Partial<VeroneseSegmenterMessages> = {};
@@ -252,10 +254,10 @@ export class VeroneseSegmenterElement extends Base {
     if (name === 'first' || name === 'second') delete this.#given[name];
     if (name === 'src') this.#given = {};
     if (name === 'required') this.#validate();
-    else if (name === 'name') this.#carry().catch(() => undefined);
-    else if (name !== 'grouped') this.#plan();
-    else if (this.#result && !this.#clip) {
-      this.#paintPair(this.#result);
+    else if (name !== 'name' && name !== 'grouped') this.#plan();
+    else {
+      if (name === 'name') this.#submit();
+      else if (this.#result) this.#paintPair(this.#result);
       this.#carry().catch(() => undefined);
     }
   }
@@ -420,18 +422,25 @@ export class VeroneseSegmenterElement extends Base {
   /** Hands the masks to the form, as files. */
   async #carry(): Promise<void> {
     const turn = ++this.#carries;
-    const { name } = this;
-    const clip = this.#clip;
-    const labels = this.labels();
-    const value = new FormData();
-    if (name !== '' && clip) for (const file of await clip.files()) value.append(name, file);
-    if (name !== '' && !clip && labels && this.#result) {
-      const { fileOf, packed } = await import('./later.js');
-      const { width, height } = this.#result;
-      value.append(name, fileOf(await packed(labels, width, height), 'labels.png'));
-    }
+    const files = this.name === '' ? [] : await this.#masks();
     // A later call knows better.
-    if (turn === this.#carries) this.#internals.setFormValue(value);
+    if (turn !== this.#carries) return;
+    this.#files = files;
+    this.#submit();
+  }
+
+  async #masks(): Promise<File[]> {
+    if (this.#clip) return this.#clip.files();
+    const [result, labels] = [this.#result, this.labels()];
+    if (!result || !labels) return [];
+    const { fileOf, packed } = await import('./later.js');
+    return [fileOf(await packed(labels, result.width, result.height), 'labels.png')];
+  }
+
+  #submit(): void {
+    const value = new FormData();
+    for (const file of this.name === '' ? [] : this.#files) value.append(this.name, file);
+    this.#internals.setFormValue(value);
   }
 
   #validate(): void {
