@@ -76,6 +76,8 @@ export class OpenedClip implements Clip, StepClip {
   #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
   #closed: VeroneseError | undefined;
+  /** Settled when the journal is closed. */
+  #left: Promise<void> = Promise.resolve();
   isDamaged = false;
 
   constructor(parts: ClipParts) {
@@ -291,16 +293,16 @@ export class OpenedClip implements Clip, StepClip {
     return () => this.#listeners.delete(listener);
   }
 
-  close(): void {
-    this.#close(new VeroneseError('clip-closed', 'the clip is closed'));
+  close(): Promise<void> {
+    return this.#close(new VeroneseError('clip-closed', 'the clip is closed'));
   }
 
   [Symbol.dispose](): void {
-    this.close();
+    void this.close();
   }
 
-  #close(reason: VeroneseError): void {
-    if (this.#closed) return;
+  #close(reason: VeroneseError): Promise<void> {
+    if (this.#closed) return this.#left;
     this.#closed = reason;
     this.#poke();
     this.#leave();
@@ -309,7 +311,9 @@ export class OpenedClip implements Clip, StepClip {
     this.#pending.clear();
     for (const { reject } of [...this.#requests]) reject(reason);
     const { writer, journal } = this.#parts;
-    void writer.settled().then(() => journal.close?.()).catch(() => undefined);
+    // What cannot be closed is left to its end.
+    this.#left = writer.settled().then(() => journal.close?.()).catch(() => undefined);
+    return this.#left;
   }
 
   /** Leaves the home, which may be lost. */
@@ -404,7 +408,7 @@ export class OpenedClip implements Clip, StepClip {
         return answer as Answer;
       } catch (thrown) {
         if (this.#closed) throw this.#closed;
-        if (isCode(thrown, 'cancelled')) this.#close(thrown);
+        if (isCode(thrown, 'cancelled')) void this.#close(thrown);
         if (!isCode(thrown, 'worker-failed', 'internal')) throw thrown;
         this.#leave();
         this.#lost = thrown;
@@ -507,7 +511,7 @@ export class OpenedClip implements Clip, StepClip {
       }
     } catch (thrown) {
       // A home that cannot be had, or a clip that was closed.
-      if (!this.#closed) this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
+      if (!this.#closed) void this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
     } finally {
       this.#isRunning = false;
     }

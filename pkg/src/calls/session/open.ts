@@ -41,7 +41,7 @@ export async function openedClip(given: unknown, options: unknown, house: () => 
     clip.begin(answer);
     return clip;
   } catch (thrown) {
-    if (clip) clip.close();
+    if (clip) await clip.close();
     else await opened.close?.();
     throw thrown;
   }
