@@ -118,8 +118,9 @@ describe('clips, directly and in workers', () => {
   const { segmenter, checkWorker } = segmenterOf();
   for (const [place, [args, harmless]] of Object.entries(OPENINGS)) {
     test(`openClip: ${place}`, async (t) => {
-      const { path } = temporaryFolder(t);
+      const [{ path }, before] = [temporaryFolder(t), process.cwd()];
       process.chdir(path('.'));
+      t.after(() => process.chdir(before));
       await everywhere(async (value) => {
         for (const open of [index.openClip, (...given) => segmenter.openClip(...given)]) {
           const clip = await open(...args(value));

@@ -12,7 +12,7 @@ import { Ahead, type Solve, type Solved } from './ahead.js';
 import * as commands from './commands.js';
 import type { ClipFrames } from './frames.js';
 import type { JournalWriter } from './journal.js';
-import { Step, type StepClip, type StepRange, type StepSubject } from './step.js';
+import { Step, type StepClip, type StepRange } from './step.js';
 
 /** The worker in which a clip lives, or this thread. */
 export interface Home {
@@ -163,7 +163,7 @@ export class OpenedClip implements Clip, StepClip {
     const { range, signal } = asked;
     const { first, last, options: settings } = range;
     this.#isOneMotion = settings['motions'] === 1;
-    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
+    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), range);
     if (signal) {
       const cancel = () => step.cancel();
       signal.addEventListener('abort', cancel);
@@ -174,12 +174,11 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   annotate(...annotations: Parameters<Clip['annotate']>): ClipStep {
-    const frame = annotations.length === 0 ? undefined : (Object(annotations[0]) as { frame: number }).frame;
-    return this.#apply(() => commands.annotateCommand(this, annotations), { frame });
+    return this.#apply(() => commands.annotateCommand(this, annotations));
   }
 
   clear(annotations: Parameters<Clip['clear']>[0]): ClipStep {
-    return this.#apply(() => commands.clearCommand(this, annotations), { frame: (Object(annotations) as { frame: number }).frame });
+    return this.#apply(() => commands.clearCommand(this, annotations));
   }
 
   accept(frames: Parameters<Clip['accept']>[0], on = true): ClipStep {
@@ -204,7 +203,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   split(object: number, frame: number): ClipStep {
-    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject), { frame });
+    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject));
   }
 
   replaceAnnotations(declaration: Parameters<Clip['replaceAnnotations']>[0]): ClipStep {
@@ -235,7 +234,7 @@ export class OpenedClip implements Clip, StepClip {
     return new Promise((resolve, reject) => {
       const { signal } = reading(() => parted(entriesOf(options, ['signal']), [])).call;
       if (this.#closed) throw this.#closed;
-      if (!isWhole(index, 0, this.length - 1)) throw new VeroneseError('invalid-option', `option 'frame': there is no frame ${String(index)} in a clip of ${this.length} frames`);
+      commands.frameOf(this, 'frame', index);
       if (signal?.aborted) throw cancelled(signal);
       const leave = () => {
         this.#requests = this.#requests.filter((other) => other !== request);
@@ -333,7 +332,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   /** Gives the clip a command, which takes what it needs of the caller's at once. */
-  #apply(make: () => ClipCommand, about: StepSubject = {}): ClipStep {
+  #apply(make: () => ClipCommand, range?: StepRange): ClipStep {
     let command: ClipCommand;
     try {
       if (this.#closed) throw this.#closed;
@@ -341,7 +340,7 @@ export class OpenedClip implements Clip, StepClip {
     } catch (thrown) {
       return this.#failed(thrown);
     }
-    const step = new Step(this, about);
+    const step = new Step(this, { range, frame: commands.frameOfCommand(command) });
     this.#poke();
     // A copy: it is given again if the home is lost.
     const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
