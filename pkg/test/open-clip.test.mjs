@@ -5,7 +5,6 @@ import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { openClip, Segmenter, SegmenterPool, solvePair } from 'veronese';
 import { random } from '../../scripts/lib/random.mjs';
@@ -325,7 +324,7 @@ describe('arguments', () => {
     ]) assert.equal((await failure(() => openClip(given, options))).code, code);
     const one = await openClip(FRAMES.slice(0, 1));
     assert.equal((await failure(() => one.segment())).code, 'too-few-frames');
-    one.close();
+    await one.close();
   });
 
   test('are the caller\'s again when the call returns', async (t) => {
@@ -427,14 +426,12 @@ describe('a journal', () => {
     await clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
     assert.match((await failure(() => openClip(FRAMES, { journal }))).message, /another clip has '.*' open/);
     const [labels, { objects, steps }] = [await labelsOf(clip), clip];
-    clip.close();
-    await setTimeout(20);
+    await clip.close();
     const again = await opened(t, { journal });
     assert.deepEqual([again.objects, again.steps, again.isDamaged], [objects, steps, false]);
     assert.deepEqual(await labelsOf(again), labels);
     assert.equal(await again.undo(), true);
-    again.close();
-    await setTimeout(20);
+    await again.close();
     assert.equal((await failure(() => openClip(FRAMES, { journal, saved: new Uint8Array(8) }))).message, "option 'saved': the journal has a clip already: give one of the two");
     assert.equal((await failure(() => openClip(FRAMES, { journal: path('none', 'clip.log') }))).code, 'file-not-found');
   });
@@ -446,14 +443,12 @@ describe('a journal', () => {
     const before = await labelsOf(clip);
     const length = statSync(journal).size;
     await clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
-    clip.close();
-    await setTimeout(20);
+    await clip.close();
     const content = readFileSync(journal);
     writeFileSync(journal, content.subarray(0, length + 5));
     const cut = await opened(t, { journal });
     assert.deepEqual([await labelsOf(cut), cut.isDamaged, statSync(journal).size], [before, false, length]);
-    cut.close();
-    await setTimeout(20);
+    await cut.close();
     const wrong = Buffer.from(content);
     wrong[length + 20] ^= 1;
     writeFileSync(journal, wrong);

@@ -487,8 +487,11 @@ export interface Clip {
   save(): Promise<Uint8Array>;
   /** Calls a listener with all events; returns what ends that. */
   subscribe(listener: (event: ClipEvent) => void): () => void;
-  /** Frees what the clip holds. Steps that have not taken effect reject with code `clip-closed`; the journal keeps them. */
-  close(): void;
+  /**
+   * Frees what the clip holds. Steps that have not taken effect reject with code `clip-closed`; the journal keeps them. Resolves when the journal can
+   * be opened again.
+   */
+  close(): Promise<void>;
   [Symbol.dispose](): void;
 }
 

@@ -130,10 +130,10 @@ fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> 
 
 /// A locked object that was drawn exactly in a frame, among all or only the given one.
 fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Option<u8> {
-    let mut labels = clip.frames[frame].exact.as_ref()?.each().map(|(label, _)| label);
-    let is_locked = |label: &u8| clip.objects.locked[usize::from(*label)];
-    let number = |label: u8| clip.objects.number(label);
-    labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
+    let labels = clip.frames[frame].exact.as_ref()?.values();
+    let is_locked = |label: u8| clip.objects.locked[usize::from(label)];
+    let mut numbers = labels.into_iter().filter(|&label| is_locked(label)).map(|label| clip.objects.number(label));
+    numbers.find(|number| object.is_none_or(|object| object == *number))
 }
 
 /// The phases of annotations.
@@ -162,22 +162,28 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
     }
     let Combined { masks, painted, prompts, draws, .. } = Combined::new(clip, annotations)?;
-    let edited = groups.iter().chain([&gone, &locked]).flatten().chain(described.iter().map(|(object, _)| object));
-    edited.into_iter().try_for_each(|&object| clip.objects.current(object).map(drop))?;
-    if let Some(object) = groups.iter().flatten().find(|object| gone.contains(object)) {
+    let grouped = groups.concat();
+    for &object in grouped.iter().chain(&gone).chain(&locked) {
+        clip.objects.current(object)?;
+    }
+    for (object, _) in &described {
+        clip.objects.current(*object)?;
+    }
+    if let Some(object) = grouped.iter().find(|object| gone.contains(object)) {
         return invalid("deleted", format!("object {object} cannot be merged and deleted"));
     }
     for (object, description) in described {
         describe(clip, object, description);
     }
-    let mut numbers: Vec<[u8; 2]> = groups.iter().flat_map(|group| merged(group)).collect();
-    numbers.extend(deleted(&gone));
+    let mut numbers = Vec::new();
+    groups.iter().for_each(|group| numbers.append(&mut merged(group)));
+    numbers.append(&mut deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
-        let given = masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
-        let labels = seen[frame].take().map(|seen| match given {
-            Some(given) => over(Some(seen), given),
-            None => seen,
-        });
+        let mask = masks.iter().find(|mask| mask.frame == frame);
+        let labels = match (seen[frame].take(), mask) {
+            (Some(seen), Some(mask)) => Some(over(Some(seen), mask.labels.clone())),
+            (seen, _) => seen,
+        };
         Accepted { frame, labels }
     });
     let accepted = Some(accepted.collect());

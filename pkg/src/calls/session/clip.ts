@@ -12,7 +12,7 @@ import { Ahead, type Solve, type Solved } from './ahead.js';
 import * as commands from './commands.js';
 import type { ClipFrames } from './frames.js';
 import type { JournalWriter } from './journal.js';
-import { Step, type StepClip, type StepRange, type StepSubject } from './step.js';
+import { Step, type StepClip, type StepRange } from './step.js';
 
 /** The worker in which a clip lives, or this thread. */
 export interface Home {
@@ -76,6 +76,8 @@ export class OpenedClip implements Clip, StepClip {
   #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
   #closed: VeroneseError | undefined;
+  /** Settled when the journal is closed. */
+  #left: Promise<void> = Promise.resolve();
   isDamaged = false;
 
   constructor(parts: ClipParts) {
@@ -161,7 +163,7 @@ export class OpenedClip implements Clip, StepClip {
     const { range, signal } = asked;
     const { first, last, options: settings } = range;
     this.#isOneMotion = settings['motions'] === 1;
-    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
+    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), range);
     if (signal) {
       const cancel = () => step.cancel();
       signal.addEventListener('abort', cancel);
@@ -172,12 +174,11 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   annotate(...annotations: Parameters<Clip['annotate']>): ClipStep {
-    const frame = annotations.length === 0 ? undefined : (Object(annotations[0]) as { frame: number }).frame;
-    return this.#apply(() => commands.annotateCommand(this, annotations), { frame });
+    return this.#apply(() => commands.annotateCommand(this, annotations));
   }
 
   clear(annotations: Parameters<Clip['clear']>[0]): ClipStep {
-    return this.#apply(() => commands.clearCommand(this, annotations), { frame: (Object(annotations) as { frame: number }).frame });
+    return this.#apply(() => commands.clearCommand(this, annotations));
   }
 
   accept(frames: Parameters<Clip['accept']>[0], on = true): ClipStep {
@@ -202,7 +203,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   split(object: number, frame: number): ClipStep {
-    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject), { frame });
+    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject));
   }
 
   replaceAnnotations(declaration: Parameters<Clip['replaceAnnotations']>[0]): ClipStep {
@@ -233,7 +234,7 @@ export class OpenedClip implements Clip, StepClip {
     return new Promise((resolve, reject) => {
       const { signal } = reading(() => parted(entriesOf(options, ['signal']), [])).call;
       if (this.#closed) throw this.#closed;
-      if (!isWhole(index, 0, this.length - 1)) throw new VeroneseError('invalid-option', `option 'frame': there is no frame ${String(index)} in a clip of ${this.length} frames`);
+      commands.frameOf(this, 'frame', index);
       if (signal?.aborted) throw cancelled(signal);
       const leave = () => {
         this.#requests = this.#requests.filter((other) => other !== request);
@@ -291,16 +292,16 @@ export class OpenedClip implements Clip, StepClip {
     return () => this.#listeners.delete(listener);
   }
 
-  close(): void {
-    this.#close(new VeroneseError('clip-closed', 'the clip is closed'));
+  close(): Promise<void> {
+    return this.#close(new VeroneseError('clip-closed', 'the clip is closed'));
   }
 
   [Symbol.dispose](): void {
-    this.close();
+    void this.close();
   }
 
-  #close(reason: VeroneseError): void {
-    if (this.#closed) return;
+  #close(reason: VeroneseError): Promise<void> {
+    if (this.#closed) return this.#left;
     this.#closed = reason;
     this.#poke();
     this.#leave();
@@ -309,7 +310,9 @@ export class OpenedClip implements Clip, StepClip {
     this.#pending.clear();
     for (const { reject } of [...this.#requests]) reject(reason);
     const { writer, journal } = this.#parts;
-    void writer.settled().then(() => journal.close?.()).catch(() => undefined);
+    // What cannot be closed is left to its end.
+    this.#left = writer.settled().then(() => journal.close?.()).catch(() => undefined);
+    return this.#left;
   }
 
   /** Leaves the home, which may be lost. */
@@ -329,7 +332,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   /** Gives the clip a command, which takes what it needs of the caller's at once. */
-  #apply(make: () => ClipCommand, about: StepSubject = {}): ClipStep {
+  #apply(make: () => ClipCommand, range?: StepRange): ClipStep {
     let command: ClipCommand;
     try {
       if (this.#closed) throw this.#closed;
@@ -337,7 +340,7 @@ export class OpenedClip implements Clip, StepClip {
     } catch (thrown) {
       return this.#failed(thrown);
     }
-    const step = new Step(this, about);
+    const step = new Step(this, { range, frame: commands.frameOfCommand(command) });
     this.#poke();
     // A copy: it is given again if the home is lost.
     const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
@@ -404,7 +407,7 @@ export class OpenedClip implements Clip, StepClip {
         return answer as Answer;
       } catch (thrown) {
         if (this.#closed) throw this.#closed;
-        if (isCode(thrown, 'cancelled')) this.#close(thrown);
+        if (isCode(thrown, 'cancelled')) void this.#close(thrown);
         if (!isCode(thrown, 'worker-failed', 'internal')) throw thrown;
         this.#leave();
         this.#lost = thrown;
@@ -507,7 +510,7 @@ export class OpenedClip implements Clip, StepClip {
       }
     } catch (thrown) {
       // A home that cannot be had, or a clip that was closed.
-      if (!this.#closed) this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
+      if (!this.#closed) void this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
     } finally {
       this.#isRunning = false;
     }
