@@ -406,6 +406,13 @@ unwatched('says what happened, in words that a page may replace', async ({ page 
 test('the clip of the element takes annotations: what it shows, its events and a form follow', async ({ page }) => {
   await openEmpty(page);
   const found = await page.evaluate(async () => {
+    const workers: Worker[] = [];
+    window.Worker = class extends Worker {
+      constructor(...given: ConstructorParameters<typeof Worker>) {
+        super(...given);
+        workers.push(this);
+      }
+    };
     document.body.innerHTML = '<form><veronese-segmenter name="masks" quality="fast"></veronese-segmenter></form>';
     const form = document.querySelector('form')!;
     const element = document.querySelector('veronese-segmenter') as VeroneseSegmenterElement;
@@ -472,6 +479,14 @@ test('the clip of the element takes annotations: what it shows, its events and a
     await again;
     const kept = [element.clip === opened, ids(), opened.frames.map(({ annotated }) => annotated).indexOf(true)];
 
+    // All workers are lost: the clip goes on in another one.
+    told.splice(0);
+    for (const worker of workers) worker.dispatchEvent(new ErrorEvent('error', { message: 'gone' }));
+    const revived = once('tracks');
+    await opened.annotate({ frame: 0, object: 9, mask: new Uint8Array(96 * 64).fill(1, 0, 960), propagate: 'none' });
+    await revived;
+    const lost = [told.splice(0), element.labels()![0]];
+
     // Other frames and removal close it.
     element.frames = clip(2);
     const closed = [element.clip, await codeOf(opened.labels(0))];
@@ -484,7 +499,7 @@ test('the clip of the element takes annotations: what it shows, its events and a
     const third = element.clip !== second && element.frameCount === 2;
     element.frames = clip(3).values();
     await once('tracks');
-    return { early, drawn, after, undone, redone, alone, unchanged, kept, closed, third, stream: element.clip };
+    return { early, drawn, after, undone, redone, alone, unchanged, kept, lost, closed, third, stream: element.clip };
   });
   const frames = [0, 1, 2, 3, 4, 5];
   const told = [...frames.map((index) => `frame ${index}`), 'tracks'];
@@ -497,6 +512,7 @@ test('the clip of the element takes annotations: what it shows, its events and a
     alone: ['tracks'],
     unchanged: { codes: ['object-locked', 'invalid-option', 'cancelled'], told: [], same: true },
     kept: [true, [1, 7], 3],
+    lost: [['frame 0', 'tracks'], 9],
     closed: [undefined, 'clip-closed', undefined, 'clip-closed'],
     third: true,
     stream: undefined,
