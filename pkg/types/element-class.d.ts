@@ -22,7 +22,7 @@ export interface VeroneseSegmenterEvents {
   progress: Progress | ElementClipProgress;
   /** Two frames are segmented. */
   result: Segmentation;
-  /** A frame of a clip has new labels: it is segmented, or a step of {@link VeroneseSegmenterElement.clip} has changed it. */
+  /** A frame of a clip has new labels: it is segmented, or a step of the element's `clip` has changed it. */
   frame: ClipFrame;
   /** All frames of a clip are done, or another step of it has taken effect. */
   tracks: ClipTracks;
@@ -78,10 +78,12 @@ export interface VeroneseSegmenterMessages {
  * `controls` (any of `play`, `legend` and `zoom`); `name`, `disabled` and `required`. The element segments when it is connected and
  * whenever an attribute changes, and stops when it is disconnected.
  *
- * Frames that can be read again are a {@link clip}, which takes annotations. What changes in it is shown at once. When a step has taken
- * effect, `frame` comes for each frame that it has changed, then `tracks`.
+ * Frames that can be read again are a {@link clip}, which takes annotations. The frame that is shown is drawn again as soon as its labels
+ * change. When a step has taken effect, or was undone, `frame` comes for each frame that it has changed, then `tracks`. A step that fails
+ * rejects, and is no `error` of the element.
  *
- * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select` and `error`, each with a `detail`. They do not bubble. Where nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
+ * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select` and `error`, each with a `detail`. They do not bubble. Where
+ * nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
  *
  * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
  * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer. With `zoom`, the wheel and the keys
@@ -89,7 +91,7 @@ export interface VeroneseSegmenterMessages {
  *
  * Forms: under its `name`, the element submits indexed PNG files with the DAVIS palette, whose indices are {@link labels}: `labels.png`
  * of two frames, or one file for each frame of a clip that is done, `00000.png` and on, once the clip has ended or was aborted. It is
- * invalid while it works, after an error, and without masks if it is `required`. A reset shows the first frame and chooses no object.
+ * invalid while it works, an annotation that spreads included, after an error, and without masks if it is `required`. A reset shows the first frame and chooses no object.
  * A disabled element still segments, but takes no input and submits nothing.
  *
  * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`, `--veronese-status-background`,
@@ -110,8 +112,8 @@ export class VeroneseSegmenterElement extends HTMLElement {
   /** Sets both frames and segments them. Pixels and pictures are copied before the call returns. */
   setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
   /**
-   * The frames of a clip, in place of what the attributes name. Setting them cancels what is running and segments them, if the element is
-   * connected. `undefined` or `null` goes back to the attributes.
+   * The frames of a clip, in place of what the attributes name. Setting them cancels what is running, closes the clip before, and segments
+   * them, if the element is connected. `undefined` or `null` goes back to the attributes.
    */
   get frames(): ClipFrames | undefined;
   set frames(frames: ClipFrames | undefined | null);
@@ -135,7 +137,7 @@ export class VeroneseSegmenterElement extends HTMLElement {
   tracks(): ClipTracks | undefined;
   /**
    * Segments the frames with the current attributes: two frames to a `Segmentation`, a clip to its tracks. A new call cancels the
-   * previous one, which rejects with code `cancelled`. A stream that has ended cannot be segmented again.
+   * previous one, which rejects with code `cancelled`. The same frames are segmented again in the same clip, which keeps its annotations. A stream that has ended cannot be segmented again.
    */
   segment(): Promise<Segmentation | ClipTracks>;
   /** Cancels all that has not taken effect; the last result is kept, and so are the frames of a clip that are done. */

@@ -24,9 +24,9 @@ export async function sourceOf(given: ClipFrames | string, place: Place): Promis
     return { frames: { length: video.length, read: picture }, picture, close: () => video.close() };
   }
   if (Array.isArray(given) || 'read' in Object(given)) {
-    const { length, read } = Array.isArray(given) ? listed(given.slice()) : (given as Readable);
-    const picture = async (index: number) => decoded(index, await read.call(given, index));
-    return { frames: { length, read: picture }, picture };
+    const list = Array.isArray(given) ? listed(given.slice()) : (given as Readable);
+    const picture = async (index: number) => decoded(index, await list.read(index));
+    return { frames: { length: list.length, read: picture }, picture };
   }
   const pictures: Promise<Blob>[] = [];
   async function* once(frames: AsyncIterable<FrameSource>) {

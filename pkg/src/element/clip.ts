@@ -1,16 +1,14 @@
-// A clip in the element: the living clip or the stream, the frame that is shown, a timeline. Loaded when there is a clip.
+// A clip in the element: the open clip or the stream, the frame that is shown, what is told of its changes. Loaded when there is a clip.
 
 import type { ClipFrames, ElementClipProgress, VeroneseSegmenterMessages } from '../../types/element-class.js';
 import type { Clip, ClipEvent, ClipFrame, ClipStream, ClipTracks, Pixels, SegmenterPool, SegmentOptions, StreamSource } from '../../types/index.js';
 import { type ClipSource, sourceOf } from './clip-source.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import type { Place } from './sources.js';
+import { Timeline } from './timeline.js';
 import { part } from './view.js';
 
 type Pool = Pick<SegmenterPool, 'openClip' | 'segmentStream'>;
-
-/** Of a clip that plays, milliseconds. */
-const FRAME_TIME = 40;
 
 export interface ShownFrame {
   index: number;
@@ -37,12 +35,8 @@ interface Listeners {
 }
 
 export class ElementClip {
-  readonly timeline = part('input', 'timeline');
+  readonly timeline: Timeline;
   readonly progress = part('progress', 'progress');
-  /** A button that plays the frames, and the number of the one that is shown. */
-  readonly controls = part('div', 'controls');
-  readonly #play = part('button', 'play');
-  readonly #number = part('span', 'number');
   /** What it was opened with. */
   readonly given: ClipFrames | string;
   readonly #place: Place;
@@ -58,7 +52,7 @@ export class ElementClip {
   /** Revisions of the frames as listeners know them. */
   readonly #told: number[] = [];
   /** Masks as files, until they change. */
-  readonly #files: Promise<File>[] = [];
+  readonly #files = new Map<number, Promise<File>>();
   #tracks: ClipTracks = { objects: [], background: [], dropped: 0 };
   /** Until the listeners know of all that has changed. */
   #telling: Promise<void> | undefined;
@@ -66,8 +60,8 @@ export class ElementClip {
   #isBehind = false;
   /** What there is to tell besides frames: a step that has taken effect, or steps that were undone or done again. */
   #news: 'settled' | 'moved' | undefined;
-  #isSegmenting = false;
-  #plays = false;
+  /** Calls of {@link segment} that have not ended. */
+  #segmenting = 0;
   #current = 0;
   /** Whether the frame that is shown has other labels since. */
   #isStale = false;
@@ -80,18 +74,7 @@ export class ElementClip {
     this.#place = { base, signal: this.#ending.signal };
     this.#texts = texts;
     this.#listeners = listeners;
-    this.timeline.type = 'range';
-    this.timeline.min = this.timeline.max = this.timeline.value = '0';
-    this.timeline.addEventListener('input', (event) => {
-      // Seen from outside it would be an input of the element, whose value it does not change.
-      event.stopPropagation();
-      this.show(this.timeline.valueAsNumber);
-    });
-    this.#play.type = 'button';
-    this.#play.addEventListener('click', () => (this.#plays ? this.#pause() : void this.#run()));
-    // The slider says the same.
-    this.#number.ariaHidden = 'true';
-    this.controls.append(this.#play, this.#number);
+    this.timeline = new Timeline(this, texts);
     this.name();
   }
 
@@ -99,32 +82,10 @@ export class ElementClip {
     return this.#ending.signal.aborted;
   }
 
-  /** Shows frame after frame, from the first one where the last one is shown, until a person stops it or there are no more. */
-  async #run(): Promise<void> {
-    this.#plays = true;
-    this.#mark();
-    if (this.#current === this.length - 1) this.show(0);
-    while (this.#plays && !this.#isClosed) {
-      await Promise.all([this.shown(), new Promise((resolve) => setTimeout(resolve, FRAME_TIME))]);
-      if (this.#current >= this.length - 1) this.#pause();
-      else if (this.#plays) this.show(this.#current + 1);
-    }
-  }
-
-  #pause(): void {
-    this.#plays = false;
-    this.#mark();
-  }
-
-  set disabled(disabled: boolean) {
-    this.timeline.disabled = this.#play.disabled = disabled;
-  }
-
   /** Names the slider and the progress. */
   name(): void {
-    this.timeline.setAttribute('aria-label', this.#texts().timeline);
     this.progress.setAttribute('aria-label', this.#texts().progress);
-    this.#mark();
+    this.timeline.mark();
   }
 
   /** Number of frames up to the last one with masks. */
@@ -168,12 +129,12 @@ export class ElementClip {
     const { clip } = this;
     if (!clip) return this.#follow(pool.segmentStream(this.#source?.stream as StreamSource, { ...options, onProgress: this.#listeners.progress }));
     this.progress.removeAttribute('value');
-    this.#isSegmenting = true;
+    this.#segmenting += 1;
     try {
       await clip.segment(options);
       this.#news = undefined;
     } finally {
-      this.#isSegmenting = false;
+      this.#segmenting -= 1;
       await this.#tell();
     }
     return (this.#tracks = await clip.tracks());
@@ -183,7 +144,7 @@ export class ElementClip {
     this.#stream = stream;
     for await (const frame of stream) {
       this.#done.push(await packed(frame.labels, frame.width, frame.height));
-      this.#mark();
+      this.timeline.mark();
       this.#listeners.frame(frame);
       // The latest frame is shown, unless a person looks at an earlier one.
       if (frame.index === 0 || this.#current === frame.index - 1) this.show(frame.index);
@@ -197,14 +158,14 @@ export class ElementClip {
     if (this.#isClosed) return;
     if (event.type === 'progress') this.#report(event);
     if (event.type === 'frames') {
-      for (const index of event.frames) delete this.#files[index];
+      for (const index of event.frames) this.#files.delete(index);
       this.#isStale ||= event.frames.includes(this.#current);
       if (this.#isStale) this.show(this.#current);
-      this.#mark();
+      this.timeline.mark();
     }
     const isSettled = event.type === 'settled';
     // What is undone or done again is no step of its own.
-    const isMoved = event.type === 'frames' && this.clip?.steps.waiting === 0 && !this.#isSegmenting;
+    const isMoved = event.type === 'frames' && this.clip?.steps.waiting === 0 && this.#segmenting === 0;
     if (isSettled && !event.error) this.#news = 'settled';
     else if (isMoved) this.#news ??= 'moved';
     if (isSettled || isMoved) void this.#tell();
@@ -231,14 +192,14 @@ export class ElementClip {
         await this.shown();
         await this.#listeners.masks();
         const isNew = this.#news === 'settled' || (this.#news === 'moved' && isChanged);
-        if (isNew && !this.#isSegmenting) tracks = await clip.tracks();
+        if (isNew && this.#segmenting === 0) tracks = await clip.tracks();
       }
     } catch (thrown) {
       if (!this.#isClosed) this.#listeners.fail(thrown);
     }
     this.#telling = undefined;
     if (this.#isClosed) return;
-    if (!this.#isSegmenting) this.#news = undefined;
+    if (this.#segmenting === 0) this.#news = undefined;
     if (tracks) this.#listeners.tracks((this.#tracks = tracks));
     this.#listeners.change();
   }
@@ -265,7 +226,7 @@ export class ElementClip {
   /** Shows a frame, or the one that is done and nearest to it. Of those that are asked for while one is read, the latest is shown. */
   show(index: number): void {
     this.#current = Math.max(0, Math.min(this.length - 1, Math.trunc(index) || 0));
-    this.#mark();
+    this.timeline.mark();
     this.#showing ??= this.#showLatest();
   }
 
@@ -311,31 +272,25 @@ export class ElementClip {
     return pixels;
   }
 
-  #mark(): void {
-    this.timeline.max = String(Math.max(0, this.length - 1));
-    this.timeline.value = String(this.#current);
-    this.#number.textContent = this.#texts().time(this.#current + 1, this.length);
-    this.timeline.setAttribute('aria-valuetext', this.#number.textContent);
-    this.#play.textContent = this.#plays ? this.#texts().pause : this.#texts().play;
-  }
-
   /** The masks, as `veronese clip` names those of a video. */
   files(): Promise<File[]> {
     const named = (index: number, masks: Packed) => fileOf(masks, `${String(index).padStart(5, '0')}.png`);
     const { clip } = this;
     if (!clip) return Promise.resolve(this.#done.map((done, index) => named(index, done)));
-    const made = async (index: number) => {
-      const { labels, width, height } = await clip.labels(index);
-      return named(index, await packed(labels, width, height));
+    const file = (index: number) => {
+      const made = this.#files.get(index) ?? clip.labels(index).then(async ({ labels, width, height }) => named(index, await packed(labels, width, height)));
+      this.#files.set(index, made);
+      // It is tried again.
+      made.catch(() => this.#files.delete(index));
+      return made;
     };
-    return Promise.all(clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? (this.#files[index] ??= made(index)) : [])));
+    return Promise.all(clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? file(index) : [])));
   }
 
   close(): void {
     this.#ending.abort();
-    this.clip?.close();
-    this.timeline.remove();
-    this.controls.remove();
+    void this.clip?.close();
+    this.timeline.close();
     this.progress.remove();
     this.#source?.close?.();
   }

@@ -165,7 +165,7 @@ export class VeroneseSegmenterElement extends Base {
     if (request === undefined) return;
     request.abort();
     this.#validate();
-    this.#carry().catch(() => undefined);
+    this.#carryLater();
   }
 
   /** One number per pixel of what is shown: labels, or groups where the element is `grouped` or shows the main subject; 255 is unlabelled. */
@@ -258,7 +258,7 @@ export class VeroneseSegmenterElement extends Base {
     else {
       if (name === 'name') this.#submit();
       else if (this.#result) this.#paintPair(this.#result);
-      this.#carry().catch(() => undefined);
+      this.#carryLater();
     }
   }
 
@@ -271,7 +271,7 @@ export class VeroneseSegmenterElement extends Base {
   /** By the attribute, or by a fieldset around the element. */
   formDisabledCallback(disabled: boolean): void {
     this.#view.disabled = disabled;
-    if (this.#clip) this.#clip.disabled = disabled;
+    if (this.#clip) this.#clip.timeline.disabled = disabled;
   }
 
   /** Several attributes that change together are one request. */
@@ -371,8 +371,8 @@ export class VeroneseSegmenterElement extends Base {
     this.#leaveClip();
     this.#result = undefined;
     this.#clip = clip;
-    this.#view.stage.after(clip.timeline, clip.controls);
-    clip.disabled = this.matches(':disabled');
+    this.#view.stage.after(...clip.timeline.parts);
+    clip.timeline.disabled = this.matches(':disabled');
   }
 
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
@@ -398,9 +398,12 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   #leaveClip(): void {
-    this.#clip?.close();
+    if (this.#clip === undefined) return;
+    this.#clip.close();
     this.#clip = undefined;
     this.#shown = undefined;
+    this.#validate();
+    this.#carryLater();
   }
 
   #paintPair(result: Segmentation): void {
@@ -429,6 +432,11 @@ export class VeroneseSegmenterElement extends Base {
     this.#submit();
   }
 
+  /** Where nobody waits: labels that cannot be had have an event of their own. */
+  #carryLater(): void {
+    this.#carry().catch(() => undefined);
+  }
+
   async #masks(): Promise<File[]> {
     if (this.#clip) return this.#clip.files();
     const [result, labels] = [this.#result, this.labels()];
@@ -439,7 +447,7 @@ export class VeroneseSegmenterElement extends Base {
 
   #submit(): void {
     const value = new FormData();
-    for (const file of this.name === '' ? [] : this.#files) value.append(this.name, file);
+    if (this.name !== '') for (const file of this.#files) value.append(this.name, file);
     this.#internals.setFormValue(value);
   }
 
@@ -465,7 +473,7 @@ export class VeroneseSegmenterElement extends Base {
     this.#failure = error;
     this.#view.status.textContent = this.#texts.error(error);
     this.#validate();
-    this.#carry().catch(() => undefined);
+    this.#carryLater();
     this.#tell('error', error);
   }
 

@@ -303,6 +303,7 @@ export class OpenedClip implements Clip, StepClip {
   #close(reason: VeroneseError): Promise<void> {
     if (this.#closed) return this.#left;
     this.#closed = reason;
+    this.#steps = { ...this.#steps, waiting: 0 };
     this.#poke();
     this.#leave();
     for (const step of this.#given) step.reject(reason);
