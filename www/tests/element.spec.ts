@@ -191,8 +191,9 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
   });
 
   await test.step('frames that cannot be used are errors with a code', async () => {
-    const codes = await page.evaluate(async () => {
+    const { codes, before } = await page.evaluate(async () => {
       const element = document.createElement('veronese-segmenter');
+      element.setAttribute('quality', 'fast');
       document.body.append(element);
       const codes: string[] = [];
       const code = (): Promise<string> => new Promise((resolve) => element.addEventListener('error', ({ detail }) => resolve(detail.code), { once: true }));
@@ -205,12 +206,19 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
       const told = code();
       element.src = URL.createObjectURL(new Blob(['no video']));
       codes.push(await told);
+      // The frames before one of them are done.
+      const before: unknown[] = [];
+      for (const type of ['frame', 'tracks', 'error'] as const) element.addEventListener(type, ({ detail }) => before.push('index' in detail ? detail.index : type));
+      const failed = code();
+      element.frames = [...clip(3), null!];
+      before.push(await failed, element.frameCount, element.checkValidity());
       // It goes on.
       const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve, { once: true }));
       element.frames = [first!, second!];
       await tracks;
-      return codes;
+      return { codes, before: before.slice(0, 7) };
     });
+    expect(before).toEqual([0, 1, 2, 'error', 'invalid-input', 3, false]);
     expect(codes).toEqual(['invalid-input', 'invalid-input', 'invalid-input', 'frame-size-mismatch', 'unreadable-image', 'invalid-input', 'unreadable-image', 'unreadable-video']);
   });
 
@@ -472,8 +480,9 @@ test('the clip of the element takes annotations: what it shows, its events and a
     const unchanged = { codes, told: told.splice(0), same: String(element.labels()) === labels && sizes() === files };
 
     // An attribute that changes segments the same clip again, with what was annotated; a frame that is not shown is told.
+    const spoken = once('tracks');
     await opened.annotate({ frame: 3, object: 7, mask: map(1), propagate: 'none' });
-    told.splice(0);
+    await spoken;
     const again = once('tracks');
     element.setAttribute('motions', '2');
     await again;
