@@ -165,7 +165,10 @@ export class OpenedClip implements Clip, StepClip {
     this.#isOneMotion = settings['motions'] === 1;
     const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), range);
     if (signal) {
-      const cancel = () => step.cancel();
+      const cancel = () => {
+        step.failure ??= { thrown: cancelled(signal) };
+        step.cancel();
+      };
       signal.addEventListener('abort', cancel);
       const release = () => signal.removeEventListener('abort', cancel);
       void step.then(release, release);
@@ -333,7 +336,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   /** Gives the clip a command, which takes what it needs of the caller's at once. */
-  #apply(make: () => ClipCommand, range?: StepRange): ClipStep {
+  #apply(make: () => ClipCommand, range?: StepRange): Step {
     let command: ClipCommand;
     try {
       if (this.#closed) throw this.#closed;
