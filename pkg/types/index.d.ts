@@ -389,7 +389,7 @@ export interface ClipFrameStatus {
   accepted: boolean;
   /** Whether a person has annotated it. */
   annotated: boolean;
-  /** Equal revisions have equal labels; 0 before it is segmented. */
+  /** Equal revisions have equal labels; 0 before it is segmented. While a step takes effect it is that from before. */
   revision: number;
 }
 
@@ -422,7 +422,9 @@ export type ClipEvent =
   /** The journal has failed. The clip goes on, and its records are written with the next ones. */
   | { type: 'unkept'; error: VeroneseError }
   /** The worker was lost, for this reason, and the clip goes on in another one. */
-  | { type: 'revived'; reason: VeroneseError };
+  | { type: 'revived'; reason: VeroneseError }
+  /** The clip is closed: by {@link Clip.close}, with its segmenter, or because no worker can be had. */
+  | { type: 'closed'; reason: VeroneseError };
 
 /**
  * A clip that is segmented, annotated and read, from its opening to its closing. Objects are numbered 1 to 254 and keep their number in all

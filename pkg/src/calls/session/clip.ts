@@ -314,6 +314,7 @@ export class OpenedClip implements Clip, StepClip {
     this.#pending.clear();
     for (const { reject } of [...this.#requests]) reject(reason);
     const { writer, journal } = this.#parts;
+    this.#emit({ type: 'closed', reason });
     // What cannot be closed is left to its end.
     this.#left = writer.settled().then(() => journal.close?.()).catch(() => undefined);
     return this.#left;
