@@ -161,7 +161,7 @@ describe('frames as cameras write them', () => {
     return encode({ width, height, channels: 1, depth: 16, data: samples });
   };
 
-  test('samples of 16 bits in a small part of their range are stretched alike in all frames, and that is said', async (t) => {
+  test('samples of 16 bits in a small part of their range are stretched alike in all frames, with a note', async (t) => {
     const { frames, one, out, path } = clip(t);
     for (let k = 0; k < COUNT; k++) writeFileSync(one(k), deep(k));
     const { code, stderr, stdout } = await veronese(['clip', '--quality', 'fast', frames, '--out', out]);
@@ -270,7 +270,7 @@ describe('veronese clip VIDEO', () => {
     });
   }
 
-  test('says what is assumed of a video, in tracks.json too', { skip }, async (t) => {
+  test('notes what is assumed of a video, in tracks.json too', { skip }, async (t) => {
     const [noteCode, sentence, args] = ODD['has other pixels than squares'];
     const { file, out } = video(t, 'a.mkv', ...args, '-c:v', 'ffv1');
     for (const name of ['clip', 'batch']) {
@@ -329,7 +329,7 @@ describe('veronese clip VIDEO', () => {
 
   const canWrite = !skip && /libwebp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-encoders']).stdout);
   const canRead = !skip && /webp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-demuxers']).stdout);
-  test('an animated WebP is a clip, where ffmpeg reads it; elsewhere an error says what to do', { skip: skip || (!canWrite && 'this ffmpeg writes no WebP') }, async (t) => {
+  test('an animated WebP is a clip, where ffmpeg reads it; elsewhere an error has the remedy', { skip: skip || (!canWrite && 'this ffmpeg writes no WebP') }, async (t) => {
     const { file, out } = video(t, 'a.webp', '-c:v', 'libwebp_anim', '-lossless', '1');
     if (canRead) assert.equal((await framesIn(file)).length, COUNT);
     else {

@@ -133,20 +133,15 @@ describe('veronese clip --corrections', () => {
     }
   });
 
-  test('a folder of which nothing is read is an error; what is not read beside others is named', async (t) => {
-    const { frames, corrections, paint, give, masks, out } = clip(t);
+  test('what is not read beside label images is named, and is an error alone', async (t) => {
+    const { frames, corrections, paint, out } = clip(t);
     mkdirSync(join(corrections, 'clip-a'));
-    cpSync(join(frames, 'f1.png'), join(corrections, 'clip-a', 'f1.png'));
     for (const option of ['--corrections', '--masks']) {
       const { stderr } = await run([frames, option, corrections, '--out', out], { code: 1 });
       assert.match(stderr, /^veronese: error: invalid-input: nothing is read of the folder '.*painted': .*; 'clip-a' is not read: 'convert/);
-      assert.equal(existsSync(out), false);
     }
-    const empty = await run([frames, '--masks', masks, '--corrections', corrections, '--out', out], { code: 1 });
-    assert.match(empty.stderr, /folder '.*masks': masks are NAME\.png, or 3\/NAME\.png of object 3, .*; there is no file of these/);
     paint('f3.png', await mask());
     paint('f4.tif', 'II*');
-    give('f3.png', await mask());
     const { stderr, code } = await veronese(['clip', '--quality', 'fast', frames, '--corrections', corrections, '--out', out]);
     assert.deepEqual([code, stderr.replace(corrections, 'painted')], [0, "veronese: note: 'painted': not read: clip-a, f4.tif\n"]);
     assert.deepEqual(tracksOf(out).notes.map((note) => note.code), ['file-left-out']);

@@ -156,7 +156,7 @@ describe('in our folder', () => {
     await refused([...args, '--overlay'], out, 'overlay.png');
   });
 
-  test('what is read is not overwritten, whatever is said', async (t) => {
+  test('what is read is not overwritten, even with --force', async (t) => {
     const { commands: { pair: [pair], clip: [clip] }, out } = made(t);
     await done([...clip, '--overlay']);
     await refused(['clip', join(out, 'overlay'), '--quality', 'fast', '--overlay', '--force', '--out', out], out, 'overlay/f0.png');
@@ -204,16 +204,21 @@ describe('interrupted runs', { skip: skipWindows }, () => {
     }
   });
 
-  test('of a clip leave files of others alone, and name a new one in their way', async (t) => {
+  test('of a clip name a new file in their way', async (t) => {
     const folder = made(t);
     const { commands, out, place } = folder;
     const args = [...commands.clip[0], '--look-ahead', '0'];
     const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { path: /f2\.png$/ }));
-    assert.equal(signal, 'SIGKILL');
-    assert.ok(existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
+    assert.ok(signal === 'SIGKILL' && existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
     place('labels/f3.png');
     await refused(args, out, 'labels/f3.png');
     rmSync(join(out, 'labels', 'f3.png'));
+    // One that comes while it is worked on stays.
+    const { code, stderr } = await veronese(args, { onLine: () => place('tracks.json') });
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
+    assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
+    rmSync(join(out, 'tracks.json'));
     await done(args);
   });
 });
@@ -223,12 +228,4 @@ test('two batches into one folder at once both end well', async (t) => {
   for (const { code, stderr } of await Promise.all([veroneseProcess(args), veroneseProcess(args)])) assert.deepEqual([code, stderr], [0, '']);
   await done(args);
   assert.equal(entries(out).length, 4);
-});
-
-test('a file that comes into the way while a clip is worked on stays', { skip: skipWindows }, async (t) => {
-  const { commands: { clip: [args] }, out, place } = made(t);
-  const { code, stderr } = await veronese([...args, '--look-ahead', '0'], { onLine: () => place('tracks.json') });
-  assert.equal(code, 1);
-  assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
-  assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
 });

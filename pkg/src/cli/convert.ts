@@ -95,7 +95,7 @@ async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', 
   const { folder, to, range, background, grouped, frameRate, shapes = 'polygon', tolerance, video } = command;
   const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
   // Names that depend on frames are checked when they are written.
-  await output.check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
+  output.check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
   const settings = { shapes, tolerance, ...(video !== undefined && { video }) };
   const files = await output.stage(async (write) => {
     for (const name of to) await SEQUENCE_FORMATS[name].convert(sequence, settings, write);
