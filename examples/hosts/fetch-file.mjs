@@ -1,123 +1,70 @@
-// A file by an address that somebody else chose: no way into the network that this server stands in, and no way out for its token.
+// A file by an address that somebody else chose: from the servers that were named alone, and the token for one of them.
 
-import { lookup as systemLookup } from 'node:dns';
-import { request as plainRequest } from 'node:http';
-import { request as secureRequest } from 'node:https';
-import { isIP } from 'node:net';
-import ipaddr from 'ipaddr.js';
 import { Refusal } from './http.mjs';
 
 /** Largest file, bytes; how long it may take, milliseconds: Label Studio itself gives up after 100 s; and how often it may be elsewhere. */
 const LARGEST = 64 * 1024 * 1024;
 const PATIENCE = 30_000;
 const REDIRECTS = 5;
-/** The content types that a file of a kind may have. */
-const TYPES = {
-  image: /^(image\/|[a-z]+\/octet-stream)/i,
-  video: /^(video\/|application\/(mp4|ogg)|[a-z]+\/octet-stream)/i,
-};
-/** All that is given out of IPv6. Outside there are ways around: `::7f00:1` is an old spelling of 127.0.0.1. */
-const GLOBAL = ipaddr.parseCIDR('2000::/3');
 
 /**
- * A function that fetches a file of a kind, `image` or `video`. `home` is the origin that relative addresses belong to and the only one
- * that sees a token. Of hosts in private networks, loopback and all else that is not public it fetches from `home` and the origins in
- * `allow` alone.
+ * A function that fetches files. `home` is the origin that relative addresses belong to and the only one that sees a token; the others are
+ * in `allow`.
  */
-export function createFetch({ home, allow = [], largest = LARGEST, patience = PATIENCE, lookup = systemLookup } = {}) {
-  const named = new Set([...(home ? [home] : []), ...allow].map(originOf));
+export function createFetch({ home, allow = [] } = {}) {
+  const named = new Set([home, ...allow].filter(Boolean).map(originOf));
 
-  return async function fetchFile(address, { token, signal, kind = 'image' } = {}) {
-    signal?.throwIfAborted();
-    const limit = new AbortController();
-    const timer = setTimeout(() => limit.abort(refused(address, `takes longer than ${patience} ms`)), patience);
-    const follow = () => limit.abort(signal.reason);
-    signal?.addEventListener('abort', follow);
+  return async function fetchFile(address, { token, signal }) {
+    const limit = AbortSignal.any([signal, AbortSignal.timeout(PATIENCE)]);
     try {
-      return await fetched(address, kind, token, limit.signal);
+      const response = await answered(address, token, limit);
+      const [pieces, size] = [[], { bytes: 0 }];
+      for await (const piece of response.body) {
+        size.bytes += piece.length;
+        if (size.bytes > LARGEST) throw refused(address, `has more than ${LARGEST} bytes`, 'unreadable-file');
+        pieces.push(piece);
+      }
+      return Buffer.concat(pieces);
     } catch (error) {
-      if (limit.signal.aborted) throw limit.signal.reason;
-      throw error instanceof Refusal ? error : refused(address, `cannot be fetched: ${error.message}`);
-    } finally {
-      clearTimeout(timer);
-      signal?.removeEventListener('abort', follow);
+      signal.throwIfAborted();
+      throw error instanceof Refusal ? error : refused(address, `cannot be fetched: ${error.cause?.message ?? error.message}`);
     }
   };
 
-  async function fetched(address, kind, token, signal) {
-    if (/^data:/i.test(address)) return inline(address);
-    let url = resolved(address, home);
+  async function answered(address, token, signal) {
+    if (/^data:/i.test(address)) return fetch(address);
+    let url = checked(address, home);
     // A stranger who redirects back home does not get to ask there in our name.
     let trusted = true;
     for (let hop = 0; hop <= REDIRECTS; hop++) {
       trusted &&= url.origin === home;
-      const response = await get(url, trusted && token ? await authorization(token, address, signal) : undefined, signal);
-      const next = [301, 302, 303, 307, 308].includes(response.statusCode) ? response.headers.location : undefined;
-      if (next === undefined) return content(response, address, kind, url);
-      response.destroy();
-      url = resolved(next, url);
+      // Label Studio answers 406 to who wants images alone.
+      const headers = { Accept: '*/*', ...(trusted && token && { Authorization: await authorization(token, signal) }) };
+      const response = await fetch(url, { headers, redirect: 'manual', signal });
+      if (response.ok) return response;
+      await response.body?.cancel();
+      const location = response.headers.get('location');
+      const hint = trusted && [401, 403].includes(response.status) ? ': see LABEL_STUDIO_API_KEY in label-studio.md' : '';
+      if (response.status < 300 || response.status > 399 || location === null) throw refused(address, `answered ${response.status}${hint}`);
+      url = checked(location, url);
     }
     throw refused(address, `is redirected more than ${REDIRECTS} times`);
   }
 
+  /** The address, if it is one of a server that was named. */
+  function checked(address, base) {
+    if (!URL.canParse(address, base)) throw refused(address, 'is no address; set LABEL_STUDIO_URL for files of Label Studio', 'invalid-input');
+    const url = new URL(address, base);
+    if (named.has(url.origin) && !url.username && !url.password) return url;
+    throw refused(url.origin, `is not allowed: start the server with --allow ${url.origin}`, 'address-refused');
+  }
+
   /** Of a personal access token Label Studio makes one that opens its files for some minutes. Legacy tokens open them as they are. */
-  async function authorization(token, address, signal) {
+  async function authorization(token, signal) {
     if (!/^[^.]+\.[^.]+\.[^.]+$/.test(token)) return `Token ${token}`;
     const headers = { 'Content-Type': 'application/json' };
-    const request = { method: 'POST', headers, body: JSON.stringify({ refresh: token }), redirect: 'error', signal };
-    const response = await fetch(new URL('/api/token/refresh', home), request);
-    if (!response.ok) throw refused(address, unopened(response.status));
+    const response = await fetch(new URL('/api/token/refresh', home), { method: 'POST', headers, body: JSON.stringify({ refresh: token }), redirect: 'error', signal });
     return `Bearer ${(await response.json()).access}`;
-  }
-
-  function get(url, authorization, signal) {
-    const host = url.hostname.replace(/^\[|\]$/g, '');
-    const free = named.has(url.origin);
-    if (!free && isIP(host)) checkAddress(host, url);
-    // Label Studio answers 406 to who wants images alone.
-    const headers = { Accept: '*/*', 'Accept-Encoding': 'identity', ...(authorization && { Authorization: authorization }) };
-    const request = url.protocol === 'https:' ? secureRequest : plainRequest;
-    const options = { agent: false, headers, signal, lookup: free ? lookup : checkedLookup(url) };
-    return new Promise((resolve, reject) => request(url, options).once('response', resolve).on('error', reject).end());
-  }
-
-  /** The connection goes to the very addresses that were looked at: asked again, the name could have others. */
-  function checkedLookup(url) {
-    return (host, options, callback) =>
-      lookup(host, { ...options, all: true }, (error, found) => {
-        try {
-          if (error) throw error;
-          if (found.length === 0) throw new Error(`${host} has no address`);
-          for (const { address } of found) checkAddress(address, url);
-        } catch (problem) {
-          return callback(problem);
-        }
-        return options.all ? callback(null, found) : callback(null, found[0].address, found[0].family);
-      });
-  }
-
-  async function content(response, address, kind, { origin }) {
-    const { statusCode: status, headers } = response;
-    const problem = () => {
-      if (origin === home && [401, 403].includes(status)) return unopened(status);
-      if (status < 200 || status > 299) return `answered ${status}`;
-      const type = headers['content-type'];
-      if (type !== undefined && !TYPES[kind].test(type)) return `is ${type}, not ${kind === 'image' ? 'an image' : 'a video'}`;
-      return undefined;
-    };
-    const found = problem();
-    if (found) {
-      response.destroy();
-      throw refused(address, found);
-    }
-    const pieces = [];
-    let length = 0;
-    for await (const piece of response) {
-      length += piece.length;
-      if (length > largest) throw refused(address, `has more than ${largest} bytes`, 'unreadable-file');
-      pieces.push(piece);
-    }
-    return new Uint8Array(Buffer.concat(pieces));
   }
 }
 
@@ -128,36 +75,6 @@ export function originOf(text) {
   return url.origin;
 }
 
-function unopened(status) {
-  return `answered ${status}: see LABEL_STUDIO_API_KEY in label-studio.md`;
-}
-
-async function inline(address) {
-  try {
-    return new Uint8Array(await (await fetch(address)).arrayBuffer());
-  } catch {
-    throw refused(address, 'cannot be read', 'unreadable-file');
-  }
-}
-
-function resolved(address, base) {
-  if (!URL.canParse(address, base)) {
-    const hint = base ? 'is no address' : 'is a file of Label Studio: set LABEL_STUDIO_URL and LABEL_STUDIO_API_KEY';
-    throw refused(address, hint, 'invalid-input');
-  }
-  const url = new URL(address, base);
-  if (!/^https?:$/.test(url.protocol)) throw refused(address, 'must be an address of http, https or data', 'invalid-input');
-  if (url.username || url.password) throw refused(url.origin, 'is no place for a password', 'invalid-input');
-  return url;
-}
-
-function checkAddress(address, { origin }) {
-  const parsed = ipaddr.process(address);
-  if (parsed.range() === 'unicast' && (parsed.kind() === 'ipv4' || parsed.match(GLOBAL))) return;
-  throw refused(origin, `is not public (${address}): start the server with --allow ${origin}`, 'address-refused');
-}
-
 function refused(address, what, code = 'file-not-found') {
-  const text = String(address);
-  return new Refusal(422, code, `${text.length > 200 ? `${text.slice(0, 200)}…` : text} ${what}`);
+  return new Refusal(422, code, `${String(address).slice(0, 200)} ${what}`);
 }

@@ -1,26 +1,21 @@
 // An ML backend for Label Studio: every task with two frames gets brush masks of what moves between them, every task with a video
 // boxes that follow its objects.
 //
-// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--known-as NAME …] [--allow ORIGIN …] [--jobs N] [--tasks N] [--pixels N]
-//                       [--frames N] [--seconds N]
+// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--known-as NAME …] [--allow ORIGIN …] [--jobs N] [--frames N] [--seconds N]
 
 import { fileURLToPath } from 'node:url';
+import { parseArgs } from 'node:util';
+import PQueue from 'p-queue';
+import { SegmenterPool, version } from 'veronese';
 import { encodeLabelStudio } from 'veronese/formats';
-import { version } from 'veronese';
-import { boxesOf, rateOf } from './boxes.mjs';
-import { run } from './command-line.mjs';
 import { createFetch, originOf } from './fetch-file.mjs';
-import { Refusal, isObject, serveJson } from './http.mjs';
+import { Refusal, serveJson } from './http.mjs';
 import { readConfig } from './label-config.mjs';
-import { createSegment, score } from './segment.mjs';
-import { createFollow } from './video.mjs';
+import { boxesOf, follow, rateOf } from './video.mjs';
 
-export { readConfig };
-
-/** Most numbers in the masks and boxes of one answer: they wait in memory until the last task is done. */
-const NUMBERS = 32 * 1024 * 1024;
-/** Numbers of a box in a frame, about. */
-const BOX = 8;
+/** Tasks that are worked on at once, and all that may be asked for. */
+const JOBS = 2;
+const TASKS = 256;
 const MODEL = `veronese-${version}`;
 
 /**
@@ -28,67 +23,63 @@ const MODEL = `veronese-${version}`;
  * server runs; `token` opens them, or else what the studio sends at set-up.
  */
 export async function startBackend({
-  port, host, knownAs, largest, jobs, tasks: most, pixels, frames, seconds, allow,
+  port, host, knownAs, allow, jobs = JOBS, frames, seconds,
   studio = process.env.LABEL_STUDIO_URL,
   token: configured = process.env.LABEL_STUDIO_API_KEY,
 } = {}) {
   const home = studio ? originOf(studio) : undefined;
   const fetchFile = createFetch({ home, allow });
-  const { segment, perform, close } = createSegment({ jobs, tasks: most, pixels });
-  const follow = createFollow({ frames, seconds, pixels });
+  const pool = new SegmenterPool({ jobs });
+  const queue = new PQueue({ concurrency: jobs });
   let token = configured;
 
+  const health = () => ({ status: 'UP', model_class: 'Veronese' });
   const routes = {
     'GET /': health,
     'GET /health': health,
     'GET /versions': () => ({ versions: [MODEL] }),
     'POST /setup': ({ hostname, access_token: sent }) => {
-      if (!configured && home && isToken(sent) && URL.canParse(hostname) && new URL(hostname).origin === home) token = sent;
+      const isOurs = URL.canParse(hostname) && new URL(hostname).origin === home;
+      if (!configured && isOurs && typeof sent === 'string' && /^[\x21-\x7e]+$/.test(sent)) token = sent;
       return { model_version: MODEL };
     },
     'POST /webhook': () => ({ status: 'nothing to learn' }),
     'POST /predict': async ({ tasks, label_config: config }, signal) => {
-      if (!Array.isArray(tasks) || !tasks.every(isObject)) throw new Refusal(400, 'invalid-input', 'tasks must be a list of objects');
+      if (!Array.isArray(tasks)) throw new Refusal(400, 'invalid-input', 'tasks must be a list');
+      if (tasks.length > TASKS) throw new Refusal(413, 'too-many-tasks', `a request has at most ${TASKS} tasks`);
+      if (tasks.length > TASKS - queue.size - queue.pending) throw new Refusal(503, 'busy', 'others are waiting already', { 'Retry-After': '10' });
       const wanted = readConfig(config);
       const predict = wanted.video === undefined ? masks : boxes;
-      let numbers = 0;
-      const results = await perform(tasks, async (task) => {
-        const prediction = await predict(task, wanted, signal);
-        for (const { value } of prediction.result) numbers += value.rle?.length ?? BOX * value.sequence.length;
-        if (numbers > NUMBERS) throw new Refusal(413, 'too-large', 'the results of so many tasks are too much for one answer');
-        return prediction;
-      }, signal);
-      return { results };
+      const results = await Promise.all(tasks.map((task) => queue.add(() => predict(Object(task).data, wanted, signal), { signal })));
+      return { results: results.map((result) => ({ ...result, model_version: MODEL })) };
     },
   };
 
   /** Of two frames. */
-  async function masks({ data }, { fromName, toName, labels, keys }, signal) {
-    const files = await Promise.all(keys.map(async (key) => fetchFile(addressIn(data, key), { token, signal })));
-    const found = await segment(files[0], files[1], { confidence: true, signal });
+  async function masks(data, { fromName, toName, labels, keys }, signal) {
+    const files = await Promise.all(keys.map((key) => fetchFile(addressIn(data, key), { token, signal })));
+    const found = await pool.segmentPair(...files.map((file) => new Blob([file])), { confidence: true, signal });
     // The dominant motion, usually the background, is nobody's mask; the others take the labels of the configuration in order.
     const motions = found.motions.slice(1, 1 + labels.length);
     const names = Object.fromEntries(motions.map(({ label }, index) => [label, labels[index]]));
     const meta = { names, labels: motions.map(({ label }) => label), motions: found.motions };
-    const task = encodeLabelStudio(found.labels, found.width, found.height, meta, { fromName, toName, modelVersion: MODEL });
-    return { result: task.predictions[0].result, score: score(found), model_version: MODEL };
+    const { predictions: [{ result }] } = encodeLabelStudio(found.labels, found.width, found.height, meta, { fromName, toName, modelVersion: MODEL });
+    // The mean probability that a pixel's label is right.
+    return { result, score: found.confidence.reduce((sum, value) => sum + value, 0) / (255 * found.confidence.length) };
   }
 
   /** Of a video: Label Studio has no masks there. */
-  async function boxes({ data }, { video, frameRate, ...names }, signal) {
-    const file = await fetchFile(addressIn(data, video), { token, signal, kind: 'video' });
-    const found = await follow(file, (clip) => boxesOf(clip, rateOf(frameRate, data), { ...names, modelVersion: MODEL }), signal);
-    return { ...found, model_version: MODEL };
+  async function boxes(data, { video, frameRate, ...names }, signal) {
+    const file = await fetchFile(addressIn(data, video), { token, signal });
+    return follow(file, (clip) => boxesOf(clip, rateOf(frameRate, data), { ...names, modelVersion: MODEL }), signal, { frames, seconds });
   }
 
-  const server = await serveJson(routes, { port, host, knownAs, largest });
-  return {
-    address: server.address,
-    close: () => {
-      server.close();
-      close();
-    },
+  const server = await serveJson(routes, { port, host, knownAs });
+  const close = () => {
+    server.close();
+    pool.close();
   };
+  return { address: server.address, close };
 }
 
 function addressIn(data, key) {
@@ -96,15 +87,11 @@ function addressIn(data, key) {
   return data[key];
 }
 
-function health() {
-  return { status: 'UP', model_class: 'Veronese' };
-}
-
-/** Whether a text is allowed in a header. */
-function isToken(text) {
-  return typeof text === 'string' && /^[\x21-\x7e]+$/.test(text);
-}
-
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
-  await run('ML backend', startBackend, { port: 9090, lists: ['allow'], limits: ['frames', 'seconds'] });
+  const [text, list] = [{ type: 'string' }, { type: 'string', multiple: true }];
+  const { values } = parseArgs({ options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text, frames: text, seconds: text } });
+  const numbers = Object.fromEntries(['port', 'jobs', 'frames', 'seconds'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])));
+  const server = await startBackend({ ...values, ...numbers, knownAs: values['known-as'] });
+  console.log(`ML backend at ${server.address}`);
+  for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, server.close);
 }

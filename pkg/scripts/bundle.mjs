@@ -33,8 +33,8 @@ const BUNDLED = { '@rgrove/parse-xml': '@rgrove/parse-xml/src/index.ts', fflate:
 const SHARED = ['common/'];
 /** Shared by encoders and readers of masks. */
 const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
-/** Shared by all entries with calls, but for what they load when masks are given or several workers share a clip. */
-const CALLS = ['module/', 'calls/(?!(?:clip/(?:given-masks|notes|shared-pairs)|nothing)\\.js)', 'pool/', 'entries/package.js'];
+/** Shared by all entries with calls, but for what they load when masks or pictures are given or several workers share a clip. */
+const CALLS = ['module/', 'calls/(?!(?:clip/notes|segmented/given-masks|session/stored-journal|nothing|pictures)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const worker = await rolldown({ input: resolve(folder('build'), 'worker/worker.js'), platform: 'browser' });

@@ -1,11 +1,13 @@
-// Takes the JavaScript that wasm-bindgen wrote beside each module to the compiled sources, with the calls that are used and a
-// loader of our own, and the modules as text; part of `npm run build`.
+// Takes the JavaScript that wasm-bindgen wrote beside each module to the compiled sources, with the calls that are used and what makes and
+// forgets an instance added to it, and the modules as text; part of `npm run build`.
 
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
-const CLIP_CALLS = ['beginClip', 'pushClip', 'previewClip', 'finishClip', 'concludeClip', 'restoreClip', 'saveClip', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
-const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, 'paintLabels', 'paintLabelsOffscreen'];
+const CLIP_CALLS = ['openClip', 'applyClip', 'moveClip', 'takeClip', 'lookAtClip', 'saveClip', 'closeClip', 'solvePair', 'beginStream', 'pushStream', 'finishStream'];
+/** Of the page. */
+const SEGMENTED_CALLS = ['beginClip', 'pushClip', 'previewClip', 'concludeClip', 'restoreClip', 'saveSegmented', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
+const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, ...SEGMENTED_CALLS];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [
@@ -27,19 +29,15 @@ const inside = { frames: packed('../wasm/veronese_bg.wasm'), points: packed('../
 const lines = Object.entries(inside).map(([name, text]) => `export const ${name} = '${text}';\n`);
 writeFileSync(new URL('../build/entries/inline-module.js', import.meta.url), lines.join(''));
 
-/** One object of the calls, from which whatever bundles the rest sees what nobody uses. */
+/** What wasm-bindgen wrote, and after it one object of the calls. The bundle has nothing of what this object does not use, such as its loader. */
 function adapted(glue, calls) {
-  // Two thirds of the loader are for sources that loading.ts knows better; what is left needs four lines.
-  const loader = /\nasync function __wbg_load\([\s\S]*\nexport \{ initSync, __wbg_init as default \};\n$/;
-  // Every browser that runs these modules has TextEncoder.encodeInto.
-  const encoder = /\nif \(!\('encodeInto' in cachedTextEncoder\)\) \{[\s\S]*?\n\}\n/;
-  const parts = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;', 'cachedTextEncoder.encodeInto('];
-  const missing = [...parts, ...calls.map((name) => `export function ${name}(`)].filter((part) => !glue.includes(part));
-  if (!loader.test(glue) || !encoder.test(glue) || missing.length > 0) {
+  const used = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;', ...calls.map((name) => `export function ${name}(`)];
+  const missing = used.filter((part) => !glue.includes(part));
+  if (missing.length > 0) {
     console.error(`veronese: the glue of this wasm-bindgen looks different (${missing}): read pkg/scripts/glue.mjs`);
     process.exit(1);
   }
-  return `${glue.replace(loader, '').replace(encoder, '\n')}
+  return `${glue}
 async function instantiate(module) {
     // The package's modules are made of one source: each could be taken for another.
     if (!WebAssembly.Module.exports(module).some(({ name }) => name === '${calls[0]}')) throw new Error('it has no ${calls[0]}');

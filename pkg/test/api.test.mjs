@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readdirSync, readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
-import { davisPalette, fitMotions, groupLabels, paintLabels, segmentPair, VeroneseError } from 'veronese';
+import { fitMotions, groupLabels, segmentPair, VeroneseError } from 'veronese';
 import { api as codecsApi, decodeImage } from '../dist/codecs.js';
 import { frame, pair, points } from './support/frames.mjs';
 import { checkLabels, checkPair, checkPoints, failure, timeless } from './support/shapes.mjs';
@@ -252,55 +252,6 @@ test('groupLabels merges the labels of a group and keeps 255', () => {
   const labels = Uint8Array.of(0, 1, 2, 255, 2, 1);
   assert.deepEqual(groupLabels({ labels, motions }), Uint8Array.of(0, 1, 0, 255, 0, 1));
   assert.deepEqual(labels, Uint8Array.of(0, 1, 2, 255, 2, 1), 'the labels themselves stay');
-});
-
-describe('paintLabels', () => {
-  // Node has neither ImageData nor a canvas: a stand-in for each, as small as the calls need. Real ones are met in the page's tests.
-  class ImageData {
-    constructor(data, width, height) {
-      Object.assign(this, { data, width, height });
-    }
-  }
-  async function painted(segmentation, options) {
-    const calls = [];
-    globalThis.ImageData = ImageData;
-    try {
-      await paintLabels({ putImageData: (...args) => calls.push(args) }, segmentation, options);
-    } finally {
-      delete globalThis.ImageData;
-    }
-    assert.equal(calls.length, 1);
-    const [image, x, y] = calls[0];
-    assert.deepEqual([x, y], [0, 0]);
-    return image;
-  }
-  const segmentation = { labels: Uint8Array.of(0, 1, 2, 255, 1, 0), width: 3, height: 2 };
-
-  test('puts one pixel per label in its colour', async () => {
-    const palette = [[1, 2, 3], [10, 20, 30, 100], [9, 9, 9, 0]];
-    const { data, width, height } = await painted(segmentation, { palette, opacity: 0.5 });
-    assert.ok(data instanceof Uint8ClampedArray);
-    assert.deepEqual([width, height], [3, 2]);
-    const [zero, one, two, beyond] = [[1, 2, 3, 128], [10, 20, 30, 50], [9, 9, 9, 0], [0, 0, 0, 0]];
-    assert.deepEqual([...data], [zero, one, two, beyond, one, zero].flat());
-  });
-
-  test('by default leaves the dominant motion and unlabelled pixels transparent', async () => {
-    const { data } = await painted(segmentation);
-    const colours = davisPalette();
-    assert.deepEqual([...data.subarray(0, 16)].filter((_, i) => i % 4 === 3), [0, 128, 128, 0]);
-    assert.deepEqual([...data.subarray(4, 7)], colours[1]);
-  });
-
-  test('refuses what does not fit', async () => {
-    const cases = [
-      [{ ...segmentation, width: 4 }, {}],
-      [segmentation, { opacity: 1.5 }],
-      [segmentation, { opacity: NaN }],
-      [segmentation, { palette: Array(257).fill([0, 0, 0]) }],
-    ];
-    for (const args of cases) assert.equal((await failure(painted(...args))).code, 'invalid-option');
-  });
 });
 
 test('the codes in the types are those of the Rust side and of the sources', () => {

@@ -86,6 +86,23 @@ test('streams of bytes: of a file, of a response, in pairs and in streams of fra
   }
 });
 
+test('files in memory, in pairs and in clips', async (t) => {
+  const { paths } = files(t);
+  const expected = timeless(await segmentPair(...pair()));
+  const blobs = pair().map((frame) => new Blob([png(frame)]));
+  assert.deepEqual(timeless(await segmentPair(...blobs)), expected);
+  assert.deepEqual(timeless(await segmentPair(paths[0], new File([blobs[1]], '1.png'))), expected);
+  assert.deepEqual(await labelsOf(segmentClip(blobs, { quality: 'fast' })), await labelsOf(segmentClip(pair(), { quality: 'fast' })));
+  for (const [given, name] of [[new Blob(['text']), 'the file in memory'], [new File(['text'], 'a.png'), "the file 'a.png'"]]) {
+    const error = await failure(segmentPair(paths[0], given));
+    assert.equal(error.code, 'unreadable-image');
+    assert.ok(error.message.startsWith(`${name}: `), error.message);
+  }
+  const pretended = await failure(segmentPair(paths[0], { [Symbol.toStringTag]: 'Blob' }));
+  assert.equal(pretended.code, 'invalid-input');
+  assert.match(pretended.message, /^the second frame must be .* in Node a path, address, Blob or stream$/);
+});
+
 test('where nothing reads files, the error says so', async () => {
   const { segmentPair: slim, init } = await import('veronese/slim');
   await init(readFileSync(new URL(import.meta.resolve('veronese/veronese_bg.wasm'))));
@@ -93,6 +110,8 @@ test('where nothing reads files, the error says so', async () => {
     const error = await failure(slim(pair()[0], given));
     assert.deepEqual([error.code, error.message], ['invalid-input', "the second frame is a path, an address or a stream: only 'veronese' in Node reads these, decode it first"]);
   }
+  const error = await failure(slim(pair()[0], new Blob([])));
+  assert.deepEqual([error.code, error.message], ['invalid-input', 'the second frame is a picture (Blob), which nothing reads here: decode it first']);
 });
 
 test('what cannot be read is named', async (t) => {

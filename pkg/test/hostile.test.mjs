@@ -171,7 +171,6 @@ describe('segmentPairs and pools', () => {
 });
 
 describe('pictures and labels', () => {
-  const context = { putImageData() {} };
   test('groupLabels', async () => {
     await everywhere((value) => index.groupLabels(value), []);
     await everywhere((value) => index.groupLabels({ labels: value, motions: [] }), ['no bytes', 'three bytes', 'shared bytes', 'bytes that are called something else']);
@@ -179,22 +178,6 @@ describe('pictures and labels', () => {
     await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [value] }), []);
     await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [{ label: 0, group: value }] }), ['zero', 'one']);
     await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [{ label: value, group: 0 }] }), ['zero', 'one']);
-  });
-
-  test('paintLabels', async (t) => {
-    globalThis.ImageData = class {}; // Node has none.
-    t.after(() => delete globalThis.ImageData);
-    await everywhere((value) => index.paintLabels(value, found), []);
-    await everywhere((value) => index.paintLabels(context, value), []);
-    await everywhere((value) => index.paintLabels(context, { ...found, labels: value }), []);
-    await everywhere((value) => index.paintLabels(context, { ...found, width: value }), []);
-    await everywhere((value) => index.paintLabels(context, { ...found, height: value }), []);
-    await everywhere((value) => index.paintLabels(context, found, value), OPTIONS);
-    await everywhere((value) => index.paintLabels(context, found, { opacity: value }), ['undefined', 'zero', 'half', 'one']);
-    await everywhere((value) => index.paintLabels(context, found, { palette: value }), ['undefined', 'empty list']);
-    await everywhere((value) => index.paintLabels(context, found, { palette: [value] }), []);
-    await everywhere((value) => index.paintLabels(context, found, { palette: [[0, value, 0]] }), ['zero', 'half', 'one']);
-    await everywhere((value) => index.paintLabels(context, found, { nonsense: value }), ['undefined']);
   });
 
   test('codecs', async () => {

@@ -7,7 +7,7 @@ import { setFlagsFromString } from 'node:v8';
 import { runInNewContext } from 'node:vm';
 import { Worker } from 'node:worker_threads';
 import { decode } from 'fast-png';
-import { fitMotions, paintLabels, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
+import { fitMotions, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
 import { encodeCoco, encodeVeronese, decodeVeronese } from 'veronese/formats';
 import { Api } from '../build/calls/api.js';
@@ -122,23 +122,6 @@ describe('arguments that are written to after the call, or given away, change no
       scribble([bytes]);
       assert.deepEqual([...decode(await encoded).data], wanted, encoder.name);
     }
-  });
-
-  test('paintLabels', async (t) => {
-    // Node has no ImageData.
-    globalThis.ImageData = class {
-      constructor(data) {
-        this.data = data;
-      }
-    };
-    t.after(() => delete globalThis.ImageData);
-    const labels = Uint8Array.of(0, 1, 1, 0);
-    let painted;
-    const done = paintLabels({ putImageData: ({ data }) => (painted = [...data]) }, { labels, width: 2, height: 2 }, { palette: [[0, 0, 0, 0], [9, 9, 9]], opacity: 1 });
-    scribble([labels]);
-    await done;
-    const [none, nine] = [[0, 0, 0, 0], [9, 9, 9, 255]];
-    assert.deepEqual(painted, [none, nine, nine, none].flat());
   });
 });
 

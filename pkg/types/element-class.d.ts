@@ -1,9 +1,9 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError, WasmSource, WorkerLike } from './index.js';
+import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, FramePicture, Pixels, Progress, Segmentation, VeroneseError, WasmSource, WorkerLike } from './index.js';
 
-/** A frame: a URL, a file, a bitmap, or pixels. */
-export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
+/** A frame: a URL, a picture such as a file or a bitmap, or pixels. */
+export type FrameSource = string | URL | FramePicture | Pixels;
 
 /**
  * The frames of a clip, all of one size, in order. Frames of an array and of `{ length, read(index) }` are read again when they are
@@ -105,7 +105,7 @@ export class VeroneseSegmenterElement extends HTMLElement {
   static readonly observedAttributes: string[];
   /** The last result of two frames; undefined for a clip. */
   readonly result: Segmentation | undefined;
-  /** Sets both frames and segments them. Pixels and bitmaps are copied before the call returns. */
+  /** Sets both frames and segments them. Pixels and pictures are copied before the call returns. */
   setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
   /**
    * The frames of a clip, in place of what the attributes name. Setting them cancels what is running and segments them, if the element is

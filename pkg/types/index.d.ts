@@ -13,10 +13,55 @@ export interface Pixels {
 }
 
 /**
- * In Node, an image file in place of its pixels: its path, its address, or a stream of its bytes, such as a `Readable` or the body of a response.
- * Read as `veronese/codecs` does. Elsewhere code `invalid-input`.
+ * In Node, an image file in place of its pixels: its path, its address, a `Blob`, or a stream of its bytes, such as a `Readable` or the body of a
+ * response. Read as `veronese/codecs` does. Elsewhere code `invalid-input`, but for a `Blob`.
  */
-export type FrameFile = string | URL | AsyncIterable<Uint8Array>;
+export type FrameFile = string | URL | BlobLike | AsyncIterable<Uint8Array>;
+
+/**
+ * In browsers and their workers, a picture in place of its pixels: an `ImageBitmap`, a `VideoFrame`, an image file as a `Blob` or `File`, an
+ * `HTMLImageElement`, an `HTMLCanvasElement` or an `OffscreenCanvas`. It is copied before the call returns, so you may close it afterwards. One
+ * that is closed is refused with code `invalid-input`, one that cannot be decoded or read with code `unreadable-image`.
+ */
+export type FramePicture = BlobLike | ImageBitmapLike | VideoFrameLike | ImageLike | CanvasLike;
+
+/** A frame that is segmented. */
+export type FrameInput = Pixels | FrameFile | FramePicture;
+
+/** The part of a `Blob` that tells it from others, without depending on the types of the DOM or Node. */
+export interface BlobLike {
+  readonly size: number;
+  readonly type: string;
+  arrayBuffer(): Promise<ArrayBuffer>;
+}
+
+/** The same of an `ImageBitmap`. */
+export interface ImageBitmapLike {
+  readonly width: number;
+  readonly height: number;
+  close(): void;
+}
+
+/** The same of a `VideoFrame`. */
+export interface VideoFrameLike {
+  readonly displayWidth: number;
+  readonly displayHeight: number;
+  close(): void;
+}
+
+/** The same of an `HTMLImageElement`. */
+export interface ImageLike {
+  readonly naturalWidth: number;
+  readonly naturalHeight: number;
+  decode(): Promise<void>;
+}
+
+/** The same of an `HTMLCanvasElement` or an `OffscreenCanvas`. */
+export interface CanvasLike {
+  width: number;
+  height: number;
+  getContext(kind: '2d'): object | null;
+}
 
 /** Progress of a call: a stage has just begun. */
 export interface Progress {
@@ -215,220 +260,236 @@ export interface PointMeasurements {
 }
 
 /**
- * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: the next frame is asked for while one is worked
- * on, and may reuse its buffer. `{ length, read(index) }` is a whole clip: each frame is read for its pairs, then for its labels, and
- * in any order for corrections, and must be the same each time; some are read once more to say why nothing was found. An array is a stream
- * unless an option needs a whole clip.
+ * The frames of a clip, all of one size: a list, or how many there are and a function that reads any of them. Frames are read more than once,
+ * in any order, and must be the same each time.
  */
-export type ClipSource =
-  | Iterable<Pixels | FrameFile | Promise<Pixels | FrameFile>>
-  | AsyncIterable<Pixels | FrameFile>
-  | { readonly length: number; read(index: number): Pixels | FrameFile | Promise<Pixels | FrameFile> };
+export type ClipFrames = readonly FrameInput[] | { readonly length: number; read(index: number): FrameInput | Promise<FrameInput> };
 
-/** Progress of a clip: work on a frame begins. */
-export interface ClipProgress {
-  /** Index of the frame, from 0. */
-  frame: number;
-  /** Number of frames, if the source has a `length`. */
-  of: number | undefined;
+/** Options of {@link openClip}. */
+export interface OpenOptions {
   /**
-   * The work that begins. A stream has the stage `pairs` alone. A whole clip has `pairs` for all frames, `corrections` for those that
-   * corrections reach, and `labels` for all frames as they are returned.
+   * Where the clip is kept while it is changed, so that nothing is lost if the program ends: in Node the path of a file, elsewhere a name in the
+   * page's own storage (IndexedDB), or a place of your own. If there is a clip already, it is opened. Only one clip at a time can have a journal
+   * open. Default: memory alone.
    */
-  stage: 'pairs' | 'corrections' | 'labels';
+  journal?: string | ClipJournal | undefined;
+  /** A clip from {@link Clip.save}, of the same frames. */
+  saved?: Uint8Array | undefined;
+  /** Gives the label 255 to pixels whose evidence does not tell an object from the background. Default: false. */
+  markUnknown?: boolean | undefined;
+  /** As in {@link SegmentOptions}: all labels, boxes and annotations are in pixels of the scaled frames. */
+  maxSize?: number | undefined;
 }
 
-/** Where the annotations of a frame spread: to the frames before and after it, to one side alone, or nowhere. */
-export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
+/** Where a clip keeps what happens to it. Calls follow one another. */
+export interface ClipJournal {
+  /** All that was kept, in order; undefined if there is nothing. */
+  read(): Promise<Uint8Array | undefined>;
+  /** Keeps records after those before. Resolves when they are safe. */
+  append(records: Uint8Array): Promise<void>;
+  /** Keeps one record in place of all before, at once or not at all. */
+  replace(saved: Uint8Array): Promise<void>;
+  /** Is given all that was kept if a part in the middle cannot be read, before it is replaced by what is before that part. */
+  keepDamaged?(content: Uint8Array): Promise<void>;
+  close?(): void | Promise<void>;
+}
 
-/** Labels of one frame of a clip that a person is certain of. */
-export interface ClipCorrection {
-  /** Index of the frame, from 0. Each frame has one correction of each object at most, and one label map. */
-  frame: number;
+/** Options of a range of frames that is segmented. `motions` is the number of motions in each pair of consecutive frames. */
+export interface RangeOptions extends Pick<SegmentOptions, 'motions' | 'quality' | 'subject'> {
+  /** Index of the first frame of the range; default 0. */
+  first?: number | undefined;
+  /** Index of the last frame of the range; default that of the clip. */
+  last?: number | undefined;
+  /** Cancels the step. Solved pairs are kept. */
+  signal?: AbortSignal | undefined;
   /**
-   * The object that it is about, 1 to 254, and no other. Without it the labels are a map: it is about the objects that it names,
-   * and its zeros are where none of these is. A map of 0 and 255 alone is an eraser: at its zeros there is no object.
+   * Gives solved pairs of a frame with the one before, from {@link solvePair} with the same options, if there are some: a farm may have solved
+   * them. Those that do not fit are solved again.
    */
-  object?: number | undefined;
-  /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
-  propagate?: ClipPropagation | undefined;
-  /**
-   * One label per pixel, row by row: the number of an object, a number that no object has for a new object, 0 where none of the objects is
-   * that it is about, or 255 where nothing is certain. With `object` there are the labels 0, 255 and its number; without 255, as of an
-   * outline, they are its mask, to the pixel. It replaces what was painted in the frame of the same object, or as a map; one that is 255
-   * everywhere takes it back.
-   */
-  labels: Uint8Array;
+  pairs?: ((frame: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
+  /** Whether events of type `draft` come, which take some more time. Default: false. */
+  drafts?: boolean | undefined;
 }
 
 /** A pixel, and whether it belongs to the object: 1 if it does, -1 if not. */
 export type ClipClick = readonly [x: number, y: number, sign: 1 | -1];
 
 /**
- * Points to an object in one frame of a clip: its mask there is found at once, and the object is followed through the clip. Clicks and a box
- * together describe one object; it needs a box or a click that is its own. A prompt stays one: the next of the same object and frame
- * replaces it, and one without clicks and box takes it back. It is about no other object.
+ * An annotation of one frame. Labels have one byte per pixel of the frame, row by row.
+ *
+ * - `strokes`, over earlier strokes of the object in the frame: 1 where the object is, 0 where it is not, 255 where that is left open.
+ * - `mask`, in place of earlier strokes of the object in the frame: the same values.
+ * - `labels`, a map of objects by number: 0 where none of those is that it names, 255 where that is left open. A map of 0 and 255 alone erases all
+ *   objects at its zeros. `own`: the numbers are yours, and an object found automatically under one of them gets the lowest free number.
+ * - `clicks` and `box`, which together point to one object: its mask is found. It needs a box or a click that is its own. Those that belong to it
+ *   are in the box, if there is one. They take the place of earlier ones of the object in the frame; without any, those are taken back.
+ *
+ * An `object` is a number from 1 to 254; one that no object has, such as {@link Clip.nextObject}, makes a new object.
  */
-export type ClipPrompt = {
-  /** Index of the frame, from 0. Each frame has one prompt of each object at most. */
+export type ClipAnnotation = {
+  /** Index of the frame. */
   frame: number;
-  /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
-  propagate?: ClipPropagation | undefined;
-} & (
-  | {
-      /** The number of the object, 1 to 254; one that no object has makes a new object. */
-      object: number;
-      /**
-       * Pixels that belong to the object or do not; those that do are in the box, if there is one. In this order each adds the part around
-       * it to the mask, or takes it away, unless the mask is as it says already.
-       */
-      clicks?: readonly ClipClick[] | undefined;
-      /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
-      box?: readonly [x: number, y: number, width: number, height: number] | undefined;
-    }
-  // in short
-  | {
-      /** The number of the object. */
-      label: number;
-      box: readonly [x: number, y: number, width: number, height: number];
-    }
-  | {
-      /** The number of the object. */
-      label: number;
-      /** Column and row of a pixel of the object. */
-      click: readonly [x: number, y: number];
-    }
-);
-
-/** A frame that a person finds right: its index, or with all its labels as the person saw them, one per pixel, row by row. */
-export type ClipAccepted = number | { frame: number; labels?: Uint8Array | undefined };
-
-/**
- * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
- * may have several of single objects; a later one covers an earlier one, and what is in none of them is background.
- */
-export type ClipMask = {
-  /** Index of the frame, from 0. */
-  frame: number;
-  /** Default: `'both'`; the last one of a frame counts. */
-  propagate?: ClipPropagation | undefined;
-} & (
-  | {
-      /**
-       * One label per pixel, row by row: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled. Or a picture, such as
-       * `ImageData`: if all its pixels are grey, the grey level is the label; otherwise all colours must be of the DAVIS palette
-       * ({@link davisPalette}), and their index is the label, the lower one where there are two. Fully transparent pixels are unlabelled.
-       */
-      labels: Uint8Array | Pixels;
-    }
-  | {
-      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. */
-      png: Uint8Array;
-    }
-  | {
-      /** Number of the object, 1 to 254. */
-      id: number;
-      /** Its run lengths as COCO has them: `size` is height and width, `counts` are compressed or a list. */
-      rle: { size: readonly [height: number, width: number]; counts: string | readonly number[] };
-    }
-);
-
-/**
- * Changes of whole objects. Numbers that no object has change nothing, and are in a note (`object-missing`); a list that begins with one merges
- * nothing.
- */
-export interface ClipEdits {
-  /** Lists of objects that are one; the first number is kept. */
-  merge?: readonly (readonly number[])[] | undefined;
-  /** Objects that are none: they become background, and take no pixel of others. */
-  delete?: readonly number[] | undefined;
-  /** The same as `delete`. */
-  background?: readonly number[] | undefined;
   /**
-   * Names by number, for {@link ClipTrack.name}. A name protects an object: annotations of others do not change its pixels. Where this is
-   * given, it replaces the names of a `state`.
+   * Where the annotation spreads: to the frames before and after (the default), to those on one side, or to none. `'exact'`: to none, and no
+   * other pixel of the frame changes.
    */
-  names?: Readonly<Record<number, string>> | undefined;
-  /** As the option `locked`. */
-  locked?: readonly number[] | undefined;
+  propagate?: 'both' | 'forward' | 'backward' | 'none' | 'exact' | undefined;
+} & (
+  | { object: number; strokes: Uint8Array }
+  | { object: number; mask: Uint8Array }
+  | { labels: Uint8Array; own?: boolean | undefined }
+  | { object: number; clicks?: readonly ClipClick[] | undefined; box?: readonly [x: number, y: number, width: number, height: number] | undefined }
+);
+
+/** An object's name, class and colour. */
+export interface ClipDescription {
+  /** A name protects an object: annotations of others do not change its pixels. */
+  name?: string | undefined;
+  class?: string | undefined;
+  /** Red, green and blue, 0 to 255. */
+  colour?: readonly [number, number, number] | undefined;
 }
 
-/** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
-export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProgress'> {
-  /** Gives the label 255 to pixels whose evidence does not tell an object from the background. Default: false. */
-  markUnknown?: boolean | undefined;
-  /**
-   * Number of frames that each frame waits for, 0 to 8, or `'all'`: as many as matter, of a whole clip. More frames give better masks.
-   * Default: 8 for a stream, `'all'` for a whole clip. A number makes a stream of `{ length, read(index) }`, unless one of the options
-   * below is given: they need a whole clip.
-   */
-  lookAhead?: number | 'all' | undefined;
-  /**
-   * Masks of objects in some frames, with numbers of your own: they hold there to the pixel, and the objects keep their numbers and are
-   * followed through the clip. They take over what was found of them; what was found under one of their numbers gets the lowest free one.
-   * `corrections`, `edits` and `locked` have the numbers that result.
-   */
-  masks?: readonly ClipMask[] | undefined;
-  /**
-   * Labels painted in some frames, with the numbers of an earlier run. It holds there to the pixel, and the objects that it is about are
-   * followed from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it
-   * says anything.
-   *
-   * Nothing that a person painted, gave, prompted, named, accepted or locked changes when something else is said; an object that was found
-   * automatically changes by the pixels that another one takes from it or gives back.
-   */
-  corrections?: readonly (ClipCorrection | ClipPrompt)[] | undefined;
-  /** Clicks and boxes that point to objects in some frames, after what is painted. They may be among the corrections as well. */
-  prompts?: readonly ClipPrompt[] | undefined;
-  /**
-   * Frames that are right. From then on only what is painted or pointed to in such a frame changes labels there, and the objects in it are
-   * followed from it as from a correction. Without `labels` a frame has those of now: as masks and a `state` have it, before corrections. Where
-   * this is given, it replaces what a `state` has accepted; frames that stay accepted stay as they are.
-   */
-  accepted?: readonly ClipAccepted[] | undefined;
-  /** Changes of whole objects, after the corrections. */
-  edits?: ClipEdits | undefined;
-  /**
-   * Numbers of objects of which nothing changes a pixel, but annotations of themselves in the same call. New annotations of an object that the
-   * `state` has locked are the error `object-locked`, and so it is to delete it or to merge it. Where this or that of the edits is
-   * given, it replaces what a `state` has locked.
-   */
+/** All annotations and edits of a clip. */
+export interface ClipDeclaration {
+  annotations?: readonly ClipAnnotation[] | undefined;
+  /** Numbers of locked objects. */
   locked?: readonly number[] | undefined;
+  /** Descriptions by number of object. */
+  descriptions?: Readonly<Record<number, ClipDescription>> | undefined;
+  /** Groups of objects that are merged, each under the number of its first. */
+  merged?: readonly (readonly number[])[] | undefined;
+  /** Numbers of objects that are background. */
+  deleted?: readonly number[] | undefined;
+  /** Indices of accepted frames. One that is accepted already keeps its labels, except under masks that are given. */
+  accepted?: readonly number[] | undefined;
+}
+
+/** An object that a clip has or had. */
+export interface ClipEntry {
+  /** 1 to 254; never given again. */
+  number: number;
+  /** Empty if it has none. */
+  name: string;
+  class: string;
+  colour?: [number, number, number];
+  /** Whether it changes only by annotations that unlock it. */
+  locked: boolean;
+  /** Whether a person has annotated it in any frame. */
+  annotated: boolean;
+  /** Its number now: its own, that of the object into which it was merged, or 0 if it was deleted. */
+  became: number;
+}
+
+/** What is known of a frame of a clip. */
+export interface ClipFrameStatus {
+  /** Whether it was segmented. */
+  hasMasks: boolean;
+  /** Whether a person has accepted it. */
+  accepted: boolean;
+  /** Whether a person has annotated it. */
+  annotated: boolean;
+  /** Equal revisions have equal labels; 0 before it is segmented. */
+  revision: number;
+}
+
+/**
+ * A step of a clip, which takes effect in the background. Awaited, it gives the pixels that objects gained and lost when it has taken effect and
+ * is kept, or rejects; then nothing has changed. Iterated, it gives the frames that it has changed, in order, with their labels; a range gives
+ * all its frames. Of a range whose frame cannot be read, the frames before get masks, and the step rejects afterwards with that error.
+ */
+export interface ClipStep extends PromiseLike<readonly ClipChange[]>, AsyncIterable<ClipFrame> {
+  /** The annotated frame as soon as its labels have changed, which is before the annotation has spread. */
+  readonly shown: Promise<ClipFrame>;
+  /** Takes the step back, if it has not taken effect. It rejects with code `cancelled` then. */
+  cancel(): void;
+}
+
+/** What happens in a clip. */
+export type ClipEvent =
+  /** Labels of these frames have changed. */
+  | { type: 'frames'; frames: readonly number[] }
+  /** {@link Clip.objects} has changed. */
+  | { type: 'objects' }
+  /** Masks of a frame of the range that is being segmented, from its own pairs alone: they may change, and so may their numbers. */
+  | { type: 'draft'; frame: ClipFrame }
+  /** Work on a frame begins. `of`: the number of frames of the range, if it is one. */
+  | { type: 'progress'; stage: 'pairs' | 'annotations'; frame: number; done: number; of: number | undefined }
+  /** A step has taken effect, or failed. */
+  | { type: 'settled'; step: number; error?: VeroneseError }
+  /** The journal has so many more bytes. */
+  | { type: 'kept'; bytes: number }
+  /** The journal has failed. The clip goes on, and its records are written with the next ones. */
+  | { type: 'unkept'; error: VeroneseError }
+  /** The worker was lost, for this reason, and the clip goes on in another one. */
+  | { type: 'revived'; reason: VeroneseError };
+
+/**
+ * A clip that is segmented, annotated and read, from its opening to its closing. Objects are numbered 1 to 254 and keep their number in all
+ * frames; label 0 is the background.
+ *
+ * Commands return a {@link ClipStep} at once, and take effect one after another in the order in which they were given; while a range is being
+ * segmented, other commands go first if their frames have masks. Invalid arguments reject the step with `invalid-option`, annotations of a locked
+ * object with `object-locked`. Nothing that a person has painted, named, accepted or locked changes when something else is annotated.
+ */
+export interface Clip {
+  /** Number of frames. */
+  readonly length: number;
+  /** Size of the frames; 0 before any is segmented. */
+  readonly width: number;
+  readonly height: number;
+  /** All objects that there are and were. The list is replaced when it changes. */
+  readonly objects: readonly ClipEntry[];
+  /** The status of each frame. The list is replaced when it changes. */
+  readonly frames: readonly ClipFrameStatus[];
+  /** Numbers of steps that can be undone and redone, and of those that have not taken effect. */
+  readonly steps: { readonly undo: number; readonly redo: number; readonly waiting: number };
+  /** The lowest number that no object has had; 0 if none is left. */
+  readonly nextObject: number;
+  /** Whether a part of the journal could not be read: steps after it are lost. The journal's own copy of all of it is kept. */
+  readonly isDamaged: boolean;
   /**
-   * The bytes that {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
-   * `motions`, `quality`, `subject` and `lookAhead` are those of the state. Annotations stay until they are replaced or taken back;
-   * corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
-   * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
+   * Segments a range of at least two frames, for the first time or again. Objects keep their numbers, and annotations of these frames are applied
+   * again. A range that was interrupted goes on with the pairs that were solved.
    */
-  state?: Uint8Array | undefined;
-  /** Returns only the frames that `masks`, `corrections`, `prompts`, `accepted` and `edits` change. Default: false. */
-  changesOnly?: boolean | undefined;
-  /**
-   * Called with the index of each frame that masks, corrections, prompts and edits change, as soon as they do: the annotated frame first, then
-   * those to which it spreads. A frame may change again before it is returned; the clip returns frames in order, afterwards. `segmented`
-   * gives the frame as it is now, until what the call returns is settled, and the clip waits for that. If it throws, the clip ends with that
-   * exception.
-   */
-  onChange?: ((frame: number, segmented: () => Promise<ClipFrame>) => void | Promise<void>) | undefined;
-  /**
-   * Called with the results of the pairs of each frame, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
-   * that was interrupted continue with the same results. Several workers solve frames in any order; calls may then overlap.
-   */
-  onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
-  /**
-   * Gives what `onPairs` was called with, if it is known. Bytes that are damaged, of another version of this package, or of other options,
-   * another frame or other frames before it count as unknown. Asked when a frame is read, which may be some frames ahead.
-   */
-  knownPairs?: ((index: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
-  /**
-   * Called with each frame but the last as soon as its pairs are solved: the masks that they tell alone, to show while the clip is
-   * segmented. They lack the evidence of other frames, and their objects may get other numbers. Each takes the time of its labels.
-   */
-  onPreview?: ((frame: ClipFrame) => void | Promise<void>) | undefined;
-  /** `true`: frames are transferred; those of a whole clip only when they are read for their labels. See {@link CallOptions}. */
-  transfer?: boolean | undefined;
-  /** Called for each frame before work on it begins. If it throws, the clip ends with that exception. */
-  onProgress?: ((progress: ClipProgress) => void) | undefined;
+  segment(options?: RangeOptions): ClipStep;
+  /** Annotates frames, in one step. */
+  annotate(...annotations: ClipAnnotation[]): ClipStep;
+  /** Takes back the annotations of a frame, of one object or of all. */
+  clear(annotations: { frame: number; object?: number | undefined }): ClipStep;
+  /** Accepts frames as correct, or no longer: annotations of other frames do not change them. `'all'`: every frame with masks. */
+  accept(frames: readonly number[] | 'all', on?: boolean): ClipStep;
+  /** Locks objects, or unlocks them. */
+  lock(objects: readonly number[], on?: boolean): ClipStep;
+  /** Replaces an object's name, class and colour. `coalesce`: part of the step before, if that described the same object. */
+  describe(object: number, description: ClipDescription, options?: { coalesce?: boolean | undefined }): ClipStep;
+  /** Merges objects under the number of the first. */
+  merge(...objects: number[]): ClipStep;
+  /** Turns objects into background. */
+  delete(...objects: number[]): ClipStep;
+  /** Makes a new object of all pieces of an object but the largest in a frame; other frames follow. */
+  split(object: number, frame: number): ClipStep;
+  /** Replaces everything that was annotated, described, merged, deleted and accepted. */
+  replaceAnnotations(declaration: ClipDeclaration): ClipStep;
+  /** Takes back what was given last. Resolves to whether there was something. */
+  undo(): Promise<boolean>;
+  /** Does again the step that was undone last. Resolves to whether there was one. */
+  redo(): Promise<boolean>;
+  /** Cancels all steps that have not taken effect. */
+  cancel(): void;
+  /** Ends ranges that are being segmented after the frames whose pairs are solved. */
+  finish(): void;
+  /** The labels of a frame as they are now; they come before all other work. Waits for a range that is coming to the frame. */
+  labels(frame: number, options?: { signal?: AbortSignal | undefined }): Promise<ClipFrame>;
+  /** The objects in all frames that have masks. */
+  tracks(): Promise<ClipTracks>;
+  /** The clip as bytes, for the option `saved`: its masks, annotations and steps, but no pixels of frames. */
+  save(): Promise<Uint8Array>;
+  /** Calls a listener with all events; returns what ends that. */
+  subscribe(listener: (event: ClipEvent) => void): () => void;
+  /** Frees what the clip holds. Steps that have not taken effect reject with code `clip-closed`; the journal keeps them. */
+  close(): void;
+  [Symbol.dispose](): void;
 }
 
 /** An object in one frame of a clip. */
@@ -462,7 +523,7 @@ export interface ClipFrame {
 /** One object through a clip. */
 export interface ClipTrack {
   id: number;
-  /** As in {@link ClipEdits}. */
+  /** As in {@link ClipEntry}. */
   name?: string;
   /** Index of the first frame that shows it. */
   first: number;
@@ -472,15 +533,15 @@ export interface ClipTrack {
   frames: ({ frame: number } & Omit<ClipObject, 'id'>)[];
 }
 
-/** The objects and the background of a clip, from {@link Clip.tracks}. */
+/** The objects and the background of a clip or a stream. */
 export interface ClipTracks {
   /** By number, which is the order of appearance. */
   objects: ClipTrack[];
   /** Motion of the background from a frame to the next one, where there is one. */
   background: { frame: number; matrix: Matrix }[];
-  /** Number of objects beyond 254, which count as background. Known when the clip is finished. */
+  /** Number of objects beyond 254, which count as background. Of a stream it is known at its end. */
   dropped: number;
-  /** Of a finished clip: which edits change nothing; without annotations also why there are no objects, or which of them are likely to be none. */
+  /** Of a clip without annotations: why there are no objects, or which of them are likely to be none. */
   notes?: Note[];
 }
 
@@ -496,45 +557,25 @@ export interface ClipChange {
   lost: number;
 }
 
-/**
- * The frames of a clip, in order, as they are finished. Leaving the loop or calling `return()` frees what the clip holds, some megabytes
- * and its worker. An iterator that is dropped before its end does so when it is collected as garbage; its source is not closed then.
- */
-export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
-  /** The objects of the frames returned so far: complete after the last frame, whose objects have no matrix. */
+/** Frames that come once, all of one size, in order, such as those of a camera. The next is asked for while one is worked on. */
+export type StreamSource = Iterable<FrameInput | Promise<FrameInput>> | AsyncIterable<FrameInput>;
+
+/** Options of {@link segmentStream}. */
+export interface StreamOptions extends Omit<SegmentOptions, 'confidence' | 'onProgress'> {
+  /** Number of frames that each frame waits for, 0 to 8 (the default). More frames give better masks. */
+  lookAhead?: number | undefined;
+  /** Called before work on a frame begins. If it throws, the stream ends with that exception. */
+  onProgress?: ((progress: { frame: number }) => void) | undefined;
+}
+
+/** The frames of a stream, in order, as they are labelled. Leaving the loop frees what the stream holds. */
+export interface ClipStream extends AsyncGenerator<ClipFrame, void, undefined> {
+  /** The objects of the frames so far: complete after the last frame, whose objects have no matrix. */
   tracks(): ClipTracks;
-  /**
-   * A whole clip as bytes, corrections and edits included, for the option `state`: some kilobytes per frame, for the same version of this
-   * package. Undefined before the first frame has been returned, and for a stream.
-   */
-  state(): Promise<Uint8Array | undefined>;
-  /**
-   * The changes by masks, corrections, prompts and accepted labels, by frame, then by object, with the numbers before any edit; edits are not
-   * counted. Empty before the first frame has been returned, and for a stream.
-   */
-  changes(): Promise<ClipChange[]>;
 }
 
 /** The source of the WebAssembly module. */
 export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
-
-/** Red, green, blue and optional alpha, 0 to 255. */
-export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
-
-/** The part of a canvas's 2d context that is needed; the canvas may be an offscreen one. */
-export interface PaintContext {
-  putImageData(image: never, x: number, y: number): void;
-}
-
-export interface PaintOptions {
-  /**
-   * One colour per label; labels without a colour are transparent, and alpha 0 hides a label. Default: the DAVIS palette, with labels
-   * 0 and 255 transparent.
-   */
-  palette?: readonly Colour[] | undefined;
-  /** Scales every alpha, 0 to 1; default 0.5. */
-  opacity?: number | undefined;
-}
 
 /** The stable error codes, the same as on the command line. */
 export type ErrorCode =
@@ -552,7 +593,7 @@ export type ErrorCode =
   // the environment
   | 'wasm-load-failed'
   | 'worker-failed'
-  | 'worker-busy'
+  | 'clip-closed'
   | 'cancelled'
   | 'internal'
   // the custom element and the command line
@@ -594,38 +635,36 @@ export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<v
 
 /**
  * Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. To correct masks, segment the two
- * frames as a clip ({@link segmentClip}), which takes corrections.
+ * frames as a clip ({@link openClip}), which takes annotations.
  */
-export function segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
+export function segmentPair(first: FrameInput, second: FrameInput, options?: SegmentOptions): Promise<Segmentation>;
 
 /**
- * Segments a clip: objects that move get a number that they keep from their first frame to their last. Objects are numbered by first
- * appearance, then by size, then by their topmost, leftmost pixel.
+ * Opens a clip. Rejects with `invalid-option` for a journal that another clip has open, or for a saved clip of another number of frames.
  *
- * A stream returns a frame when the frames it waits for have come (`lookAhead`), the rest at the end. A whole clip, with
- * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. Frames are taken from the source
- * only when the reader waits for one, and one more while the last is worked on, so that decoding and segmenting overlap. If the source
- * throws or a frame is unusable, the frames before it come first, then the error. Fewer than two frames are the error `too-few-frames`, but for
- * a look-ahead of 0: a camera may be turned off at any time.
- *
- * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
- * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps
- * its clip.
+ * The clip of this call works in its own thread, step by step. A {@link Segmenter} keeps it in a worker, a {@link SegmenterPool} also shares the
+ * work of a range among its workers, with the same results to the bit.
  */
-export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
+export function openClip(frames: ClipFrames, options?: OpenOptions): Promise<Clip>;
+
+/**
+ * Segments frames that come once. A frame is returned when the frames that it waits for have come, the rest at the end. If the source throws or
+ * a frame is unusable, the frames before it come first, then the error. Fewer than two frames are the error `too-few-frames`, but for a
+ * look-ahead of 0.
+ */
+export function segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream;
+
+/** Options of {@link solvePair}. */
+export type PairOptions = Omit<SegmentOptions, 'markUnknown' | 'confidence' | 'onProgress'>;
+
+/**
+ * Solves the pairs of a frame of a clip with the one before: nearly all the work of segmenting it. The bytes are for the option `pairs` of
+ * {@link Clip.segment}, so that other machines can share the work; they are of the same version of this package.
+ */
+export function solvePair(before: FrameInput, frame: FrameInput, options?: PairOptions): Promise<Uint8Array>;
 
 /** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
-
-/**
- * Replaces the top-left width × height pixels of a canvas with the labels' colours, with transparency, for a canvas that overlays the
- * frame.
- */
-export function paintLabels(
-  context: PaintContext,
-  segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
-  options?: PaintOptions,
-): Promise<void>;
 
 /** Replaces each pixel's label with its group number; 255 stays. Throws code `invalid-input`. */
 export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;
@@ -638,8 +677,8 @@ export function davisPalette(): [number, number, number][];
  * next input is requested, so a source may reuse one set of buffers for all pairs.
  */
 export interface PairInput {
-  first: Pixels;
-  second: Pixels;
+  first: FrameInput;
+  second: FrameInput;
 }
 
 /** Options of {@link segmentPairs} for all pairs. */
@@ -683,20 +722,20 @@ export interface PoolOptions extends SegmenterOptions {
 export class Segmenter {
   /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
-  segmentPair(first: Pixels | FrameFile, second: Pixels | FrameFile, options?: SegmentOptions): Promise<Segmentation>;
+  segmentPair(first: FrameInput, second: FrameInput, options?: SegmentOptions): Promise<Segmentation>;
+  solvePair(before: FrameInput, frame: FrameInput, options?: PairOptions): Promise<Uint8Array>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
-  /**
-   * As {@link segmentClip}. The worker keeps the clip from the first frame to the last; a second clip waits for that, other calls run
-   * between the frames. A cancelled clip stops at once; its worker stays.
-   */
-  segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
+  /** As {@link openClip}, in the worker. If the worker is lost, the clip goes on in another one. */
+  openClip(frames: ClipFrames, options?: OpenOptions): Promise<Clip>;
+  /** As {@link segmentStream}, in the worker. */
+  segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream;
   /**
    * Starts the worker and segments small built-in pairs in it for half a second, so that the engine fully compiles the hot code. Without
    * it, a first call takes several times as long as later ones. One worker warms up for all instances of the module on the page. Another
    * call to the same worker ends it (the promise resolves then), and so does `close()`; a good moment is before frames are decoded.
    */
   warmUp(): Promise<void>;
-  /** Ends the worker; running calls reject with code `cancelled`. The next call starts a new worker. */
+  /** Ends the worker, and closes its clips; running calls reject with code `cancelled`. The next call starts a new worker. */
   close(): void;
 }
 
@@ -708,12 +747,6 @@ export class SegmenterPool extends Segmenter {
   /** Throws code `invalid-option`. */
   constructor(options?: PoolOptions);
   readonly jobs: number;
-  /**
-   * As {@link Segmenter.segmentClip}. One worker keeps the clip; the pairs of a whole clip with `lookAhead: 'all'` are solved by all
-   * workers that have nothing else to do, some frames ahead, and those end afterwards. The results are the same to the bit with any number
-   * of workers.
-   */
-  segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
   /**
    * Segments many pairs and yields their outcomes in order. At most 2·`jobs` pairs are running or waiting to be fetched, so an async
    * generator that reads frames runs no faster than the workers. A failed pair yields an outcome with `error`, and the iteration
@@ -736,8 +769,13 @@ export function segmentPairs<Input extends PairInput>(
 // no types of Node), it lets a program compile.
 declare global {
   interface AbortSignal {}
+  interface SymbolConstructor {
+    readonly dispose: unique symbol;
+  }
   interface Response {}
-  interface URL {}
+  interface URL {
+    href: string;
+  }
   namespace WebAssembly {
     interface Module {}
   }

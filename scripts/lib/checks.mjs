@@ -3,6 +3,7 @@
 import { buildPackage } from './builds.mjs';
 import { constantsAreExplained } from './constants.mjs';
 import { crateImportsAgree } from './crate-imports.mjs';
+import { layoutAgrees } from './formatting.mjs';
 import { licencesAllowed } from './licences.mjs';
 import { pagesAgree } from './pages/index.mjs';
 import { run, say } from './run.mjs';
@@ -59,6 +60,7 @@ export async function runChecks() {
     ['no new circles of files in the crate', crateImportsAgree()],
     ['every chosen number is explained', constantsAreExplained()],
     ['the pages are what docs/figures gives', pagesAgree()],
+    ['layout of TypeScript and JavaScript', await layoutAgrees()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
   await buildPackage();

@@ -1,255 +1,257 @@
-//! Calls on clips. The module keeps a clip between calls, under a number that the caller gives it.
+//! Calls on clips. The module keeps a clip from its opening to its closing, under a number that the caller gives it.
 //!
-//! A stream is pushed frame by frame until it is finished. A whole clip is pushed, then concluded (or restored from its saved state); after
-//! that it gives labels of any frame and takes annotations. All calls return `null` if there is no such clip, or if it is in another state.
+//! The caller gives a clip commands ([`apply_clip`]) and the frames that it wants ([`take_clip`]). Each call that changes a clip returns a
+//! plain object: `{ records, replaces, frames, settled, cancelled, wanted, steps }`, and where more may have changed also `status`, what is
+//! known of frames and objects. pkg/src/calls/messages.ts has all fields. Calls return `null` if there is no such clip.
 //!
 //! The handle is a number, not an exported object, because the package replaces the instance after a panic: a pointer into the old instance
 //! would be used in the new one. A number that is used only once is simply not found there.
 
 use std::cell::RefCell;
 
-use js_sys::{Array, Reflect, Uint8Array};
+use js_sys::{Array, Float64Array, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 
 use crate::frames::{frame_from_pixels, pair_option};
 use crate::plain::{Record, list, numbers};
-use crate::{Failure, entries, invalid};
+use crate::{Failure, entries, unknown};
 use veronese::clip::{
-    Accepted, Annotations, Changed, Click, ClipFrame, ClipJob, ClipObject, ClipOptions, ClipSegmenter, FramePairs,
-    MAX_LOOK_AHEAD, Painted, Prompt, SegmentedClip, Spread, StreamSegmenter,
+    Annotation, Changed, Click, Clip, ClipFrame, ClipObject, ClipStage, Command, Content, Declaration, Description,
+    Events, FramePairs, Object, OpenOptions, Recovered, Settled, Spread, StepId, Wanted, solve_pair,
 };
-use veronese::{AffineMotion, Error, Frame};
+use veronese::{AffineMotion, Error, SegmentOptions};
 
 thread_local! {
-    /// Clips in progress; rarely more than one.
     static CLIPS: RefCell<Vec<(u32, Clip)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// The state of a clip.
-enum Clip {
-    Stream(StreamSegmenter),
-    Pairs(ClipSegmenter),
-    Segmented {
-        clip: SegmentedClip,
-        job: Option<ClipJob>,
-        /// Whether it was restored from bytes.
-        restored: bool,
-    },
-}
-
-/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `markUnknown`, `subject` and
-/// `lookAhead` (`'all'`, the default, stands for as many frames as matter).
+/// Opens a clip of so many frames, or one that was saved. `clip` is a number that no other clip has had. With `saved` the result also has
+/// `length`, the number of frames, `used`, the number of bytes that were read, and `isDamaged`.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
-#[wasm_bindgen(js_name = beginClip)]
-pub fn begin_clip(clip: u32, whole: bool, options: &JsValue) -> Result<(), JsValue> {
-    let options = clip_options(options)?;
-    let begun = if whole {
-        ClipSegmenter::new(options).map(Clip::Pairs)
-    } else {
-        StreamSegmenter::new(options).map(Clip::Stream)
+#[wasm_bindgen(js_name = openClip)]
+pub fn open_clip(clip: u32, frames: usize, mark_unknown: bool, saved: Option<Vec<u8>>) -> Result<JsValue, JsValue> {
+    let options = OpenOptions::default().with_mark_unknown(mark_unknown);
+    let mut record = Record::new();
+    let mut opened = match &saved {
+        None => Clip::new(frames, options).map_err(Failure::from)?,
+        Some(bytes) => {
+            let Recovered { clip, used, is_damaged, .. } = Clip::read(bytes, options).map_err(Failure::from)?;
+            record = record.count("used", used).set("isDamaged", &is_damaged.into());
+            clip
+        }
     };
-    keep(clip, begun.map_err(Failure::from)?);
-    Ok(())
+    record = record.count("length", opened.len());
+    let answer = answer(record, &mut opened, true);
+    CLIPS.with_borrow_mut(|clips| clips.push((clip, opened)));
+    Ok(answer)
 }
 
-/// Adds a frame, `{ data, width, height }`. A stream returns a frame that has waited long enough as `{ index, labels, objects, background
-/// }`, or `undefined` if there is none. A whole clip returns the solved pairs of the frame as bytes, or `undefined` if these bytes were
-/// `known`; bytes that are damaged, or of another version, other options or other frames are ignored.
+/// Gives a clip a command, as `ClipCommand` of pkg/src/calls/messages.ts. The result also has `step`, its number.
 ///
 /// # Errors
-/// A `VeroneseError` of code `frame-size-mismatch`, or `invalid-input` for a malformed frame. The clip can continue with another frame.
-#[wasm_bindgen(js_name = pushClip)]
-pub fn push_clip(clip: u32, frame: &JsValue, known: Option<Vec<u8>>) -> Result<JsValue, JsValue> {
-    let mut given = Some((frame_from_pixels("the frame", frame)?, known));
-    step(clip, &mut |clip| {
-        let (frame, known) = given.take()?;
-        match clip {
-            Clip::Stream(stream) => {
-                Some(stream.push(frame).map(|frame| frame.map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame))))
+/// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
+#[wasm_bindgen(js_name = applyClip)]
+pub fn apply_clip(clip: u32, given: &JsValue) -> Result<JsValue, JsValue> {
+    let command = command(given)?;
+    with(clip, &mut |clip| {
+        let step = clip.apply(command.clone())?;
+        Ok(answer(Record::new().number("step", step_number(step)), clip, true))
+    })
+}
+
+/// Does `what`, and says in `done` whether there was something to do: `undo` or `redo` a step, `cancel` one that has not taken effect, or
+/// `finish` a range after the frames that are in.
+#[wasm_bindgen(js_name = moveClip)]
+pub fn move_clip(clip: u32, what: &str, step: u32) -> Result<JsValue, JsValue> {
+    with(clip, &mut |clip| {
+        let done = match what {
+            "undo" => clip.undo(),
+            "redo" => clip.redo(),
+            "cancel" => clip.cancel(step.into()),
+            _ => {
+                clip.finish(step.into());
+                true
             }
-            Clip::Pairs(segmenter) => Some(push_pairs(segmenter, frame, known)),
-            Clip::Segmented { .. } => None,
-        }
+        };
+        Ok(answer(Record::new().set("done", &done.into()), clip, true))
     })
 }
 
-fn push_pairs(segmenter: &mut ClipSegmenter, frame: Frame, known: Option<Vec<u8>>) -> Result<JsValue, Error> {
-    if let Some(pairs) = known.and_then(|bytes| FramePairs::from_bytes(&bytes).ok()) {
-        match segmenter.push_known(frame.clone(), &pairs) {
-            Err(Error::InvalidOption { .. }) => {}
-            pushed => return pushed.map(|()| JsValue::UNDEFINED),
-        }
-    }
-    segmenter.push(frame).map(|pairs| bytes(&pairs.to_bytes()))
-}
-
-/// A preview of the newest frame whose pairs are all solved, from these pairs alone, as [`push_clip`] of a stream returns a frame;
-/// `undefined` if there is none that was not returned before.
-#[wasm_bindgen(js_name = previewClip)]
-pub fn preview_clip(clip: u32) -> Result<JsValue, JsValue> {
-    step(clip, &mut |clip| match clip {
-        Clip::Pairs(segmenter) => Some(Ok(segmenter.preview().map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame)))),
-        _ => None,
-    })
-}
-
-/// Ends a stream. Returns `{ frames, dropped }`: the frames that were still waiting, and the number of objects beyond the last number.
-#[wasm_bindgen(js_name = finishClip)]
-pub fn finish_clip(clip: u32) -> JsValue {
-    match take(clip) {
-        Some(Clip::Stream(mut stream)) => {
-            let frames = stream.finish();
-            Record::new().list("frames", &frames, clip_frame).count("dropped", stream.dropped()).into_value()
-        }
-        _ => JsValue::NULL,
-    }
-}
-
-/// Concludes a whole clip of the frames so far. Returns what [`restore_clip`] does.
-#[wasm_bindgen(js_name = concludeClip)]
-pub fn conclude_clip(clip: u32) -> JsValue {
-    match take(clip) {
-        Some(Clip::Pairs(segmenter)) => keep_segmented(clip, segmenter.conclude(), false),
-        _ => JsValue::NULL,
-    }
-}
-
-/// Puts a concluded clip, from the bytes of [`save_clip`], in the place of one that has begun. Returns `{ length, width, height, dropped }`.
+/// Gives a clip a frame that it wants, `{ data, width, height }`, with the solved pairs if there are some. The result also has `labels`, if the
+/// frame was wanted for these, and with `draft` the `draft` of a frame, if there is a new one.
 ///
 /// # Errors
-/// A `VeroneseError` of code `invalid-option` for other bytes.
-#[wasm_bindgen(js_name = restoreClip)]
-pub fn restore_clip(clip: u32, state: &[u8], mark_unknown: bool) -> Result<JsValue, JsValue> {
-    let mut segmented = SegmentedClip::from_bytes(state).map_err(Failure::from)?;
-    segmented.mark_unknown(mark_unknown);
-    end_clip(clip);
-    Ok(keep_segmented(clip, segmented, true))
+/// A `VeroneseError` of code `frame-size-mismatch`, or `invalid-input` for a malformed frame, or one other than that which was segmented.
+#[wasm_bindgen(js_name = takeClip)]
+pub fn take_clip(
+    clip: u32,
+    index: usize,
+    frame: &JsValue,
+    solved: Option<Vec<u8>>,
+    draft: bool,
+) -> Result<JsValue, JsValue> {
+    let frame = frame_from_pixels("the frame", frame)?;
+    let solved = solved.and_then(|bytes| FramePairs::from_bytes(&bytes).ok());
+    with(clip, &mut |clip| {
+        let is_for_labels = clip.wanted().is_some_and(|wanted| wanted.stage == ClipStage::Labels);
+        clip.take(index, &frame, solved.as_ref())?;
+        let mut record = Record::new();
+        if is_for_labels {
+            record = with_labels(record, clip, index);
+        }
+        if let Some(draft) = draft.then(|| clip.preview()).flatten() {
+            record = record.set("draft", &clip_frame(&draft));
+        }
+        Ok(answer(record, clip, false))
+    })
 }
 
-/// The bytes of a concluded clip, for [`restore_clip`].
+/// Asks for the labels of a frame. The result has them as `labels` if they are known; otherwise the clip wants the frame for them, if it has
+/// masks. Without an index no labels are asked for.
+#[wasm_bindgen(js_name = lookAtClip)]
+pub fn look_at_clip(clip: u32, index: Option<usize>) -> Result<JsValue, JsValue> {
+    with(clip, &mut |clip| {
+        clip.look_at(index);
+        let record = Record::new();
+        let record = if let Some(index) = index { with_labels(record, clip, index) } else { record };
+        Ok(answer(record, clip, false))
+    })
+}
+
+/// The bytes of a clip, for [`open_clip`].
 #[wasm_bindgen(js_name = saveClip)]
 pub fn save_clip(clip: u32) -> Result<JsValue, JsValue> {
-    segmented(clip, &mut |clip, _| Ok(bytes(&clip.to_bytes())))
+    with(clip, &mut |clip| Ok(bytes(&clip.save())))
 }
 
-/// A frame of a concluded clip, as [`push_clip`] of a stream returns it.
+/// Closes a clip and frees its memory. Does nothing if there is no such clip.
+#[wasm_bindgen(js_name = closeClip)]
+pub fn close_clip(clip: u32) {
+    CLIPS.with_borrow_mut(|clips| clips.retain(|(number, _)| *number != clip));
+}
+
+/// The solved pairs of a frame with the previous one as bytes, for [`take_clip`]. Options are those of a range.
 ///
 /// # Errors
-/// A `VeroneseError` of code `invalid-option`, `frame-size-mismatch` or `invalid-input`. A frame that is not the one that was segmented is
-/// `invalid-input`, of a restored clip `invalid-option`.
-#[wasm_bindgen(js_name = clipFrame)]
-pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue, JsValue> {
-    let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
-}
-
-/// Begins to apply annotations to a concluded clip, given as `Annotations` of pkg/src/calls/messages.ts. Returns `{ wanted, changed,
-/// changes, objects }`: the index of the frame to take next, `undefined` at the end; the indices of the changed frames; and at the end the
-/// pixels that objects have gained and lost, and the numbers of all objects before merges and deletions.
-///
-/// # Errors
-/// A `VeroneseError` of code `invalid-option` or `object-locked`. The clip is then unchanged.
-#[wasm_bindgen(js_name = annotateClip)]
-pub fn annotate_clip(clip: u32, annotations: &JsValue) -> Result<JsValue, JsValue> {
-    let mut given = Some(annotations_of(annotations));
-    segmented(clip, &mut |clip, job| {
-        let begun = job.insert(clip.annotate(given.take().unwrap_or_default())?);
-        Ok(news(clip, begun, 0))
-    })
-}
-
-/// Takes the frame that the annotations want. Returns what [`annotate_clip`] does, with the frames that have changed for the first time
-/// since the previous call.
-///
-/// # Errors
-/// As [`frame_of_clip`].
-#[wasm_bindgen(js_name = takeAnnotations)]
-pub fn take_annotations(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
-    let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, &mut |clip, job| {
-        let Some(job) = job else { return Ok(JsValue::NULL) };
-        let known = job.changed().len();
-        job.take(clip, &frame)?;
-        Ok(news(clip, job, known))
-    })
-}
-
-/// Ends a clip and frees its memory. Does nothing if there is no such clip.
-#[wasm_bindgen(js_name = endClip)]
-pub fn end_clip(clip: u32) {
-    drop(take(clip));
-}
-
-fn keep(number: u32, clip: Clip) {
-    CLIPS.with_borrow_mut(|clips| clips.push((number, clip)));
-}
-
-fn keep_segmented(number: u32, clip: SegmentedClip, restored: bool) -> JsValue {
-    let [width, height] = clip.size();
-    let described = Record::new()
-        .count("length", clip.len())
-        .count("width", width)
-        .count("height", height)
-        .count("dropped", clip.dropped())
-        .into_value();
-    keep(number, Clip::Segmented { clip, job: None, restored });
-    described
-}
-
-fn take(clip: u32) -> Option<Clip> {
-    CLIPS.with_borrow_mut(|clips| {
-        let place = clips.iter().position(|(number, _)| *number == clip)?;
-        Some(clips.swap_remove(place).1)
-    })
+/// A `VeroneseError` of code `invalid-option`, `frame-size-mismatch`, or `invalid-input` for a malformed frame.
+#[wasm_bindgen(js_name = solvePair)]
+pub fn solve_pair_of_frames(before: &JsValue, frame: &JsValue, options: &JsValue) -> Result<JsValue, JsValue> {
+    let [before, frame] = [frame_from_pixels("the frame before", before)?, frame_from_pixels("the frame", frame)?];
+    let pairs = solve_pair(&before, &frame, &range_options(options)?).map_err(Failure::from)?;
+    Ok(bytes(&pairs.to_bytes()))
 }
 
 /// What `work` returns for a clip, or `null`. Not generic, so that it is compiled only once.
-fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Error>>) -> Result<JsValue, JsValue> {
+fn with(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Result<JsValue, Error>) -> Result<JsValue, JsValue> {
     let done = CLIPS.with_borrow_mut(|clips| {
         let (_, clip) = clips.iter_mut().find(|(number, _)| *number == clip)?;
-        work(clip)
+        Some(work(clip))
     });
     Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
 }
 
-/// Work on a concluded clip and on the job of its annotations.
-type Work<'a> = &'a mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipJob>) -> Result<JsValue, Error>;
-
-/// [`step`] for a concluded clip. If frames are not those of a restored state, the error is about the state.
-fn segmented(clip: u32, work: Work<'_>) -> Result<JsValue, JsValue> {
-    step(clip, &mut |clip| match clip {
-        Clip::Segmented { clip, job, restored } => Some(work(clip, job).map_err(|error| match error {
-            Error::OtherFrame { .. } if *restored => Error::InvalidOption { name: "state", reason: error.to_string() },
-            error => error,
-        })),
-        _ => None,
-    })
-}
-
-fn bytes(bytes: &[u8]) -> JsValue {
-    Uint8Array::from(bytes).into()
-}
-
-fn indices(indices: &[usize]) -> JsValue {
-    list(indices, |index| (*index as f64).into())
-}
-
-/// The progress of a job; the first `known` of its changed frames were returned before.
-fn news(clip: &SegmentedClip, job: &ClipJob, known: usize) -> JsValue {
-    let progress = Record::new().set("changed", &indices(&job.changed()[known..]));
-    match job.wanted() {
-        Some(index) => progress.count("wanted", index),
-        None => {
-            let objects = clip.objects();
-            progress.list("changes", &job.changes(), changed).list("objects", &objects, |object| (*object).into())
+/// Labels are asked for once: what is on a screen is asked for again when it changes.
+fn with_labels(record: Record, clip: &mut Clip, index: usize) -> Record {
+    match clip.labels(index) {
+        None => record,
+        Some(frame) => {
+            clip.look_at(None);
+            record.set("labels", &clip_frame(&frame))
         }
+    }
+}
+
+/// Adds to a record what has happened, and what the clip wants next.
+fn answer(record: Record, clip: &mut Clip, with_status: bool) -> JsValue {
+    let Events { records, replaces, frames, settled, cancelled, .. } = clip.take_events();
+    let cancelled: Vec<f64> = cancelled.into_iter().map(step_number).collect();
+    let mut record = record
+        .set("frames", &indices(&frames))
+        .list("settled", &settled, settled_step)
+        .numbers("cancelled", &cancelled)
+        .numbers("steps", &clip.steps().map(|steps| steps as f64));
+    if !records.is_empty() {
+        record = record.bytes("records", &records).set("replaces", &replaces.into());
+    }
+    if let Some(Wanted { frame, stage, step, .. }) = clip.wanted() {
+        let stage = match stage {
+            ClipStage::Pairs => "pairs",
+            ClipStage::Annotations => "annotations",
+            ClipStage::Labels => "labels",
+        };
+        let step = step.map_or(0.0, step_number);
+        let wanted = Record::new().count("frame", frame).text("stage", stage).number("step", step);
+        record = record.set("wanted", &wanted.into_value());
+    }
+    if with_status || !settled.is_empty() {
+        record = record.set("status", &status(clip));
+    }
+    record.into_value()
+}
+
+fn step_number(step: StepId) -> f64 {
+    u32::from(step).into()
+}
+
+fn settled_step(settled: &Settled) -> JsValue {
+    let Settled { step, changes, .. } = settled;
+    let record = Record::new().number("step", step_number(*step));
+    match changes {
+        Ok(changes) => record.list("changes", changes, changed),
+        Err(error) => record.text("code", error.code()).text("message", &error.to_string()),
     }
     .into_value()
 }
 
-fn changed(changed: &Changed) -> JsValue {
+/// What is known of all frames and objects. Each frame has a byte of flags (1 has masks, 2 accepted, 4 annotated) and its revision, of which
+/// the low bits are left out.
+fn status(clip: &Clip) -> JsValue {
+    let frames = clip.frames();
+    let flags: Vec<u8> = frames
+        .iter()
+        .map(|frame| u8::from(frame.has_masks) | u8::from(frame.accepted) << 1 | u8::from(frame.annotated) << 2)
+        .collect();
+    let revisions: Vec<f64> = frames.iter().map(|frame| (frame.revision >> 11) as f64).collect();
+    let [width, height] = clip.size();
+    Record::new()
+        .bytes("flags", &flags)
+        .set("revisions", &Float64Array::from(&revisions[..]))
+        .list("objects", &clip.objects(), object)
+        .count("nextObject", clip.next_object().map_or(0, usize::from))
+        .count("width", width)
+        .count("height", height)
+        .count("dropped", clip.dropped())
+        .set("solved", &indices(&clip.solved_pairs()))
+        .into_value()
+}
+
+fn object(object: &Object) -> JsValue {
+    let Object { number, description: Description { name, class, colour }, locked, annotated, became, .. } = object;
+    let record = Record::new()
+        .count("number", usize::from(*number))
+        .text("name", name)
+        .text("class", class)
+        .set("locked", &(*locked).into())
+        .set("annotated", &(*annotated).into())
+        .count("became", usize::from(*became));
+    match colour {
+        Some(colour) => record.numbers("colour", &colour.map(f64::from)),
+        None => record,
+    }
+    .into_value()
+}
+
+pub(super) fn bytes(bytes: &[u8]) -> JsValue {
+    Uint8Array::from(bytes).into()
+}
+
+pub(super) fn indices(indices: &[usize]) -> JsValue {
+    list(indices, |index| (*index as f64).into())
+}
+
+pub(super) fn changed(changed: &Changed) -> JsValue {
     let Changed { frame, object, gained, lost, .. } = changed;
     Record::new()
         .count("frame", *frame)
@@ -259,108 +261,116 @@ fn changed(changed: &Changed) -> JsValue {
         .into_value()
 }
 
-/// Annotations from their plain object, whose values the package has checked.
-fn annotations_of(value: &JsValue) -> Annotations {
-    let frames = |name| -> Option<Vec<Accepted>> {
-        let list = each(value, name)?;
-        Some(
-            list.iter()
-                .map(|entry| Accepted { frame: number(entry, "frame"), labels: bytes_in(entry, "labels") })
+/// A command from its plain object, whose values the package has checked, except the options of a range.
+fn command(value: &JsValue) -> Result<Command, Failure> {
+    let objects = || bytes_in(value, "objects").unwrap_or_default();
+    let frames = || each(value, "frames").iter().map(whole).collect();
+    let object = || number(value, "object") as u8;
+    let on = || get(value, "on").is_some_and(|on| on.is_truthy());
+    Ok(match text(value, "type").as_str() {
+        "segment" => {
+            let options = range_options(&get(value, "options").unwrap_or_default())?;
+            Command::Segment { frames: number(value, "first")..number(value, "last") + 1, options }
+        }
+        "annotate" => Command::Annotate(each(value, "annotations").iter().map(annotation).collect()),
+        "clear" => {
+            Command::Clear { frame: number(value, "frame"), object: Some(object()).filter(|&object| object > 0) }
+        }
+        "accept" => Command::Accept { frames: frames(), on: on() },
+        "lock" => Command::Lock { objects: objects(), on: on() },
+        "describe" => Command::Describe { object: object(), description: description(value), coalesce: on() },
+        "merge" => Command::Merge(objects()),
+        "delete" => Command::Delete(objects()),
+        "split" => Command::Split { object: object(), frame: number(value, "frame"), new: number(value, "new") as u8 },
+        _ => Command::ReplaceAnnotations(Declaration {
+            annotations: each(value, "annotations").iter().map(annotation).collect(),
+            locked: bytes_in(value, "locked").unwrap_or_default(),
+            described: each(value, "described")
+                .iter()
+                .map(|of| (number(of, "object") as u8, description(of)))
                 .collect(),
-        )
-    };
-    let numbers = bytes_in(value, "numbers").unwrap_or_default();
-    Annotations {
-        cleared: Vec::new(),
-        masks: painted_in(value, "masks"),
-        corrections: painted_in(value, "corrections"),
-        prompts: each(value, "prompts").into_iter().flatten().map(|entry| prompt(&entry)).collect(),
-        locked: bytes_in(value, "locked"),
-        named: bytes_in(value, "named"),
-        accepted: frames("accepted"),
-        numbers: numbers.as_chunks::<2>().0.to_vec(),
-        ..Annotations::default()
-    }
+            merged: each(value, "merged").iter().map(|group| Uint8Array::new(group).to_vec()).collect(),
+            deleted: bytes_in(value, "deleted").unwrap_or_default(),
+            accepted: each(value, "accepted").iter().map(whole).collect(),
+        }),
+    })
 }
 
-fn painted_in(value: &JsValue, name: &str) -> Vec<Painted> {
-    let painted = |entry: JsValue| Painted {
-        frame: number(&entry, "frame"),
-        object: Some(number(&entry, "object") as u8).filter(|object| *object > 0),
-        labels: bytes_in(&entry, "labels").unwrap_or_default(),
-        spread: spread(&entry),
-    };
-    each(value, name).into_iter().flatten().map(painted).collect()
+fn description(value: &JsValue) -> Description {
+    let colour = bytes_in(value, "colour").and_then(|colour| colour.try_into().ok());
+    Description { name: text(value, "name"), class: text(value, "class"), colour }
 }
 
-fn prompt(entry: &JsValue) -> Prompt {
-    let places = |name| -> Vec<usize> {
-        each(entry, name).into_iter().flatten().map(|place| place.as_f64().unwrap_or_default() as usize).collect()
+fn annotation(value: &JsValue) -> Annotation {
+    let object = number(value, "object") as u8;
+    let labels = bytes_in(value, "labels").unwrap_or_default();
+    let content = match text(value, "content").as_str() {
+        "strokes" => Content::Strokes { object, labels },
+        "mask" => Content::Mask { object, labels },
+        "labels" => Content::Labels(labels),
+        "given" => Content::Given(labels),
+        _ => {
+            let [clicks, sides] = ["clicks", "box"].map(|name| each(value, name).iter().map(whole).collect::<Vec<_>>());
+            let clicks = clicks.as_chunks::<3>().0.iter();
+            let clicks = clicks.map(|&[x, y, inside]| Click { at: [x, y], inside: inside > 0 }).collect();
+            Content::Prompt { object, clicks, within: sides.try_into().ok() }
+        }
     };
-    let clicks = places("clicks")
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .map(|&[x, y, inside]| Click { at: [x, y], inside: inside > 0 })
-        .collect();
-    Prompt {
-        frame: number(entry, "frame"),
-        object: number(entry, "object") as u8,
-        clicks,
-        within: places("box").try_into().ok(),
-        spread: spread(entry),
-    }
+    Annotation { frame: number(value, "frame"), content, spread: spread(value) }
 }
 
-fn spread(entry: &JsValue) -> Spread {
-    match get(entry, "propagate").and_then(|word| word.as_string()).as_deref() {
-        Some("forward") => Spread::Forward,
-        Some("backward") => Spread::Backward,
-        Some("none") => Spread::None,
+pub(super) fn spread(value: &JsValue) -> Spread {
+    match text(value, "propagate").as_str() {
+        "forward" => Spread::Forward,
+        "backward" => Spread::Backward,
+        "none" => Spread::None,
+        "exact" => Spread::Exact,
         _ => Spread::Both,
     }
 }
 
-fn get(value: &JsValue, name: &str) -> Option<JsValue> {
-    Reflect::get(value, &name.into()).ok().filter(|value| !value.is_undefined())
-}
-
-#[inline(never)]
-fn number(value: &JsValue, name: &str) -> usize {
-    get(value, name).and_then(|value| value.as_f64()).unwrap_or_default() as usize
-}
-
-#[inline(never)]
-fn bytes_in(value: &JsValue, name: &str) -> Option<Vec<u8>> {
-    get(value, name).map(|bytes| Uint8Array::new(&bytes).to_vec())
-}
-
-#[inline(never)]
-fn each(value: &JsValue, name: &str) -> Option<Vec<JsValue>> {
-    get(value, name).map(|list| Array::from(&list).to_vec())
-}
-
-fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
-    let mut options = ClipOptions::default();
+/// The options of a range.
+fn range_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
+    let mut options = SegmentOptions::default();
     for (name, value) in entries(value)? {
         match name.as_str() {
-            "lookAhead" => options.look_ahead = look_ahead(&value)?,
-            _ => pair_option(&mut options.pair, &name, &value, "motions, quality, markUnknown, subject, lookAhead")?,
+            "markUnknown" => return Err(unknown(&name, "motions, quality, subject")),
+            _ => pair_option(&mut options, &name, &value, "motions, quality, subject")?,
         }
     }
     Ok(options)
 }
 
-/// `None` for `'all'`.
-fn look_ahead(value: &JsValue) -> Result<Option<usize>, Failure> {
-    match (value.as_string().as_deref(), value.as_f64()) {
-        (Some("all"), _) => Ok(None),
-        (_, Some(n)) if (0.0..=MAX_LOOK_AHEAD as f64).contains(&n) && n == n.floor() => Ok(Some(n as usize)),
-        _ => Err(invalid("lookAhead", &format!("'all' or a whole number from 0 to {MAX_LOOK_AHEAD}"), value)),
-    }
+pub(super) fn get(value: &JsValue, name: &str) -> Option<JsValue> {
+    Reflect::get(value, &name.into()).ok().filter(|value| !value.is_undefined())
 }
 
-fn clip_frame(frame: &ClipFrame) -> JsValue {
+fn whole(value: &JsValue) -> usize {
+    value.as_f64().unwrap_or_default() as usize
+}
+
+#[inline(never)]
+fn text(value: &JsValue, name: &str) -> String {
+    get(value, name).and_then(|text| text.as_string()).unwrap_or_default()
+}
+
+#[inline(never)]
+pub(super) fn number(value: &JsValue, name: &str) -> usize {
+    get(value, name).map_or(0, |value| whole(&value))
+}
+
+#[inline(never)]
+pub(super) fn bytes_in(value: &JsValue, name: &str) -> Option<Vec<u8>> {
+    get(value, name).map(|bytes| Uint8Array::new(&bytes).to_vec())
+}
+
+/// The entries of a list; none if there is no list.
+#[inline(never)]
+pub(super) fn each(value: &JsValue, name: &str) -> Vec<JsValue> {
+    get(value, name).map(|list| Array::from(&list).to_vec()).unwrap_or_default()
+}
+
+pub(super) fn clip_frame(frame: &ClipFrame) -> JsValue {
     let ClipFrame { index, labels, objects, background, .. } = frame;
     Record::new()
         .count("index", *index)

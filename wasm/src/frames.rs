@@ -1,13 +1,11 @@
-//! Calls on frames: segmentation, painting labels on a canvas.
+//! Calls on two frames.
 
 use js_sys::{Function, Reflect, Uint8Array, Uint8ClampedArray};
 use wasm_bindgen::prelude::*;
-use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
+use web_sys::ImageData;
 
 use crate::plain::{Record, candidate};
-use crate::{
-    Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown, written,
-};
+use crate::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown};
 use veronese::{
     Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions, Segmentation, SegmentedMotion,
 };
@@ -53,74 +51,16 @@ pub fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptions) -> 
     .into_value()
 }
 
-/// Replaces the top-left width × height pixels of a canvas by the colours of the labels, for an overlay on the frame. `palette` holds RGBA
-/// for label 0, 1, …; labels beyond it are transparent. `opacity`, 0 to 1, scales all alpha values.
-///
-/// # Errors
-/// A `VeroneseError` of code `invalid-option`.
-#[wasm_bindgen(js_name = paintLabels)]
-pub fn paint_labels(
-    context: &CanvasRenderingContext2d,
-    labels: &[u8],
-    width: u32,
-    height: u32,
-    palette: &[u8],
-    opacity: f64,
-) -> Result<(), JsValue> {
-    context.put_image_data(&image_from_labels(labels, width, height, palette, opacity)?, 0.0, 0.0)
-}
-
-/// [`paint_labels`] for an `OffscreenCanvas`.
-///
-/// # Errors
-/// As [`paint_labels`].
-#[wasm_bindgen(js_name = paintLabelsOffscreen)]
-pub fn paint_labels_offscreen(
-    context: &OffscreenCanvasRenderingContext2d,
-    labels: &[u8],
-    width: u32,
-    height: u32,
-    palette: &[u8],
-    opacity: f64,
-) -> Result<(), JsValue> {
-    context.put_image_data(&image_from_labels(labels, width, height, palette, opacity)?, 0.0, 0.0)
-}
-
-fn image_from_labels(
-    labels: &[u8],
-    width: u32,
-    height: u32,
-    palette: &[u8],
-    opacity: f64,
-) -> Result<ImageData, JsValue> {
-    let invalid = |name, reason: String| Failure::from(Error::InvalidOption { name, reason });
-    if labels.len() as u64 != u64::from(width) * u64::from(height) {
-        return Err(invalid("labels", format!("{} do not fill {width}×{height} pixels", labels.len())).into());
-    }
-    if !palette.len().is_multiple_of(4) || palette.len() > 4 * 256 {
-        let reason = format!("must hold 4 bytes for each of at most 256 colours, not {} bytes", palette.len());
-        return Err(invalid("palette", reason).into());
-    }
-    if !(0.0..=1.0).contains(&opacity) {
-        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {}", written(opacity))).into());
-    }
-    let colours: Vec<[u8; 4]> = (0..256)
-        .map(|label| match palette.get(4 * label..4 * label + 4) {
-            Some(&[r, g, b, alpha]) => [r, g, b, (f64::from(alpha) * opacity).round() as u8],
-            _ => [0; 4],
-        })
-        .collect();
-    let rgba: Vec<u8> = labels.iter().flat_map(|&label| colours[usize::from(label)]).collect();
-    ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
-}
-
 /// Two frames, each `{ data, width, height }`.
 pub fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
     Ok((frame_from_pixels("the first frame", first)?, frame_from_pixels("the second frame", second)?))
 }
 
-/// A frame from `{ data, width, height }`. The size is checked before bytes are copied.
+/// A frame from an `ImageData` or `{ data, width, height }`. The size is checked before bytes are copied.
 pub(super) fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
+    if let Some(image) = pixels.dyn_ref::<ImageData>() {
+        return Ok(Frame::from_rgba(image.width() as usize, image.height() as usize, image.data().0)?);
+    }
     let shape = || Failure::input(format!("{which} must be {{ data, width, height }} with RGBA bytes, like ImageData"));
     let get = |name: &str| Reflect::get(pixels, &name.into()).map_err(|_| shape());
     let side = |name: &str| match get(name)?.as_f64() {

@@ -27,18 +27,28 @@ mod frames;
 pub mod plain;
 #[cfg(feature = "points")]
 mod points;
+#[cfg(feature = "frames")]
+mod segmented;
+#[cfg(feature = "frames")]
+mod stream;
 
 #[cfg(feature = "frames")]
 pub use clip::{
-    annotate_clip, begin_clip, conclude_clip, end_clip, finish_clip, frame_of_clip, preview_clip, push_clip,
-    restore_clip, save_clip, take_annotations,
+    apply_clip, close_clip, look_at_clip, move_clip, open_clip, save_clip, solve_pair_of_frames, take_clip,
 };
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};
 #[cfg(feature = "frames")]
-pub use frames::{paint_labels, paint_labels_offscreen, segment_pair};
+pub use frames::segment_pair;
 #[cfg(feature = "points")]
 pub use points::fit_motions;
+#[cfg(feature = "frames")]
+pub use segmented::{
+    annotate_clip, begin_clip, conclude_clip, end_clip, frame_of_clip, preview_clip, push_clip, restore_clip,
+    save_segmented, take_annotations,
+};
+#[cfg(feature = "frames")]
+pub use stream::{begin_stream, finish_stream, push_stream};
 
 // For the site's module, which has these calls and some of its own.
 #[cfg(feature = "frames")]

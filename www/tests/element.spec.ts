@@ -186,7 +186,7 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
       element.remove();
       return { events: [...new Set(events)], same, codes, length };
     });
-    const wrong = [...Array<string>(7).fill('invalid-input'), 'unreadable-image', 'unreadable-image', ...Array<string>(3).fill('invalid-option')];
+    const wrong = [...Array<string>(8).fill('invalid-input'), 'unreadable-image', ...Array<string>(3).fill('invalid-option')];
     expect(found).toEqual({ events: ['progress', 'result', ...[...new Set(wrong)].map((code) => `error ${code}`)], same: [true, true, true, true], codes: ['cancelled', ...wrong], length: 96 * 64 });
   });
 

@@ -1,20 +1,19 @@
 // The calls themselves, on the module that has them: stages reported, the signal heard, time measured.
 
 import type * as calls from '../../types/index.js';
-import type { CallOptions, Milliseconds, MotionFit, PaintContext, Pixels, Segmentation } from '../../types/index.js';
-import { checkedBytes, entriesOf, invalidInput, invalidOption, isNumber, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
+import type { CallOptions, Milliseconds, MotionFit, Pixels, Segmentation } from '../../types/index.js';
 import { cancelled } from '../common/errors.js';
-import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import type { CallTask, ClipTask, Result } from './messages.js';
-import { taken } from './taking.js';
-import { fitCall, segmentCall, start } from './tasks.js';
+import type { CallTask, ClipAnswer, ClipTask, Result, SegmentedTask, StreamTask } from './messages.js';
+import { FrameCache } from './session/frame-cache.js';
+import { fitCall, segmentCall, solveCall, start } from './tasks.js';
 
 export class Api {
   readonly #frames: Core<FramesGlue>;
   readonly #points: Core<PointsGlue>;
+  readonly #cache = new FrameCache();
 
   /** `points` is loaded when measurements come; it may be the same as `frames`. */
   constructor(frames: Core<FramesGlue>, points: Core<PointsGlue>) {
@@ -27,6 +26,8 @@ export class Api {
   readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
   readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> => start(() => segmentCall(...given), this.perform);
+
+  readonly solvePair = (...given: Parameters<typeof solveCall>): Promise<Uint8Array> => start(() => solveCall(...given), this.perform);
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
@@ -51,20 +52,20 @@ export class Api {
         glue.fitMotions(positions, derivatives, task.settings, onStage),
       );
     }
-    if (!('frames' in task)) return step(this.#frames, call, task);
+    if (task.call === 'solvePair') return this.#step(call, (glue) => glue.solvePair(...task.frames, task.settings));
+    if (task.call !== 'segmentPair') return this.#step(call, (glue) => stepOf(glue, task, this.#cache));
     const [first, second] = task.frames;
     return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
       glue.segmentPair(first, second, task.settings, onStage),
     );
   };
 
-  readonly paintLabels: typeof calls.paintLabels = async (context, segmentation, options) => {
-    const rest = reading(() => paintArguments(context, segmentation, options));
-    await this.#frames.call((glue) => {
-      if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
-      else glue.paintLabels(context as CanvasRenderingContext2D, ...rest);
-    });
-  };
+  /** One step of a clip or a stream. It yields to the event loop first; otherwise nothing could abort a stream whose source never waits. */
+  async #step({ signal }: CallOptions, work: (glue: FramesGlue) => unknown): Promise<Result> {
+    await nextTurn();
+    if (signal?.aborted) throw cancelled(signal);
+    return this.#frames.call(work) as Promise<Result>;
+  }
 }
 
 /** One call of a module. Stages are timed, and between them the signal is looked at. */
@@ -99,13 +100,6 @@ async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
   }
 }
 
-/** One step of a clip. It yields to the event loop first; otherwise nothing could abort a clip whose source never waits. */
-async function step(core: Core<FramesGlue>, { signal }: CallOptions, task: ClipTask): Promise<Result> {
-  await nextTurn();
-  if (signal?.aborted) throw cancelled(signal);
-  return core.call((glue) => stepOf(glue, task)) as Promise<Result>;
-}
-
 /** Waits for the next turn of the event loop. Browsers delay timers that begin each other by four milliseconds, but no messages. */
 function nextTurn(): Promise<void> {
   const { port1, port2 } = new MessageChannel();
@@ -118,9 +112,11 @@ function nextTurn(): Promise<void> {
   });
 }
 
-function stepOf(glue: FramesGlue, task: ClipTask): unknown {
+function stepOf(glue: FramesGlue, task: ClipTask | StreamTask | SegmentedTask, cache: FrameCache): unknown {
+  if ('stream' in task) return streamStep(glue, task);
+  if (isOfClip(task)) return clipStep(glue, task, cache);
   const { clip } = task;
-  if (task.call === 'beginClip') return glue.beginClip(clip, task.whole, task.settings);
+  if (task.call === 'beginClip') return glue.beginClip(clip, task.settings);
   if (task.call === 'pushClip') return glue.pushClip(clip, task.frame, task.known);
   if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
   if (task.call === 'annotateClip') return glue.annotateClip(clip, task.annotations);
@@ -129,25 +125,39 @@ function stepOf(glue: FramesGlue, task: ClipTask): unknown {
   return glue[task.call](clip);
 }
 
-function paintArguments(context: unknown, segmentation: unknown, options: unknown) {
-  if (typeof Object(context).putImageData !== 'function') throw invalidInput('the context must be the 2d context of a canvas');
-  const { labels, width, height } = Object(segmentation) as Partial<Segmentation>;
-  const [bytes] = taken([checkedBytes('the labels', labels)], false) as [Uint8Array];
-  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) {
-    throw invalidInput(`width and height must be whole numbers from 1 to ${LONGEST_SIDE}`);
+function streamStep(glue: FramesGlue, task: StreamTask): unknown {
+  if (task.call === 'beginStream') return glue.beginStream(task.stream, task.settings);
+  if (task.call === 'pushStream') return glue.pushStream(task.stream, task.frame);
+  return glue.finishStream(task.stream);
+}
+
+function isOfClip(task: ClipTask | SegmentedTask): task is ClipTask {
+  return ['openClip', 'applyClip', 'moveClip', 'takeClip', 'lookAtClip', 'saveClip', 'closeClip'].includes(task.call);
+}
+
+/** Frames that a clip takes stay in the cache. The result is undefined where one was expected there and is gone. */
+function clipStep(glue: FramesGlue, task: ClipTask, cache: FrameCache): unknown {
+  const { clip } = task;
+  if (task.call === 'saveClip') return glue.saveClip(clip);
+  if (task.call === 'closeClip') {
+    cache.forget(clip);
+    return glue.closeClip(clip);
   }
-  const { palette = overlayPalette(), opacity = 0.5 } = entriesOf(options, ['palette', 'opacity']);
-  if (!isNumber(opacity)) throw invalidOption('opacity', 'a number from 0 to 1', opacity);
-  return [bytes, width, height, colourBytes(palette, 4), opacity] as const;
+  const frame = task.call === 'takeClip' ? (task.frame ?? cache.get(clip, task.index)) : undefined;
+  if (task.call === 'takeClip' && !frame) return undefined;
+  const answer = answerOf(glue, task, frame);
+  if (task.call === 'takeClip' && task.frame) cache.add(clip, task.index, task.frame);
+  if (answer?.wanted) answer.wanted.isCached = cache.has(clip, answer.wanted.frame);
+  return answer;
 }
 
-/** The default of {@link Api.paintLabels}: DAVIS, with what is dominant or unlabelled left transparent. */
-function overlayPalette(): (readonly [number, number, number, number])[] {
-  return davisPalette().map(([r, g, b], label) => [r, g, b, label === 0 || label === 255 ? 0 : 255] as const);
-}
-
-function isOffscreen(context: PaintContext): context is OffscreenCanvasRenderingContext2D {
-  return typeof OffscreenCanvasRenderingContext2D === 'function' && context instanceof OffscreenCanvasRenderingContext2D;
+function answerOf(glue: FramesGlue, task: ClipTask, frame: Pixels | undefined): ClipAnswer | null {
+  const { clip } = task;
+  if (task.call === 'openClip') return glue.openClip(clip, task.frames, task.markUnknown, task.saved) as ClipAnswer;
+  if (task.call === 'applyClip') return glue.applyClip(clip, task.command) as ClipAnswer | null;
+  if (task.call === 'moveClip') return glue.moveClip(clip, task.what, task.step) as ClipAnswer | null;
+  if (task.call === 'takeClip') return glue.takeClip(clip, task.index, frame, task.solved, task.draft) as ClipAnswer | null;
+  return glue.lookAtClip(clip, task.call === 'lookAtClip' ? task.index : undefined) as ClipAnswer | null;
 }
 
 /** Milliseconds per stage; a stage that is entered again goes on where it stopped. */

@@ -4,6 +4,7 @@ import type {
   CallOptions,
   FitOptions,
   MotionFit,
+  PairOptions,
   Pixels,
   PointMeasurements,
   Segmentation,
@@ -29,6 +30,9 @@ import { taken } from './taking.js';
 const SHORTEST_SIDE = 16;
 /** Longest side of a frame that is to be scaled down, pixels: as of files. */
 const LARGE_SIDE = 4 * LONGEST_SIDE;
+
+/** Frames that need not be pixels. */
+const PICTURES = 'in browsers an ImageBitmap, VideoFrame, Blob, image or canvas, in Node a path, address, Blob or stream';
 
 /** A task, how it is to be run, and what its result becomes for the caller. */
 export interface Call<T> {
@@ -60,6 +64,14 @@ export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOpti
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames, maxSize), settings: asked.settings };
   return { task, options: asked.call, finish: (result) => result as Segmentation };
+}
+
+export function solveCall(before: Pixels, frame: Pixels, options?: PairOptions): Call<Uint8Array> {
+  const asked = parted(options, ['motions', 'quality', 'subject', 'maxSize']);
+  const frames = checkedFrames(before, frame, asked.maxSize);
+  const own = takenFor(asked, dataOf(frames));
+  const task: CallTask = { call: 'solvePair', frames: framesWith(own, frames, asked.maxSize), settings: asked.settings };
+  return { task, options: asked.call, finish: (result) => result as Uint8Array };
 }
 
 export function fitCall(measurements: PointMeasurements, options?: FitOptions): Call<MotionFit> {
@@ -120,7 +132,7 @@ export function checkedPixels(which: string, pixels: unknown, maxSize?: number):
   const { data, width, height } = Object(pixels) as Partial<Pixels>;
   if (!isArrayOf(data, 'Uint8Array', 'Uint8ClampedArray')) {
     if (isNamed(pixels)) throw invalidInput(`${which} is a path, an address or a stream: only 'veronese' in Node reads these, decode it first`);
-    throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData`);
+    throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData, or a picture: ${PICTURES}`);
   }
   if (!isWhole(width, 0, Infinity) || !isWhole(height, 0, Infinity)) {
     throw invalidInput(`${which}: width and height must be whole numbers of pixels`);

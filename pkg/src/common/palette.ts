@@ -1,6 +1,5 @@
 // Colours of labels: the palette of the DAVIS benchmark, which annotation tools know from indexed PNG masks.
 
-import type { Colour } from '../../types/index.js';
 import { isListOf, isNumber } from './checks.js';
 import { VeroneseError } from './errors.js';
 
@@ -22,19 +21,14 @@ export function davisPalette(): [number, number, number][] {
   });
 }
 
-/** Colours as bytes, one after another: three each, or four with alpha (255 where a colour has none). Throws `invalid-option`. */
-export function colourBytes(colours: unknown, channels: 3 | 4): Uint8Array {
+/** Colours as bytes, three each, one after another. Throws `invalid-option`. */
+export function colourBytes(colours: unknown): Uint8Array {
   if (!isListOf(colours, isColour)) {
-    throw new VeroneseError('invalid-option', "option 'palette': must be a list of colours, each three or four numbers from 0 to 255");
+    throw new VeroneseError('invalid-option', "option 'palette': must be a list of colours, each three numbers from 0 to 255");
   }
-  const bytes = new Uint8ClampedArray(colours.length * channels);
-  colours.forEach((colour, index) => {
-    bytes.set(colour.slice(0, channels), index * channels);
-    if (channels === 4 && colour.length === 3) bytes[index * channels + 3] = 255;
-  });
-  return new Uint8Array(bytes.buffer);
+  return Uint8Array.from(Uint8ClampedArray.from(colours.flat()));
 }
 
-function isColour(value: unknown): value is Colour {
-  return isListOf(value, isNumber) && (value.length === 3 || value.length === 4) && value.every((level) => level >= 0 && level <= 255);
+function isColour(value: unknown): value is number[] {
+  return isListOf(value, isNumber) && value.length === 3 && value.every((level) => level >= 0 && level <= 255);
 }

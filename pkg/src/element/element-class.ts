@@ -438,7 +438,7 @@ export class VeroneseSegmenterElement extends Base {
   async #pixels(slot: 'first' | 'second', signal: AbortSignal): Promise<Pixels> {
     const source = this.#given[slot] ?? this.getAttribute(slot) ?? '';
     if (source instanceof VeroneseError) throw source;
-    return pixelsOf(`the ${slot} frame`, source, this.#place(signal));
+    return source instanceof Promise ? source : pixelsOf(`the ${slot} frame`, source, this.#place(signal));
   }
 
   #leaveClip(): void {

@@ -2,13 +2,14 @@
 
 import type { FrameSource } from '../../types/element-class.js';
 import type { Pixels } from '../../types/index.js';
+import { isPicture, pixelsOfPicture } from '../calls/places.js';
 import { taken } from '../calls/taking.js';
 import { checkedPixels } from '../calls/tasks.js';
 import { reading } from '../common/checks.js';
-import { VeroneseError } from '../common/errors.js';
+import { VeroneseError, veroneseError } from '../common/errors.js';
 
 /** A frame that nobody else can change; or why it cannot be used. */
-export type Kept = string | Blob | Pixels | VeroneseError;
+export type Kept = string | Blob | Pixels | Promise<Pixels> | VeroneseError;
 
 /** Where addresses begin, and when to stop. */
 export interface Place {
@@ -21,40 +22,23 @@ export function kept(name: string, source: FrameSource): Kept {
   if (typeof source === 'string' || source instanceof Blob) return source;
   try {
     if (source instanceof URL) return source.href;
-    if (source instanceof ImageBitmap) return pixelsOfImage(source);
+    if (isPicture(source)) {
+      const pixels = pixelsOfPicture(name, source);
+      // Whoever asks for the pixels hears of it.
+      pixels.catch(() => undefined);
+      return pixels;
+    }
     const { data, ...size } = reading(() => checkedPixels(name, source));
     return { ...size, data: taken([data], false)[0] as Uint8Array };
   } catch (thrown) {
-    return thrown instanceof VeroneseError ? thrown : unreadable(name, thrown);
+    return veroneseError(thrown);
   }
 }
 
 /** Decodes a frame. Pixels are checked and not copied. */
 export async function pixelsOf(name: string, source: FrameSource, { base, signal }: Place): Promise<Pixels> {
-  if (source instanceof ImageBitmap) return pixelsOfImage(source);
-  if (typeof source !== 'string' && !(source instanceof URL) && !(source instanceof Blob)) return reading(() => checkedPixels(name, source));
-  let bitmap: ImageBitmap | undefined;
-  try {
-    const blob = source instanceof Blob ? source : await fetched(name, source, base, signal);
-    bitmap = await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
-    return pixelsOfImage(bitmap);
-  } catch (cause) {
-    throw cause instanceof VeroneseError ? cause : unreadable(name, cause);
-  } finally {
-    bitmap?.close();
-  }
-}
-
-export function pixelsOfImage(image: ImageBitmap): Pixels {
-  const { width, height } = image;
-  const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-  if (context === null) throw new VeroneseError('internal', 'this browser gives no canvas to read pixels from');
-  context.drawImage(image, 0, 0);
-  return context.getImageData(0, 0, width, height);
-}
-
-function unreadable(name: string, cause: unknown): VeroneseError {
-  return new VeroneseError('unreadable-image', `${name} is not an image that this browser can read`, { cause });
+  const picture = typeof source === 'string' || source instanceof URL ? await fetched(name, source, base, signal) : source;
+  return isPicture(picture) ? pixelsOfPicture(name, picture) : reading(() => checkedPixels(name, picture));
 }
 
 /** Throws `unreadable-image` with the address, and what its server answered. */

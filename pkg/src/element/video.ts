@@ -2,8 +2,9 @@
 // long each lasts, so that is measured by the times of the frames that it shows.
 
 import type { Pixels } from '../../types/index.js';
+import { pixelsOfBitmap } from '../calls/pictures.js';
 import { VeroneseError } from '../common/errors.js';
-import { answered, pixelsOfImage } from './sources.js';
+import { answered } from './sources.js';
 
 /** Seconds between the positions at which the second frame is looked for: a frame of a video with 240 a second. */
 const STEP = 1 / 240;
@@ -54,7 +55,7 @@ export class Video {
       await this.#seek(this.#start + (index + 0.5) * this.#duration);
       const bitmap = await createImageBitmap(this.#video);
       try {
-        return pixelsOfImage(bitmap);
+        return pixelsOfBitmap(bitmap);
       } finally {
         bitmap.close();
       }

@@ -48,7 +48,7 @@ export async function encodeIndexedPng(
 ): Promise<Uint8Array> {
   checkSize(width, height);
   const bytes = takenBytes('the indices', indices);
-  const colours = reading(() => colourBytes(palette, 3));
+  const colours = reading(() => colourBytes(palette));
   return core.call((glue) => glue.encodeIndexedPng(width, height, bytes, colours));
 }
 

@@ -1,6 +1,6 @@
-// Node: the pixels of an image file, named by a path or an address, or given as a stream of bytes.
+// Node: the pixels of an image file, named by a path or an address, or given as a `Blob` or a stream of bytes.
 
-import type { FrameFile, Pixels } from '../../types/index.js';
+import type { BlobLike, FrameFile, Pixels } from '../../types/index.js';
 import { invalidInput } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { decodeImage, isTooLarge } from './codecs.js';
@@ -8,19 +8,37 @@ import { read } from './reading.js';
 
 /** Throws `file-not-found`, `unreadable-file` or `unreadable-image`, the file named. */
 export async function decodeFile(place: FrameFile, maxSize: number | undefined): Promise<Pixels> {
-  const bytes = isStream(place) ? await bytesFrom(place) : await bytesOf(place);
+  const bytes = isStream(place) ? await bytesFrom(place) : isBlob(place) ? await bytesIn(place) : await bytesOf(place);
   try {
     const { data, width, height } = await decodeImage(bytes, { maxSize });
     return { data, width, height };
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);
     const remedy = maxSize === undefined && isTooLarge(code, message) ? "; option 'maxSize' scales larger ones down" : '';
-    throw new VeroneseError(code, `${isStream(place) ? 'the stream' : `'${String(place)}'`}: ${message}${remedy}`);
+    throw new VeroneseError(code, `${nameOf(place)}: ${message}${remedy}`);
   }
 }
 
 function isStream(place: FrameFile): place is AsyncIterable<Uint8Array> {
   return typeof place === 'object' && Symbol.asyncIterator in place;
+}
+
+function isBlob(place: FrameFile): place is BlobLike {
+  return typeof place === 'object' && 'arrayBuffer' in place;
+}
+
+/** How errors call it. */
+function nameOf(place: FrameFile): string {
+  if (isStream(place)) return 'the stream';
+  return isBlob(place) ? `the file${'name' in place ? ` '${String(place.name)}'` : ' in memory'}` : `'${String(place)}'`;
+}
+
+async function bytesIn(file: BlobLike): Promise<Uint8Array> {
+  try {
+    return new Uint8Array(await file.arrayBuffer());
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `${nameOf(file)} cannot be read: ${(thrown as Error).message}`, { cause: thrown });
+  }
 }
 
 async function bytesFrom(stream: AsyncIterable<unknown>): Promise<Uint8Array> {

@@ -17,7 +17,7 @@ async function unpacked(packed: string): Promise<Uint8Array<ArrayBuffer>> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-export const { init, initPoints, segmentPair, segmentClip, fitMotions, paintLabels, Segmenter, SegmenterPool, segmentPairs } = packageFor({
+export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({
   read: (place) => {
     const packed = INSIDE.get(String(place));
     return packed === undefined ? fetch(place) : unpacked(packed);

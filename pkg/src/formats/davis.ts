@@ -6,5 +6,5 @@ import { png } from './png.js';
 
 export function encodeDavis(labels: Uint8Array, width: number, height: number): Uint8Array {
   checkLabels(labels, width, height);
-  return png(width, height, labels, { palette: colourBytes(davisPalette(), 3) });
+  return png(width, height, labels, { palette: colourBytes(davisPalette()) });
 }

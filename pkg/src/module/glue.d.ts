@@ -1,28 +1,36 @@
-// The JavaScript of wasm-bindgen for wasm/src/frames.rs, as far as it is used here; scripts/glue.mjs puts the JavaScript beside the other
+// The JavaScript of wasm-bindgen for the module of frames, as far as it is used here; scripts/glue.mjs puts the JavaScript beside the other
 // compiled sources.
 
 import type { Glue } from './core.js';
 
 export type OnStage = (stage: string, index: number, of: number) => void;
-type PaintArguments = [labels: Uint8Array, width: number, height: number, palette: Uint8Array, opacity: number];
 
 export interface FramesGlue extends Glue {
   segmentPair(first: unknown, second: unknown, options: unknown, onStage: OnStage): unknown;
+  solvePair(before: unknown, frame: unknown, options: unknown): unknown;
 
-  beginClip(clip: number, whole: boolean, options: unknown): void;
+  openClip(clip: number, frames: number, markUnknown: boolean, saved?: Uint8Array): unknown;
+  applyClip(clip: number, command: unknown): unknown;
+  moveClip(clip: number, what: string, step: number): unknown;
+  takeClip(clip: number, index: number, frame: unknown, solved: Uint8Array | undefined, draft: boolean): unknown;
+  lookAtClip(clip: number, index?: number): unknown;
+  saveClip(clip: number): unknown;
+  closeClip(clip: number): void;
+
+  beginStream(stream: number, options: unknown): void;
+  pushStream(stream: number, frame: unknown): unknown;
+  finishStream(stream: number): unknown;
+
+  beginClip(clip: number, options: unknown): void;
   pushClip(clip: number, frame: unknown, known?: Uint8Array): unknown;
   previewClip(clip: number): unknown;
-  finishClip(clip: number): unknown;
   concludeClip(clip: number): unknown;
   restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;
-  saveClip(clip: number): unknown;
+  saveSegmented(clip: number): unknown;
   clipFrame(clip: number, index: number, frame: unknown): unknown;
   annotateClip(clip: number, annotations: unknown): unknown;
   takeAnnotations(clip: number, frame: unknown): unknown;
   endClip(clip: number): void;
-
-  paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;
-  paintLabelsOffscreen(context: OffscreenCanvasRenderingContext2D, ...rest: PaintArguments): void;
 }
 
 export const glue: FramesGlue;

@@ -1,5 +1,5 @@
 // Tasks for a number of workers. Each worker does one at a time. A task is cancelled at once by ending its worker, unless the worker
-// is reserved for a sequence of tasks that share state. A task that gives way is ended by the next one that its worker gets.
+// keeps state for others: tasks that share state are pinned to one worker. A task that gives way is ended by the next one that its worker gets.
 
 import type { CallOptions, Progress } from '../../types/index.js';
 import type { Reply, Request } from '../calls/messages.js';
@@ -15,38 +15,25 @@ export interface Thread<Task> {
 
 export type Spawn<Task, Result> = (onReply: (reply: Reply<Result>) => void, onDeath: (reason: string) => void) => Thread<Task>;
 
-/** A worker reserved for a sequence of tasks that share state. */
-export interface Claim<Task, Result> {
+/** The worker to which a sequence of tasks keeps, because it has their state. Others may have it too. */
+export interface Pin<Task, Result> {
   /** Rejects if the worker has ended since. */
   perform: (task: Task, options?: CallOptions) => Promise<Result>;
   release: () => void;
-  /** Says whether it waits for the caller's code, which may itself wait for a worker. */
-  pause: (paused: boolean) => void;
-  /** Why the worker has ended, if it has. */
-  lost: () => VeroneseError | undefined;
 }
 
-/** A {@link Claim} inside the pool. */
-interface Claiming {
+/** A {@link Pin} inside the pool. */
+interface Pinning {
   /** Why its worker has ended. */
   lost?: VeroneseError;
-  paused?: boolean;
-}
-
-/** Who waits for a worker is refused when all claims have been paused for this long, milliseconds. */
-const PATIENCE = 2000;
-
-interface Claimant {
-  /** Whether it takes only a worker that has nothing to do. */
-  idle: boolean;
-  give: (claim: Claiming) => void;
-  reject: (reason: VeroneseError) => void;
 }
 
 interface Job<Task, Result> {
   task: Task;
-  /** If given, only the worker with this claim may do the job. */
-  claim: Claiming | undefined;
+  /** If given, only the worker with this pin does the job. */
+  pin: Pinning | undefined;
+  /** If given, the worker with this pin does not do the job, unless there is no other. */
+  apart: Pinning | undefined;
   signal: AbortSignal | undefined;
   onProgress: ((progress: Progress) => void) | undefined;
   resolve: (result: Result) => void;
@@ -70,25 +57,22 @@ interface Lane<Task, Result> {
   job: Job<Task, Result> | undefined;
   /** Whether its worker knows of the job. */
   isKnown: boolean;
-  /** The claim on its worker. */
-  claim: Claiming | undefined;
+  /** Of those for which its worker keeps state. */
+  pins: Set<Pinning>;
 }
 
 export class WorkerPool<Task, Result> {
   readonly #spawn: Spawn<Task, Result>;
   readonly #supply: (task: Task) => Module;
   readonly #waiting: Job<Task, Result>[] = [];
-  readonly #claimants: Claimant[] = [];
   readonly #lanes: Lane<Task, Result>[];
-  /** Runs while claims are wanted and all are paused. */
-  #patience: ReturnType<typeof setTimeout> | undefined;
 
   /** `supply`: which module a task needs. */
   constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
     this.#spawn = spawn;
     this.#supply = supply;
-    const free = { thread: undefined, job: undefined, isKnown: false, claim: undefined };
-    this.#lanes = Array.from({ length: size }, () => ({ ...free, modules: new Set() }));
+    const free = { thread: undefined, job: undefined, isKnown: false };
+    this.#lanes = Array.from({ length: size }, () => ({ ...free, modules: new Set(), pins: new Set() }));
   }
 
   get size(): number {
@@ -102,77 +86,30 @@ export class WorkerPool<Task, Result> {
 
   /** Runs a task that gives way: it begins when nothing else waits, and is over when something else comes. */
   async rest(task: Task): Promise<void> {
-    await this.#run(task, {}, undefined, true);
+    await this.#run(task, {}, { givesWay: true });
   }
 
-  /**
-   * Reserves a worker, with `idle` one that has nothing to do. A worker has one claim at a time; claims are met in the order of the calls.
-   * Other tasks run in between.
-   */
-  claim(signal?: AbortSignal, idle = false): Promise<Claim<Task, Result>> {
+  /** Chooses the worker that keeps the state of the fewest. Other tasks run in between. */
+  pin(): Pin<Task, Result> & { beside: (task: Task, options?: CallOptions) => Promise<Result> } {
+    const order = (lane: Lane<Task, Result>) => [lane.pins.size, Number(isBusy(lane)), Number(!lane.thread)];
+    const [lane] = [...this.#lanes].sort((one, other) => compared(order(one), order(other))) as [Lane<Task, Result>];
+    const pin: Pinning = {};
+    lane.pins.add(pin);
+    return {
+      perform: (task, options) => this.#run(task, options, { pin }),
+      // A task without state, which others should do, since this one may be wanted at any time.
+      beside: (task, options) => this.#run(task, options, { apart: pin }),
+      release: () => lane.pins.delete(pin),
+    };
+  }
+
+  #run(task: Task, { signal, onProgress }: CallOptions = {}, { pin, apart, givesWay = false }: Partial<Pick<Job<Task, Result>, 'pin' | 'apart' | 'givesWay'>> = {}): Promise<Result> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
-    return new Promise((resolve, reject) => {
-      const onAbort = () => {
-        this.#claimants.splice(this.#claimants.indexOf(claimant), 1);
-        reject(cancelled(signal));
-      };
-      const claimant: Claimant = {
-        idle,
-        give: (claim) => {
-          signal?.removeEventListener('abort', onAbort);
-          const pause = (paused: boolean) => {
-            claim.paused = paused;
-            this.#watch();
-          };
-          const perform = (task: Task, options?: CallOptions) => this.#run(task, options, claim);
-          resolve({ perform, release: () => this.#release(claim), pause, lost: () => claim.lost });
-        },
-        reject: (reason) => {
-          signal?.removeEventListener('abort', onAbort);
-          reject(reason);
-        },
-      };
-      signal?.addEventListener('abort', onAbort);
-      this.#claimants.push(claimant);
-      this.#assign();
-    });
-  }
-
-  #assign(): void {
-    const free = this.#lanes.filter(({ claim }) => !claim);
-    // Idle workers first, then those that have started.
-    free.sort((one, other) => Number(isBusy(one)) - Number(isBusy(other)) || Number(!one.thread) - Number(!other.thread));
-    for (const lane of free) {
-      const claimant = this.#claimants.find(({ idle }) => !idle || !isBusy(lane));
-      if (!claimant) continue;
-      this.#claimants.splice(this.#claimants.indexOf(claimant), 1);
-      lane.claim = {};
-      claimant.give(lane.claim);
-    }
-    this.#watch();
-  }
-
-  /** Claimants may be what all paused claims wait for: a clip in the loop of another. */
-  #watch(): void {
-    clearTimeout(this.#patience);
-    if (this.#claimants.length === 0 || !this.#lanes.every(({ claim }) => claim?.paused)) return;
-    this.#patience = setTimeout(() => {
-      for (const { reject } of this.#claimants.splice(0)) reject(new VeroneseError('worker-busy', BUSY));
-    }, PATIENCE);
-  }
-
-  #release(claim: Claiming): void {
-    for (const lane of this.#lanes) if (lane.claim === claim) lane.claim = undefined;
-    this.#assign();
-  }
-
-  #run(task: Task, { signal, onProgress }: CallOptions = {}, claim?: Claiming, givesWay = false): Promise<Result> {
-    if (signal?.aborted) return Promise.reject(cancelled(signal));
-    if (claim?.lost) return Promise.reject(claim.lost);
+    if (pin?.lost) return Promise.reject(pin.lost);
     return new Promise((resolve, reject) => {
       const onAbort = () => this.#cancel(job);
       const release = () => signal?.removeEventListener('abort', onAbort);
-      const job: Job<Task, Result> = { task, claim, signal, onProgress, resolve, reject, release, givesWay, settled: false };
+      const job: Job<Task, Result> = { task, pin, apart, signal, onProgress, resolve, reject, release, givesWay, settled: false };
       signal?.addEventListener('abort', onAbort);
       this.#waiting.push(job);
       this.#next();
@@ -182,30 +119,26 @@ export class WorkerPool<Task, Result> {
   /** Ends all workers; a later call starts fresh ones. */
   close(): void {
     const jobs = this.#waiting.splice(0);
-    const claimants = this.#claimants.splice(0);
     for (const lane of this.#lanes) {
       if (lane.job) jobs.push(lane.job);
       this.#end(lane, cancelled());
     }
     for (const job of jobs) this.#settle(job, () => job.reject(cancelled(job.signal)));
-    for (const claimant of claimants) claimant.reject(cancelled());
-    this.#watch();
   }
 
-  /** Ends the workers that have nothing to do and are not reserved, and so gives their memory back. A later call starts fresh ones. */
+  /** Ends the workers that have nothing to do and keep nothing, and so gives their memory back. A later call starts fresh ones. */
   endIdle(): void {
-    for (const lane of this.#lanes) if (!lane.job && !lane.claim) this.#end(lane);
+    for (const lane of this.#lanes) if (!lane.job && lane.pins.size === 0) this.#end(lane);
   }
 
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
-    // A reserved worker finishes the task, because its state would be lost.
-    if (lane?.isKnown && !lane.claim) this.#end(lane);
+    // A worker that keeps state finishes the task.
+    if (lane?.isKnown && lane.pins.size === 0) this.#end(lane);
     else if (lane && !lane.isKnown) lane.job = undefined;
     else if (!lane) this.#waiting.splice(this.#waiting.indexOf(job), 1);
     this.#settle(job, () => job.reject(reason));
     this.#next();
-    this.#assign();
   }
 
   #settle(job: Job<Task, Result>, how: () => void): void {
@@ -215,19 +148,18 @@ export class WorkerPool<Task, Result> {
     how();
   }
 
-  /** Ends a worker and its task. `reason` is reported to the claim on it. */
+  /** Ends a worker and its task. `reason` is reported to all that are pinned to it. */
   #end(lane: Lane<Task, Result>, reason?: VeroneseError): void {
-    const { claim } = lane;
+    const { pins } = lane;
     lane.thread?.terminate();
     lane.thread = undefined;
     lane.modules.clear();
     lane.job = undefined;
     lane.isKnown = false;
-    lane.claim = undefined;
-    if (!claim || !reason) return;
-    claim.lost = reason;
-    const orphans = this.#waiting.filter((job) => job.claim === claim);
-    for (const job of orphans) {
+    lane.pins = new Set();
+    if (!reason) return;
+    for (const pin of pins) pin.lost = reason;
+    for (const job of this.#waiting.filter(({ pin }) => pin && pins.has(pin))) {
       this.#waiting.splice(this.#waiting.indexOf(job), 1);
       this.#settle(job, () => job.reject(reason));
     }
@@ -235,10 +167,11 @@ export class WorkerPool<Task, Result> {
 
   #next(): void {
     const idle = this.#lanes.filter((lane) => !isBusy(lane));
-    // Reserved workers last, since they expect more tasks; then those that have not started.
-    idle.sort((one, other) => Number(!!one.claim) - Number(!!other.claim) || Number(!one.thread) - Number(!other.thread));
+    // Those that keep state last, since they expect more tasks; then those that have not started.
+    idle.sort((one, other) => one.pins.size - other.pins.size || Number(!one.thread) - Number(!other.thread));
     for (const lane of idle) {
-      const fitting = this.#waiting.filter(({ claim }) => !claim || claim === lane.claim);
+      const fits = ({ pin, apart }: Job<Task, Result>) => (pin ? lane.pins.has(pin) : !apart || !lane.pins.has(apart) || this.#lanes.length === 1);
+      const fitting = this.#waiting.filter(fits);
       const job = fitting.find(({ givesWay }) => !givesWay) ?? fitting[0];
       const { job: left } = lane;
       if (!job || (left && job.givesWay)) continue;
@@ -277,7 +210,6 @@ export class WorkerPool<Task, Result> {
         const failed = new VeroneseError('worker-failed', `the worker stopped: ${reason}`);
         this.#end(lane, failed);
         if (job) this.#settle(job, () => job.reject(failed));
-        this.#assign();
         this.#next();
       },
     );
@@ -307,11 +239,14 @@ export class WorkerPool<Task, Result> {
       else job.resolve(reply.kind === 'done' ? reply.result : (undefined as Result));
     });
     this.#next();
-    this.#assign();
   }
 }
 
-const BUSY = 'every worker keeps a clip that nobody reads on; a SegmenterPool may have more workers';
+/** As a comparison of lists, number by number. */
+function compared(one: readonly number[], other: readonly number[]): number {
+  const at = one.findIndex((value, k) => value !== other[k]);
+  return at < 0 ? 0 : (one[at] as number) - (other[at] as number);
+}
 
 function isBusy({ job }: { job: { givesWay: boolean } | undefined }): boolean {
   return job?.givesWay === false;

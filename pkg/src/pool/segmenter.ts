@@ -4,10 +4,12 @@ import type * as calls from '../../types/index.js';
 import type {
   CallOptions,
   Clip,
-  ClipOptions,
-  ClipSource,
+  ClipFrames,
+  ClipStream,
   MotionFit,
+  OpenOptions,
   PairInput,
+  PairOptions,
   PairOutcome,
   PairsOptions,
   Pixels,
@@ -16,14 +18,20 @@ import type {
   Segmentation,
   SegmenterOptions,
   SegmentOptions,
+  StreamOptions,
+  StreamSource,
   WasmSource,
   WorkerLike,
 } from '../../types/index.js';
-import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
-import type { PairCall, Places } from '../calls/places.js';
-import { fitCall, parted, segmentCall, start } from '../calls/tasks.js';
+import type { PairCall } from '../calls/places.js';
+import { segmentedClip } from '../calls/segmented/clip.js';
+import type { ClipOptions, ClipSource, SegmentedClip } from '../calls/segmented/types.js';
+import type { Home } from '../calls/session/clip.js';
+import { type ClipHost, openedClip } from '../calls/session/open.js';
+import { streamOf } from '../calls/stream.js';
+import { fitCall, parted, segmentCall, solveCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
@@ -34,7 +42,7 @@ import { spawnWith } from './threads.js';
 export const MOST_JOBS = 256;
 
 /** Needs of the classes that differ by the place where they run. */
-export interface Host {
+export interface Host extends ClipHost {
   newCore: () => Core<Glue>;
   /** For measurements. */
   newPoints: () => Core<Glue>;
@@ -42,8 +50,6 @@ export interface Host {
   worker: () => WorkerLike;
   /** Default number of workers. */
   jobs: () => number;
-  /** Reads frames that are named. */
-  places: Places | undefined;
 }
 
 /** The classes for one host. */
@@ -51,6 +57,12 @@ export function segmenters(host: Host) {
   class Segmenter {
     readonly #pool: WorkerPool<Task, Result>;
     readonly #perform = (task: CallTask, options: CallOptions) => this.#pool.run(task, options);
+
+    /** A worker for a clip or a stream. */
+    readonly #house = (): Home => {
+      const { perform, beside, release } = this.#pool.pin();
+      return { perform, beside, release, anywhere: this.#perform, size: this.#pool.size, endIdle: () => this.#pool.endIdle() };
+    };
 
     constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions, jobs = 1) {
       const { worker = host.worker, points: place } = workerOptions(options);
@@ -63,15 +75,29 @@ export function segmenters(host: Host) {
 
     segmentPair(...given: Parameters<typeof calls.segmentPair>): Promise<Segmentation> {
       const call: PairCall<Pixels, SegmentOptions, Segmentation> = (...pair) => start(() => segmentCall(...pair), this.#perform);
-      return (host.places?.pair(call) ?? (call as typeof calls.segmentPair))(...given);
+      return host.places.pair(call)(...given);
+    }
+
+    solvePair(...given: Parameters<typeof calls.solvePair>): Promise<Uint8Array> {
+      const call: PairCall<Pixels, PairOptions, Uint8Array> = (...pair) => start(() => solveCall(...pair), this.#perform);
+      return host.places.pair(call)(...given);
     }
 
     fitMotions(...given: Parameters<typeof calls.fitMotions>): Promise<MotionFit> {
       return start(() => fitCall(...given), this.#perform);
     }
 
-    segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
-      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }), host.places);
+    openClip(frames: ClipFrames, options?: OpenOptions): Promise<Clip> {
+      return openedClip(frames, options, this.#house, host);
+    }
+
+    segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream {
+      return streamOf(frames, options, this.#house, host.places);
+    }
+
+    /** For the page. */
+    segmentClip(frames: ClipSource, options?: ClipOptions): SegmentedClip {
+      return segmentedClip(frames, options, this.#house, host.places);
     }
 
     async warmUp(): Promise<void> {

@@ -2,7 +2,7 @@
 
 import type { Segmentation } from '../../types/index.js';
 import { Api } from '../calls/api.js';
-import type { ClipEnd, Reply, Request, Result } from '../calls/messages.js';
+import type { ClipAnswer, LabelledFrame, Reply, Request, Result, StreamEnd } from '../calls/messages.js';
 import { buffersOf } from '../calls/taking.js';
 import { errorMessage } from '../common/errors.js';
 import { Core } from '../module/core.js';
@@ -49,6 +49,8 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
 /** Buffers that are handed over instead of copied. */
 function buffersOfResult(result: Result): ArrayBuffer[] {
   if (result instanceof Uint8Array) return buffersOf([result]);
-  const { labels, confidence, frames = [] }: Partial<Pick<Segmentation, 'labels' | 'confidence'> & ClipEnd> = Object(result);
-  return buffersOf([labels, confidence, ...frames.map((frame) => frame.labels)]);
+  type Large = Pick<Segmentation, 'confidence'> & Pick<ClipAnswer, 'records' | 'draft'> & StreamEnd & { labels: Uint8Array | LabelledFrame };
+  const { labels, confidence, records, draft, frames = [] }: Partial<Large> = Object(result);
+  const ofFrames = frames.map((frame: LabelledFrame | number) => (typeof frame === 'number' ? undefined : frame.labels));
+  return buffersOf([labels instanceof Uint8Array ? labels : labels?.labels, confidence, records, draft?.labels, ...ofFrames]);
 }

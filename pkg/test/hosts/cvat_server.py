@@ -4,11 +4,9 @@ cvat_server.py FRAMES prints its port. Requests and answers are checked with the
 CVAT's interface (cvat/schema.yml of that version), and requests more strictly than CVAT does: what its page cannot open is refused. As in CVAT
 (cvat/apps/dataset_manager/task.py), what is updated is deleted and created again, with other ids, which the answer has.
 
-Beside it, for tests: GET /test/masks gives the pixels of all tracks, as COCO's own code fills polygons, and GET /test/log what was asked.
-POST /test/settings changes SETTINGS, POST /test/tracks puts tracks in the place of all.
+Beside it, for the test: GET /test/log gives the actions that changed tracks, and the groups of those.
 """
 
-import hashlib
 import itertools
 import json
 import re
@@ -21,26 +19,18 @@ from cvat_sdk import models
 from cvat_sdk.api_client import Configuration, exceptions
 from cvat_sdk.api_client.model_utils import validate_and_convert_types
 from PIL import Image
-from pycocotools import mask as coco_mask
 
 TASK = 42
 TOKEN = "personal-token"
-USER, PASSWORD = "annotator", "only-for-tests"
 LABELS = [(7, "thing", "polygon"), (8, "frame", "rectangle"), (9, "other", "any")]
 FILES = sorted(Path(sys.argv[1]).iterdir())
 SIZE = Image.open(FILES[0]).size
-# `breaks`: [K, WHETHER IT IS DONE] of a change of tracks, counted from now, after which nothing is answered any more until it is set anew.
-SETTINGS = {"deleted_frames": [], "segment_size": len(FILES), "size": len(FILES), "breaks": None}
 WHEN = "2026-01-01T00:00:00Z"
-USER_MODEL = {"url": "http://localhost/api/users/1", "id": 1, "username": USER, "first_name": "", "last_name": ""}
+USER_MODEL = {"url": "http://localhost/api/users/1", "id": 1, "username": "annotator", "first_name": "", "last_name": ""}
 
 ids = itertools.count(1)
 tracks = {}
 log = []
-
-
-class Broken(Exception):
-    """The connection breaks off."""
 
 
 class Refused(Exception):
@@ -62,16 +52,12 @@ def agreed(model, answer):
     return valid(model, answer)
 
 
-def about():
-    return {"name": "CVAT", "description": "", "version": "2.80.0", "logo_url": "", "subtitle": ""}
-
-
 def task():
     return {
         "url": f"http://localhost/api/tasks/{TASK}", "id": TASK, "name": "clip", "project_id": None, "mode": "annotation", "owner": USER_MODEL,
-        "assignee": None, "bug_tracker": "", "created_date": WHEN, "updated_date": WHEN, "overlap": 0, "segment_size": SETTINGS["segment_size"],
+        "assignee": None, "bug_tracker": "", "created_date": WHEN, "updated_date": WHEN, "overlap": 0, "segment_size": len(FILES),
         "status": "annotation", "data_chunk_size": 72, "data_compressed_chunk_type": "imageset", "guide_id": None, "data_original_chunk_type": "imageset",
-        "size": SETTINGS["size"], "image_quality": 70, "data": 1, "dimension": "2d", "subset": "", "organization_id": None, "organization": None,
+        "size": len(FILES), "image_quality": 70, "data": 1, "dimension": "2d", "subset": "", "organization_id": None, "organization": None,
         "target_storage": None, "source_storage": None, "assignee_updated_date": None, "validation_mode": None, "initial_replicas": 0, "project_name": None, "data_cloud_storage_id": None,
         "jobs": {"url": "", "count": 1, "completed": 0, "validation": 0}, "labels": {"url": f"http://localhost/api/labels?task_id={TASK}"},
     }
@@ -86,7 +72,7 @@ def meta():
     frames = [{"width": SIZE[0], "height": SIZE[1], "name": file.name, "related_files": 0, "has_related_context": False} for file in FILES]
     return {
         "chunk_size": 72, "size": len(FILES), "image_quality": 70, "start_frame": 0, "stop_frame": len(FILES) - 1, "frame_filter": "",
-        "frames": frames, "chunks_updated_date": WHEN, "deleted_frames": SETTINGS["deleted_frames"], "included_frames": None, "storage": "local", "cloud_storage_id": None,
+        "frames": frames, "chunks_updated_date": WHEN, "deleted_frames": [], "included_frames": None, "storage": "local", "cloud_storage_id": None,
     }
 
 
@@ -151,36 +137,6 @@ def created(track):
     return tracks[number]
 
 
-def put(wanted):
-    tracks.clear()
-    tracks.update({number: {**track, "id": number} for track in wanted for number in [next(ids)]})
-    return {}
-
-
-def breaking(change):
-    """Makes a change, unless the connection breaks off before it."""
-    if SETTINGS["breaks"] is None:
-        return change()
-    left, is_done = SETTINGS["breaks"]
-    SETTINGS["breaks"] = [left - 1, is_done]
-    if left > 1:
-        return change()
-    if left == 1 and is_done:
-        change()
-    raise Broken
-
-
-def masks():
-    """{group: {frame: [number of pixels, hash of one byte for each pixel]}}, of frames with a visible key frame."""
-    found = {}
-    for track in tracks.values():
-        for shape in track["shapes"]:
-            if shape["type"] == "polygon" and not shape["outside"]:
-                filled = coco_mask.decode(coco_mask.frPyObjects([shape["points"]], SIZE[1], SIZE[0]))[:, :, 0]
-                found.setdefault(track["group"], {})[shape["frame"]] = [int(filled.sum()), hashlib.sha256(filled.tobytes()).hexdigest()]
-    return found
-
-
 class Handler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
 
@@ -196,28 +152,15 @@ class Handler(BaseHTTPRequestHandler):
             self.send(200, content)
         except Refused as refused:
             self.send(refused.status, {"detail": str(refused)})
-        except Broken:
-            self.close_connection = True
 
-    do_GET = do_PATCH = do_POST = do_PUT = do_DELETE = answer
+    do_GET = do_PATCH = answer
 
     def found(self, route, query, body):
         if route == "GET /api/server/about":
-            return agreed(models.About, about())
-        if route == "POST /api/auth/login":
-            given = json.loads(body)
-            if (given.get("username"), given.get("password")) != (USER, PASSWORD):
-                raise Refused(400, "Unable to log in with provided credentials.")
-            return {"key": "session"}
-        if route.startswith("GET /test/"):
-            return {"masks": masks, "log": lambda: log}[route.removeprefix("GET /test/")]()
-        if route == "POST /test/settings":
-            SETTINGS.update(json.loads(body))
-            return {}
-        if route == "POST /test/tracks":
-            return put(json.loads(body))
-        in_session = "sessionid=s" in self.headers.get("Cookie", "") and self.headers.get("X-CSRFTOKEN" if self.command != "GET" else "Cookie")
-        if self.headers.get("Authorization") != f"Bearer {TOKEN}" and not in_session:
+            return agreed(models.About, {"name": "CVAT", "description": "", "version": "2.80.0", "logo_url": "", "subtitle": ""})
+        if route == "GET /test/log":
+            return log
+        if self.headers.get("Authorization") != f"Bearer {TOKEN}":
             raise Refused(401, "Authentication credentials were not provided.")
         if route == "GET /api/users/self":
             return agreed(models.User, USER_MODEL)
@@ -237,7 +180,7 @@ class Handler(BaseHTTPRequestHandler):
         if route == "GET/annotations":
             return annotations()
         if route == "PATCH/annotations":
-            return breaking(lambda: patch(query.get("action"), json.loads(body)))
+            return patch(query.get("action"), json.loads(body))
         raise Refused(404, f"Not found: {route}")
 
     def send(self, status, content):
@@ -245,9 +188,6 @@ class Handler(BaseHTTPRequestHandler):
         self.send_response(status)
         self.send_header("Content-Type", "image/png" if isinstance(content, bytes) else "application/json")
         self.send_header("Content-Length", str(len(raw)))
-        if isinstance(content, dict) and "key" in content:
-            self.send_header("Set-Cookie", "sessionid=s")
-            self.send_header("Set-Cookie", "csrftoken=c")
         self.end_headers()
         self.wfile.write(raw)
 

@@ -69,13 +69,6 @@ describe('esbuild', () => {
     checkOutcome(await outcomeOf(t, browser, address));
     assert.deepEqual(missing, []);
   });
-
-  test('the module as a file that esbuild copies', async (t) => {
-    const folder = await build({ entryPoints: { main: 'copied.js' }, loader: { '.wasm': 'file' } }, 'copied-by-esbuild');
-    const { address, missing } = await serve(t, folder);
-    checkOutcome(await outcomeOf(t, browser, address), ['direct']);
-    assert.deepEqual(missing, []);
-  });
 });
 
 describe('Rollup and Parcel, which copy the worker as it is', () => {

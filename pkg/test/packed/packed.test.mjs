@@ -38,6 +38,21 @@ describe('plain Node', () => {
   });
 });
 
+test('no bundler: pictures of the browser are segmented as their pixels', async (t) => {
+  const { address } = await serve(t, app);
+  const { outcome, complaints } = await outcomeOf(t, browser, `${address}pictures.html`);
+  assert.deepEqual([outcome.error, outcome.differ, complaints], [undefined, [], []]);
+  assert.deepEqual(outcome.errors.slice(0, -2), [
+    'invalid-input: the second frame is an ImageBitmap that is closed, or was given to another thread',
+    'invalid-input: the second frame is a VideoFrame that is closed',
+    'invalid-input: the second frame is a canvas without pixels',
+    ...Array(2).fill('unreadable-image: the second frame is not an image that this browser can read'),
+  ]);
+  const [pretended, number] = outcome.errors.slice(-2);
+  assert.match(pretended, /^invalid-input: the second frame is no picture: /);
+  assert.match(number, /^invalid-input: the second frame must be .* in browsers an ImageBitmap, VideoFrame, Blob, image or canvas, /);
+});
+
 describe('Vite 8', () => {
   const quiet = { logLevel: 'error', configFile: false, clearScreen: false };
 

@@ -17,7 +17,6 @@ import {
   groupLabels,
   init,
   type MotionFit,
-  paintLabels,
   type Pixels,
   type Segmentation,
   Segmenter,
@@ -32,7 +31,16 @@ import { decodeImage } from 'veronese/codecs';
 import { type CocoVideoDocument, encodeCocoRle, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
-export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
+export async function pictures(bitmap: ImageBitmap, frame: VideoFrame, file: File, image: HTMLImageElement, canvas: HTMLCanvasElement | OffscreenCanvas): Promise<void> {
+  await segmentPair(bitmap, frame);
+  await new Segmenter().segmentPair(file, canvas);
+  for await (const { labels } of segmentClip([image, file, canvas, bitmap, frame])) console.log(labels);
+  for await (const { error } of segmentPairs([{ first: bitmap, second: file }])) console.log(error);
+  // @ts-expect-error no picture
+  await segmentPair(5, document);
+}
+
+export async function browser(first: ImageData, second: ImageData): Promise<string> {
   await init(new URL('/veronese_bg.wasm', location.href));
   await initPoints(new URL('/veronese_points_bg.wasm', location.href));
   const controller = new AbortController();
@@ -43,11 +51,10 @@ export async function browser(canvas: HTMLCanvasElement, first: ImageData, secon
     transfer: true,
     onProgress: ({ stage, index, of }) => console.log(stage, index / of),
   });
-  const context = canvas.getContext('2d');
-  if (context) await paintLabels(context, segmentation, { palette: davisPalette(), opacity: 0.4 });
+  const colours: [number, number, number][] = davisPalette();
   const [dominant] = segmentation.motions;
   const groups: Uint8Array = groupLabels(segmentation);
-  return `${version} ${dominant?.matrix[2]} ${groups.length}`;
+  return `${version} ${dominant?.matrix[2]} ${groups.length} ${colours[1]?.[2]}`;
 }
 
 export async function node(first: Uint8Array, second: Uint8Array): Promise<MotionFit | ErrorCode> {

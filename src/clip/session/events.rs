@@ -7,6 +7,18 @@ use crate::error::Result;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StepId(pub(super) u32);
 
+impl From<u32> for StepId {
+    fn from(number: u32) -> StepId {
+        StepId(number)
+    }
+}
+
+impl From<StepId> for u32 {
+    fn from(StepId(number): StepId) -> u32 {
+        number
+    }
+}
+
 /// What a frame is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipStage {

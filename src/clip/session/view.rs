@@ -125,13 +125,23 @@ impl Clip {
         (1..UNLABELLED).find(|&k| !used[usize::from(k)] && !coming.contains(&k))
     }
 
+    /// Number of objects for which no number was left; they count as background.
+    pub fn dropped(&self) -> usize {
+        self.state().clip.dropped()
+    }
+
+    /// Indices of the frames whose pairs are solved, and which are not segmented with these yet.
+    pub fn solved_pairs(&self) -> Vec<usize> {
+        self.pairs.keys().copied().collect()
+    }
+
     /// The tracks of all objects in the frames whose labels are known.
     pub fn tracks(&self) -> ClipTracks {
         let mut tracks = Tracks::default();
         for (index, shown) in (0..self.len()).filter_map(|index| Some((index, self.shown(index)?))) {
             tracks.add(index, shown.objects(), shown.background());
         }
-        tracks.value(self.state().clip.dropped())
+        tracks.value(self.dropped())
     }
 
     /// The clip with the masks of a frame: as the command under way has left it, if it has changed this frame.

@@ -1,11 +1,8 @@
-// What is to be said of a clip whose result is nothing, or is sure to be wrong. Loaded when there is something to say.
+// Why a clip has no object, or which of its objects are likely to be none. Loaded when there is something to say.
 
 import type { ClipTracks, Note, Pixels, Segmentation } from '../../../types/index.js';
 import { whyNothing } from '../nothing.js';
-import type { Frames } from './frames.js';
-import type { CheckedOptions, Stream, Whole } from './options.js';
-import type { PlacedClip } from './place.js';
-import type { ClipResults, Ground, SeenPair } from './tracks.js';
+import type { Ground, SeenPair, Tracks } from './tracks.js';
 
 /** Pairs of neighbouring frames that are looked at, all over the clip. */
 const PAIRS = 5;
@@ -13,32 +10,17 @@ const PAIRS = 5;
 const STEPS = [16, 32];
 
 /** The frames of a clip that can be read once more. */
-interface SeenFrames {
+export interface SeenFrames {
   length: number;
   read: (index: number) => Promise<Pixels>;
   /** Quickly. */
   segment: (first: Pixels, second: Pixels) => Promise<Segmentation>;
 }
 
-/** Says which edits change nothing, and of the result what {@link ofResult} does. */
-export async function notesOn(clip: PlacedClip, taken: Frames, task: CheckedOptions, results: ClipResults): Promise<Note[]> {
-  return [...(results.missing ? [missingNote(results.missing)] : []), ...(await ofResult(clip, taken, task, results))];
-}
-
-function missingNote({ numbers, objects }: NonNullable<ClipResults['missing']>): Note {
-  const there = objects.length > 0 ? `the objects are ${objects.join(', ')}` : 'there is no object';
-  return { code: 'object-missing', message: `edits of objects that are not there change nothing: ${numbers.join(', ')}; ${there}` };
-}
-
-/** Says why nothing was found, or what is likely to be wrong; of annotated clips a person knows more. */
-async function ofResult(clip: PlacedClip, taken: Frames, { source, settings, signal, ...task }: CheckedOptions, { tracks, changes = [], pair }: ClipResults): Promise<Note[]> {
-  if (task.changesOnly || task.accepted || task.edits.numbers.size + changes.length > 0) return [];
+/** Notes on a clip without annotations, from its frames, or from a pair if these came once. */
+export async function notesOn(tracks: Tracks, frames: SeenFrames | undefined, pair?: SeenPair): Promise<Note[]> {
   if (!tracks.isEmpty) return tracks.grounds().map(groundNote);
-  if (settings['motions'] === 1) return [];
-  const { length = 0, read, again = read } = source as Partial<Stream & Whole>;
-  const segment = (first: Pixels, second: Pixels) =>
-    clip.place.perform({ call: 'segmentPair', frames: [first, second], settings: { quality: 'fast' } }, { signal }) as Promise<Segmentation>;
-  if (again && length > 1) return [await whyEmpty(tracks.value(), { length, read: (index) => taken.one(again, index), segment })];
+  if (frames && frames.length > 1) return [await whyEmpty(tracks.value(), frames)];
   return pair ? [whyPair(tracks.value(), pair)] : [];
 }
 

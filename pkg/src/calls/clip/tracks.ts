@@ -1,21 +1,7 @@
 // The tracks of a clip's objects, collected frame by frame.
 
-import type { ClipChange, ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
+import type { ClipFrame, ClipTrack, ClipTracks, Note, Pixels } from '../../../types/index.js';
 import type { LabelledFrame } from '../messages.js';
-import type { PlacedClip } from './place.js';
-
-/** The results of a clip besides its frames, and where they are kept until it ends. */
-export interface ClipResults {
-  tracks: Tracks;
-  state?: Uint8Array;
-  /** The changes by annotations. */
-  changes?: ClipChange[];
-  /** Where edits name objects that are not there: these, and those that are. */
-  missing?: { numbers: number[]; objects: number[] };
-  /** Of a stream in which nothing was found so far: the latest pair whose first frame has 0 or a power of two as its index. */
-  pair?: SeenPair;
-  clip?: PlacedClip;
-}
 
 export interface SeenPair {
   /** Of its first frame. */
@@ -28,6 +14,12 @@ export interface Ground {
   id: number;
   large: number;
   of: number;
+}
+
+/** What tracks need of a frame: its objects, and those that are as large as the ground. */
+export interface Seen {
+  frame: FoundFrame;
+  large: number[];
 }
 
 /** The objects of a frame. */
@@ -56,11 +48,15 @@ export class Tracks {
   }
 
   /** Adds a frame with its labels and returns it with its size. */
-  see(frame: LabelledFrame, size: Size): ClipFrame {
-    for (const { id, pixels } of frame.objects) {
-      if (pixels > MOST * size.width * size.height || shareOfBorder(frame.labels, id, size) > MOST_OF_BORDER) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
-    }
-    return sized(this.add(frame), size);
+  see(found: LabelledFrame, size: Size): ClipFrame {
+    const frame = sized(found, size);
+    this.addSeen(seenIn(frame));
+    return frame;
+  }
+
+  addSeen({ frame, large }: Seen): void {
+    for (const id of large) this.#large.set(id, (this.#large.get(id) ?? 0) + 1);
+    this.add(frame);
   }
 
   /** The objects that are likely to be the ground. */
@@ -101,6 +97,12 @@ export class Tracks {
     const name = this.names.get(id);
     return { id, ...(name !== undefined && { name }), ...rest };
   }
+}
+
+export function seenIn({ labels, ...frame }: ClipFrame): Seen {
+  const { width, height, objects } = frame;
+  const isLarge = (id: number, pixels: number) => pixels > MOST * width * height || shareOfBorder(labels, id, frame) > MOST_OF_BORDER;
+  return { frame, large: objects.flatMap(({ id, pixels }) => (isLarge(id, pixels) ? [id] : [])) };
 }
 
 export function sized(frame: LabelledFrame, { width, height }: Size): ClipFrame {

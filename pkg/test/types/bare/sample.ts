@@ -1,6 +1,6 @@
 // Code of a program that knows neither the DOM nor Node: a server at the edge, a plug-in of an editor. Compiled, never run.
 
-import { paintLabels, type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
+import { type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { encodeCoco, encodeCocoVideo, type LabelFrame } from 'veronese/formats';
 import { init, SegmenterPool } from 'veronese/slim';
@@ -12,9 +12,8 @@ export async function pair(file: Uint8Array, module: ArrayBuffer): Promise<strin
   const first: Pixels = await decodeImage(file);
   const { labels, width, height, motions } = await segmentPair(first, first, { quality: 'fast', motions: 'auto' });
   const document = encodeCoco(labels, width, height, { motions });
-  await paintLabels({ putImageData: () => undefined }, { labels, width, height });
-  // @ts-expect-error no canvas
-  await paintLabels({}, { labels, width, height });
+  // @ts-expect-error no picture
+  await segmentPair(first, {});
   return `${document.annotations.length} ${new VeroneseError('cancelled', 'a sentence').code}`;
 }
 

@@ -1,11 +1,11 @@
 // Annotations of frames, checked.
 
-import type { ClipPropagation } from '../../../types/index.js';
 import { checkAttached, invalidOption, isArrayOf, isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { Annotations, Painted, Pointed } from '../messages.js';
 import { taken } from '../taking.js';
 import { isObjectNumber, RANGE } from './edits.js';
+import type { ClipPropagation } from './types.js';
 
 /** Labels painted in a frame. */
 export interface LabelledFrame extends Painted {

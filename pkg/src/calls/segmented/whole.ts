@@ -1,17 +1,17 @@
 // A clip whose frames can be read again: once for their pairs, where corrections want them, and once for their labels.
 
-import type { ClipFrame } from '../../../types/index.js';
+import type { ClipFrame, Pixels } from '../../../types/index.js';
 import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } from '../messages.js';
-import { inOrder } from '../ordered.js';
+import { Ahead } from '../session/ahead.js';
 import { taken } from '../taking.js';
 import type { CheckedOptions, Whole } from './options.js';
-import { checkCount, type Frames, reads, upTo } from './frames.js';
+import { checkCount, type Frames, reads, upTo } from '../clip/frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
-import type { Looked, SharedPairs } from './shared-pairs.js';
-import { type ClipResults, sized } from './tracks.js';
+import { sized } from '../clip/tracks.js';
+import type { ClipResults } from './clip.js';
 
 /** The options, with masks that are checked as well. */
 type Task = Omit<CheckedOptions, 'masks'> & { masks: readonly LabelledFrame[] };
@@ -25,11 +25,8 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
   if (!task.state) checkCount(of);
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
-  const unsaid = unsaidOf(task);
-  const { changed, changes, objects } = await annotated(clip, frames, task, length);
-  const numbers = unsaid.filter((number) => !objects.includes(number));
-  if (numbers.length > 0) results.missing = { numbers, objects };
-  results.state = await clip.step<Uint8Array>({ call: 'saveClip' });
+  const { changed, changes } = await annotated(clip, frames, task, length);
+  results.state = await clip.step<Uint8Array>({ call: 'saveSegmented' });
   results.changes = changes;
   results.tracks.dropped = dropped;
   results.tracks.names = task.edits.names;
@@ -53,40 +50,43 @@ async function masksOf({ masks, source }: CheckedOptions): Promise<LabelledFrame
 
 /** Solves the pairs that are not known. Without a look-ahead, who solves them does not matter. */
 async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<ClipSummary> {
+  const { settings } = task;
+  const { read, length } = task.source as Whole;
+  const { size = 1, anywhere } = clip.place;
   const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
-  const { signal, settings } = task;
-  const { workers } = clip.place;
-  let shared: SharedPairs | undefined;
-  if (settings['lookAhead'] === 'all' && workers && workers.size > 1) {
-    // A single worker does without that code.
-    const { SharedPairs } = await import('./shared-pairs.js');
-    shared = new SharedPairs(clip, workers, settings);
+  const known = new Map<number, Uint8Array>();
+  for (const index of task.knownPairs ? upTo(length) : []) {
+    const pairs = await clip.wait(task.knownPairs?.(index));
+    if (pairs) known.set(index, taken([checkedBytes(`the pairs of frame ${index}`, pairs)], false)[0] as Uint8Array);
   }
-  const all = looked(clip, frames, task);
-  for await (const { index, frame, pairs: known } of shared ? shared.solved(all, inOrder, { signal, onPairs }) : all) {
-    task.onProgress?.({ frame: index, of: task.source.length, stage: 'pairs' });
-    const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(known && { known }) });
+  const solve = async (index: number, first: Pixels, second: Pixels) => {
+    const { motions, quality, subject } = settings;
+    const frames = [copyOf(first), copyOf(second)] as const;
+    const pairs = (await anywhere?.({ call: 'solvePair', frames, settings: { motions, quality, subject } }, { signal: task.signal })) as Uint8Array;
+    await onPairs(index, pairs.slice());
+    return pairs;
+  };
+  const isShared = size > 1 && settings['lookAhead'] === 'all';
+  const ahead = new Ahead((index) => frames.one(read, index), isShared ? solve : undefined, isShared ? size : 1, length - 1);
+  for (const index of upTo(length)) {
+    const next = await clip.wait(ahead.at(index, (index) => known.has(index)).catch((thrown) => ((frames.failure = { thrown }), undefined)));
+    if (!next) break;
+    if (index === 0) checkSizes(task, next.frame);
+    task.onProgress?.({ frame: index, of: length, stage: 'pairs' });
+    const pairs = known.get(index) ?? next.pairs;
+    const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame: copyOf(next.frame), ...(pairs && { known: pairs }) });
     const seen = task.onPreview ? clip.step<Found | undefined>({ call: 'previewClip' }) : undefined;
-    (shared ?? frames).ahead();
-    const [pairs, preview] = await Promise.all([step, seen]);
-    if (pairs) await onPairs(index, pairs);
-    if (preview) await clip.wait(task.onPreview?.(sized(preview, frame)));
-    shared?.taken();
+    const [own, preview] = await Promise.all([step, seen]);
+    if (own) await onPairs(index, own);
+    if (preview) await clip.wait(task.onPreview?.(sized(preview, next.frame)));
   }
+  clip.place.endIdle?.();
   return clip.step({ call: 'concludeClip' });
 }
 
-/** The frames of a clip with what is known of their pairs. */
-async function* looked(clip: PlacedClip, frames: Frames, task: Task): AsyncGenerator<Looked, void, undefined> {
-  const { read, length } = task.source as Whole;
-  let index = 0;
-  for await (const frame of frames.each(reads(read, upTo(length)))) {
-    if (index === 0) checkSizes(task, frame);
-    const known = await clip.wait(task.knownPairs?.(index));
-    const pairs = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
-    yield { index, frame, pairs };
-    index += 1;
-  }
+/** A frame goes to more than one worker. */
+function copyOf({ data, ...size }: Pixels): Pixels {
+  return { ...size, data: data.slice() };
 }
 
 async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uint8Array): Promise<ClipSummary> {
@@ -102,15 +102,8 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
   return summary;
 }
 
-/** The numbers in edits, but those that annotations of the same call are about: of what is deleted as well nothing is left. */
-function unsaidOf({ edits: { numbers, names }, locked, masks, corrections, prompts }: Task): number[] {
-  const isPainted = (number: number) => numbers.get(number) === 0 && [...masks, ...corrections].some(({ labels }) => labels.includes(number));
-  const isSaid = (number: number) => number === 0 || prompts.some(({ object }) => object === number) || isPainted(number);
-  return [...new Set([...[...numbers].flat(), ...names.keys(), ...(locked ?? [])])].filter((number) => !isSaid(number)).sort((one, other) => one - other);
-}
-
-/** Applies all annotations; returns the indices of the frames that change, what objects gain and lose, and their numbers before any edit. */
-async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Required<Omit<Annotating, 'wanted' | 'changed'>> & { changed: Set<number> }> {
+/** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
+async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
   const { source, onProgress, onChange } = task;
   const { read } = source as Whole;
   const changed = new Set<number>();
@@ -128,8 +121,8 @@ async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: n
       await clip.wait(onChange(index, segmented));
       isCalled = false;
     }
-    const { wanted, changes = [], objects = [] } = step;
-    if (wanted === undefined) return { changed, changes, objects };
+    const { wanted, changes = [] } = step;
+    if (wanted === undefined) return { changed, changes };
     onProgress?.({ frame: wanted, of: source.length, stage: 'corrections' });
     step = await clip.step<Annotating>({ call: 'takeAnnotations', frame: await frames.one(read, wanted) });
   }
