@@ -6,7 +6,7 @@ import { appendFileSync, cpSync, existsSync, linkSync, mkdirSync, readFileSync, 
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
-import { clip, tree } from './support/folders.mjs';
+import { clip, results, tree } from './support/folders.mjs';
 import { entries, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
 import { signalledAt } from './support/stopping.mjs';
@@ -68,7 +68,7 @@ describe('a folder that is not ours', () => {
       assert.equal(readFileSync(join(out, '.DS_Store'), 'utf8'), 'mine');
       rmSync(out, { recursive: true });
     }
-    place('.clip/state');
+    place('.clip/log');
     await refused(commands.clip[0], out, '.clip');
   });
 
@@ -169,7 +169,7 @@ describe('in our folder', () => {
 
   test('a pipe in the place of a result keeps nobody waiting', { skip: spawnSync('mkfifo', ['--version']).status !== 0 && 'there is no mkfifo' }, async (t) => {
     const { commands, out } = made(t);
-    for (const [command, pipe] of [['pair', 'labels.png'], ['pair', '.veronese'], ['batch', '000000-f0/result.json'], ['clip', 'tracks.json'], ['clip', '.clip/state']]) {
+    for (const [command, pipe] of [['pair', 'labels.png'], ['pair', '.veronese'], ['batch', '000000-f0/result.json'], ['clip', 'tracks.json'], ['clip', '.clip/log']]) {
       mkdirSync(dirname(join(out, pipe)), { recursive: true });
       assert.equal(spawnSync('mkfifo', [join(out, pipe)]).status, 0);
       const { code, stderr } = await veronese(commands[command][0]);
@@ -188,7 +188,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
       const [args] = commands[command];
       const other = command === 'convert' ? [...args, '--from', '2'] : [...args, '--motions', '2'];
       await done(args);
-      const expected = tree(out);
+      const [expected, names] = [results(out), Object.keys(tree(out))];
       rmSync(out, { recursive: true });
       const ends = (first, places) => places.map(([n, when]) => [first, n, when]);
       const few = [[undefined, 3, 'after'], [other, 1, 'after']];
@@ -198,7 +198,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
         const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { n, when }));
         assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
         await done(args);
-        assert.deepEqual(tree(out), expected, 'the files of a straight run, and nothing half-written');
+        assert.deepEqual([results(out), Object.keys(tree(out))], [expected, names], 'the files of a straight run, and nothing half-written');
         rmSync(out, { recursive: true });
       }
     }

@@ -106,6 +106,7 @@ function clip(values: Values, files: string[]) {
     markUnknown: values['mark-unknown'],
     subject: values.subject,
   };
+  if (lookAhead !== undefined && (masks ?? corrections) !== undefined) throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
   const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
   if (values.levels !== undefined && masks === undefined && corrections === undefined) throw usage("'--levels' needs '--masks' or '--corrections'");
