@@ -101,6 +101,11 @@ describe('veronese clip', () => {
     const second = await run([frames, '--out', out]);
     assert.deepEqual([second.stdout, times(), tree(out)], [first.stdout, written, before]);
 
+    rmSync(join(out, 'labels', 'f2.png'));
+    const third = await run([frames, '--out', out]);
+    const isAgain = (time, k) => k === 2 || time === written[k];
+    assert.deepEqual([third.stdout, results(out), times().every(isAgain)], [first.stdout, results(path('before')), true], 'what is missing is written again');
+
     const anew = async (change, args = []) => {
       change();
       const at = times();

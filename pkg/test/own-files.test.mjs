@@ -6,6 +6,7 @@ import { appendFileSync, cpSync, existsSync, linkSync, mkdirSync, readFileSync, 
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
+import { openClip } from 'veronese';
 import { clip, results, tree } from './support/folders.mjs';
 import { entries, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
@@ -221,6 +222,18 @@ describe('interrupted runs', { skip: skipWindows }, () => {
     rmSync(join(out, 'tracks.json'));
     await done(args);
   });
+});
+
+test('a run of clip that comes to the folder of another one is refused', async (t) => {
+  const { commands: { clip: [args] }, out } = made(t);
+  await done(args);
+  const other = await openClip({ length: 4, read: () => undefined }, { journal: join(out, '.clip', 'log') });
+  const before = tree(out);
+  const { code, stderr } = await veronese([...args, '--overlay']);
+  assert.deepEqual([code, stderr], [1, `veronese: error: write-failed: the results cannot be written into '${out}': another run is writing there\n`]);
+  assert.deepEqual(tree(out), before);
+  other.close();
+  await done([...args, '--overlay']);
 });
 
 test('two batches into one folder at once both end well', async (t) => {

@@ -4,15 +4,15 @@
 import { rmSync } from 'node:fs';
 import { join } from 'node:path';
 import type { Clip, ClipChange, Segmenter } from '../../types/index.js';
+import { VeroneseError } from '../common/errors.js';
 import { openFile } from '../entries/journal-file.js';
 import { HIDDEN } from './clip-folder.js';
 import type { ClipFrames } from './clip-frames.js';
-import { lookAt, makeFolder, readWritten, sha256, writing } from './files.js';
+import { lookAt, makeFolder, readWritten, sha256, writeFailed, writing } from './files.js';
 import type { Output } from './output.js';
 
 const KEY = `${HIDDEN}/key`;
 const LOG = `${HIDDEN}/log`;
-const DAMAGED = `${LOG}.damaged`;
 
 /** The content of the file beside the journal. */
 interface Key {
@@ -45,7 +45,10 @@ export class KeptClip {
     });
     const known = keyIn(path(KEY));
     for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG))?.isFile(); ; isNew = true) {
-      const journal = await openFile(path(LOG));
+      const journal = await openFile(path(LOG)).catch((thrown: unknown) => {
+        const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
+        throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;
+      });
       if (isNew) {
         await journal.replace(new Uint8Array());
         await write(output, own);
@@ -54,7 +57,7 @@ export class KeptClip {
         if (isNew) throw thrown;
         return undefined;
       });
-      rmSync(path(DAMAGED), { force: true });
+      rmSync(path(`${LOG}.damaged`), { force: true });
       const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
       if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });
       // The range of a frame that could not be read.
@@ -65,7 +68,8 @@ export class KeptClip {
 
   /** Removes what is kept. */
   static clear(output: Output): Promise<void> {
-    return writing(output.folder, () => [KEY, LOG, DAMAGED].forEach((name) => rmSync(join(output.folder, name), { force: true })));
+    const names = [KEY, ...['', '.lock', '.new', '.damaged'].map((ending) => LOG + ending)];
+    return writing(output.folder, () => names.forEach((name) => rmSync(join(output.folder, name), { force: true })));
   }
 
   /** What these annotations have changed; undefined unless the clip has them, and no others. */
