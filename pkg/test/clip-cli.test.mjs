@@ -124,6 +124,19 @@ describe('veronese clip', () => {
     assert.deepEqual(readdirSync(join(out, 'labels')), ['f0.png', 'f1.png', 'f2.png', 'f3.png', 'f4.png', 'g.png']);
   });
 
+  test('frames that are all alike have a note, unless that was asked for', async (t) => {
+    const { frames, out, path } = framesOf(t, 3, () => clipFrame(0));
+    const { code, stderr } = await veronese(['clip', frames, '--out', out]);
+    assert.deepEqual([code, tracksOf(out).notes.map((note) => note.code)], [0, ['no-motion']]);
+    assert.match(stderr, /^veronese: note: nothing moves[^\n]+\n$/);
+    mkdirSync(path('painted'));
+    writeFileSync(path('painted', 'edits.json'), '{"accepted": ["f1"]}');
+    for (const more of [['--motions', '1'], ['--corrections', path('painted')]]) {
+      await run([frames, '--out', out, ...more]);
+      assert.equal(tracksOf(out).notes, undefined);
+    }
+  });
+
   test('frames with one stem, too few frames and missing ones are refused before anything is written', async (t) => {
     const { frames, one, out, path } = clip(t);
     mkdirSync(path('other'));

@@ -42,9 +42,11 @@ export class KeptClip {
     await writing(output.folder, () => {
       output.add([HIDDEN]);
       makeFolder(path(HIDDEN));
+      // A link would lead elsewhere.
+      if (lookAt(path(LOG))?.isFile() === false) rmSync(path(LOG));
     });
     const known = keyIn(path(KEY));
-    for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG))?.isFile(); ; isNew = true) {
+    for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG)); ; isNew = true) {
       const journal = await openFile(path(LOG)).catch((thrown: unknown) => {
         const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
         throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;

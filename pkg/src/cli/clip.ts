@@ -82,7 +82,9 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     if (frames.failure) throw frames.failure.thrown;
     const { films, sheet } = await showing.end();
     if (films.length > 0 || sheet) await store.show(films, sheet);
-    const { notes = [], ...tracks } = await segmented.tracks();
+    const { notes: reasons = [], ...tracks } = await segmented.tracks();
+    // Of one motion that was asked for, and of what a person has corrected, there is nothing to say.
+    const notes = corrections || motions === 1 ? [] : reasons;
     const { changes } = segmented;
     if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
     const found = [...frames.notes, ...segmented.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
