@@ -155,9 +155,12 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     let before = std::mem::replace(&mut clip.objects, Arc::new(objects));
     let mut seen: Vec<Option<Vec<u8>>> = vec![None; clip.len()];
     for (index, frame) in clip.frames.iter_mut().enumerate() {
-        let FrameState { layer, accepted: was_accepted, .. } = &*frame;
+        let FrameState { layer, exact, accepted: was_accepted, .. } = &*frame;
         if let Some(layer) = layer.as_ref().filter(|_| *was_accepted && accepted.contains(&index)) {
-            seen[index] = Some(layer.labels.map(|label| before.number(label)).values());
+            let drawn =
+                exact.as_ref().map(|exact| exact.values()).unwrap_or_else(|| vec![UNLABELLED; layer.labels.len()]);
+            let labels = over(Some(layer.labels.values()), drawn);
+            seen[index] = Some(labels.into_iter().map(|label| before.number(label)).collect());
         }
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
     }
@@ -173,7 +176,12 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
         return invalid("deleted", format!("object {object} cannot be merged and deleted"));
     }
     for (object, description) in described {
+        let is_named = !description.name.is_empty();
         describe(clip, object, description);
+        // What this command merges into the object is named with it.
+        for &part in groups.iter().filter(|group| group.first() == Some(&object)).flatten() {
+            clip.objects_mut().named[usize::from(part)] |= is_named;
+        }
     }
     let mut numbers = Vec::new();
     groups.iter().for_each(|group| numbers.append(&mut merged(group)));
@@ -181,7 +189,7 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     let accepted = accepted.into_iter().map(|frame| {
         let mask = masks.iter().find(|mask| mask.frame == frame);
         let labels = match (seen[frame].take(), mask) {
-            (Some(seen), Some(mask)) => Some(over(Some(seen), mask.labels.clone())),
+            (Some(seen), Some(mask)) => Some(under_mask(seen, &mask.labels)),
             (seen, _) => seen,
         };
         Accepted { frame, labels }
@@ -201,6 +209,14 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     phases.extend(draws);
     phases.push_back(Phase::Lock(locked));
     Ok(phases)
+}
+
+/// Accepted labels under a given mask, which is about the objects that it names: its zeros take away no others.
+fn under_mask(seen: Vec<u8>, mask: &[u8]) -> Vec<u8> {
+    let mut is_named = [false; 256];
+    mask.iter().for_each(|&label| is_named[usize::from(label)] = true);
+    let is_about = |seen: u8, label: u8| label != UNLABELLED && (label > 0 || is_named[usize::from(seen)]);
+    seen.into_iter().zip(mask).map(|(seen, &label)| if is_about(seen, label) { label } else { seen }).collect()
 }
 
 /// The annotations that make a new object of all pieces of an object but the largest.
