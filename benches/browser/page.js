@@ -72,7 +72,7 @@ async function followClip({ clip }) {
       yield frame;
     }
   }
-  for await (const { labels } of veronese.segmentClip(camera(), { quality: 'fast', lookAhead: 0 })) {
+  for await (const { labels } of veronese.segmentStream(camera(), { quality: 'fast', lookAhead: 0 })) {
     if (labels.length > 0) times.push(performance.now() - start);
   }
   return { perFrame: ofFrame(times) };

@@ -1,5 +1,5 @@
-// One clip as a job: what it is called, where its result is, how it is done. The evidence of its pairs is kept until the clip is done:
-// blocks of the clip write it beforehand, and a worker that takes over from another one continues at the last frame solved.
+// One clip as a job: what it is called, where its result is, how it is done. Solved pairs are files until the clip is done: blocks of the clip
+// write them beforehand, and a worker that takes over from another one goes on after the last pair.
 
 import { readFile, readdir, rm } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -29,7 +29,7 @@ export function clipPlaceOf(out, job) {
   return join(out, job.slice(5, 7), job);
 }
 
-/** The folder of the evidence of pairs, until the clip is done: a file for each frame, named by its index. */
+/** The folder of solved pairs, until the clip is done. The file of a pair is named by the index of its second frame. */
 export function pairsPlaceOf(out, job) {
   return join(clipPlaceOf(out, job), 'pairs');
 }
@@ -52,36 +52,55 @@ export async function clipResultOf(out, job) {
   }
 }
 
-/** Does a clip unless it is done. Returns whether there was something to do, and how many frames were known or had to be solved. */
+/** The pairs of the frames `from` to `to` that nobody has solved. The clip itself checks the files. */
+export async function missingPairs(out, job, { from, to }) {
+  const files = new Set(await readdir(pairsPlaceOf(out, job)).catch(() => []));
+  return Array.from({ length: to - from }, (_, k) => from + 1 + k).filter((index) => !files.has(String(index)));
+}
+
+/** Solves the pairs of the frames `from` to `to` that are missing, and writes each when it is solved. Returns how many there were. */
+export async function solveMissing(segmenter, { job, folder, names, out, options }, { from, to }) {
+  const missing = await missingPairs(out, job, { from, to });
+  const read = async (index) => decodeImage(await readFile(join(folder, names[index])));
+  let last = {};
+  try {
+    for (const index of missing) {
+      const before = last.index === index - 1 ? last.frame : await read(index - 1);
+      const frame = await read(index);
+      await writeWhole(join(pairsPlaceOf(out, job), String(index)), await segmenter.solvePair(before, frame, options));
+      last = { index, frame };
+    }
+  } catch (error) {
+    // The clip itself ends at a frame that is no frame, and says so.
+    if (!FINAL.has(error.code)) throw error;
+  }
+  return missing.length;
+}
+
+/** Does a clip unless it is done. Returns whether there was something to do, and how many of its pairs were known or had to be solved. */
 export async function performClip(segmenter, { job, folder, out, options }) {
   if (await clipResultOf(out, job)) return { did: false, known: 0, solved: 0 };
   const [place, names] = [clipPlaceOf(out, job), await framesOf(folder)];
   if (clipJobOf(await hashesOf(folder, names), options) !== job) throw new Error(`${folder} has changed since the job was made`);
-  const pairs = (index) => join(pairsPlaceOf(out, job), String(index));
-  let [solved, size] = [0, { width: 0, height: 0 }];
+  const solved = await solveMissing(segmenter, { job, folder, names, out, options }, { from: 0, to: names.length - 1 });
+  const clip = await segmenter.openClip(names.map((name) => join(folder, name)));
   try {
-    const source = { length: names.length, read: async (index) => (size = await decodeImage(await readFile(join(folder, names[index])))) };
-    const clip = segmenter.segmentClip(source, {
-      ...options,
-      // Pairs that are missing, damaged or of other frames are solved here.
-      knownPairs: (index) => readFile(pairs(index)).catch(() => undefined),
-      onPairs: async (index, bytes) => {
-        solved += 1;
-        await writeWhole(pairs(index), bytes);
-      },
-    });
+    // Pairs that are damaged or of other frames are solved here.
+    const pairs = (index) => readFile(join(pairsPlaceOf(out, job), String(index))).catch(() => undefined);
     const images = {};
-    for await (const { index, labels } of clip) {
-      const image = await encodePng(size.width, size.height, labels, { palette: davisPalette() });
+    for await (const { index, labels, width, height } of clip.segment({ ...options, pairs })) {
+      const image = await encodePng(width, height, labels, { palette: davisPalette() });
       const name = `${names[index]}.png`;
       await writeWhole(join(place, name), image);
       images[name] = sha256(image);
     }
-    await writeWhole(join(place, 'clip.json'), recordOf(job, { frames: names, ...clip.tracks(), images }));
+    await writeWhole(join(place, 'clip.json'), recordOf(job, { frames: names, ...(await clip.tracks()), images }));
   } catch (error) {
     if (!FINAL.has(error.code)) throw error;
     await writeWhole(join(place, 'clip.json'), recordOf(job, { error: { code: error.code, message: error.message } }));
+  } finally {
+    clip.close();
   }
   await rm(pairsPlaceOf(out, job), { recursive: true, force: true });
-  return { did: true, known: names.length - solved, solved };
+  return { did: true, known: Math.max(0, names.length - 1 - solved), solved };
 }

@@ -46,7 +46,7 @@ export function recordOf(job, content) {
 }
 
 /** Errors that lie in the frames: another attempt would find the same, so they are the result. */
-export const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'invalid-option']);
+export const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'too-few-frames', 'invalid-option']);
 
 /** Does a job unless it is done. Returns whether there was something to do. */
 export async function perform(segmenter, { job, first, second, out, options }) {

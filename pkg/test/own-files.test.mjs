@@ -23,7 +23,7 @@ function made(t, count = 4) {
     pair: [['pair', one(0), one(1), '--quality', 'fast', '--out', out], 'labels.png'],
     batch: [['batch', frames, '--quality', 'fast', '--jobs', '1', '--out', out], '000001-f1/labels.png'],
     clip: [['clip', frames, '--quality', 'fast', '--out', out], 'labels/f1.png'],
-    convert: [['convert', path('drawn'), '--to', 'labelme,coco', '--out', out], 'labelme/f001.json'],
+    convert: [['convert', path('drawn'), '--to', 'yolo,coco', '--out', out], 'yolo/labels/f001.txt'],
     corrections: [['convert', path('drawn', 'coco.json'), '--to', 'corrections', '--out', out], 'edits.json'],
   };
   const place = (path, content = 'mine') => {
@@ -59,7 +59,7 @@ describe('a folder that is not ours', () => {
       place('z.txt');
       await refused(args, out, 'z.txt');
       place(result);
-      await refused(args, out, command === 'batch' ? '000001-f1' : command === 'convert' ? 'labelme' : result);
+      await refused(args, out, command === 'batch' ? '000001-f1' : command === 'convert' ? 'yolo' : result);
       rmSync(out, { recursive: true });
       place('.veronese', 'a list of mine');
       await refused(args, out, '.veronese');
@@ -106,7 +106,7 @@ describe('in our folder', () => {
       const [args, result] = commands[command];
       await done(args);
       const files = tree(out);
-      const mine = ['mine.txt', 'mask-x.png', 'labels/notes.txt', 'labels/g.png', '.clip/mine', '000001-f1/mine.txt', 'labelme/g.json'];
+      const mine = ['mine.txt', 'mask-x.png', 'labels/notes.txt', 'labels/g.png', '.clip/mine', '000001-f1/mine.txt', 'yolo/labels/g.txt'];
       for (const name of mine) place(name);
       rmSync(path('copy'), { recursive: true, force: true });
       cpSync(out, path('copy'), { recursive: true });

@@ -1,12 +1,13 @@
 // Results of the npm package for the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
 //
-// Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, said }], points: [{ positions, derivatives, options }] }.
-// `said` has masks, corrections and prompts, with files of labels, and accepted frames. A frame is a path of an image, or of RGBA bytes with their size.
+// Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, named, locked, accepted, annotations }],
+// points: [{ positions, derivatives, options }] }. Labels of annotations are paths of files. A frame is a path of an image, or of RGBA bytes with
+// their size.
 
 import { createHash } from 'node:crypto';
 import { readFile } from 'node:fs/promises';
 import { json } from 'node:stream/consumers';
-import { fitMotions, segmentClip, segmentPair } from 'veronese';
+import { fitMotions, openClip, segmentPair, segmentStream } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 async function pixels(frame) {
@@ -43,22 +44,38 @@ function ofPair({ labels, motions, junctions, evidence, confidence }) {
   };
 }
 
-async function ofClip({ frames, stream, options, said }) {
-  const read = (index) => pixels(frames[index]);
-  async function* each() {
-    for (const frame of frames) yield pixels(frame);
+/** The form of an annotation is the name of its file of labels, if it has one. */
+async function annotationOf(given) {
+  const form = ['strokes', 'mask', 'labels'].find((name) => given[name]);
+  return form ? { ...given, [form]: new Uint8Array(await readFile(given[form])) } : given;
+}
+
+async function segmented({ frames, stream, options: { markUnknown, ...options }, named = [], locked = [], accepted = [], annotations = [] }) {
+  if (stream) {
+    const found = segmentStream(frames.map(pixels), { markUnknown, ...options });
+    const labels = [];
+    for await (const frame of found) labels.push(hash(frame.labels));
+    return { labels, tracks: found.tracks(), changes: [] };
   }
-  const loaded = async (one) => (one.labels ? { ...one, labels: new Uint8Array(await readFile(one.labels)) } : one);
-  const given = { ...options };
-  for (const [name, list] of Object.entries(said)) given[name] = await Promise.all(list.map(loaded));
-  const clip = segmentClip(stream ? each() : { length: frames.length, read }, given);
+  const clip = await openClip({ length: frames.length, read: (index) => pixels(frames[index]) }, { markUnknown });
+  await clip.segment(options);
+  for (const number of named) await clip.describe(number, { name: 'thing' });
+  await clip.lock(locked);
+  await clip.accept(accepted);
+  const changes = annotations.length > 0 ? await clip.annotate(...(await Promise.all(annotations.map(annotationOf)))) : [];
   const labels = [];
-  for await (const frame of clip) labels.push(hash(frame.labels));
-  const { objects, background, dropped } = clip.tracks();
+  for (const index of frames.keys()) labels.push(hash((await clip.labels(index)).labels));
+  const tracks = await clip.tracks();
+  clip.close();
+  return { labels, tracks, changes };
+}
+
+async function ofClip(given) {
+  const { labels, tracks, changes } = await segmented(given);
+  const { objects, background, dropped } = tracks;
   see('Sighting', objects.flatMap((object) => object.frames));
   see('BackgroundMotion', background);
   const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
-  const changes = (await clip.changes()).map(({ frame, object, gained, lost }) => [frame, object, gained, lost]);
   return {
     labels,
     tracks: numbers([
@@ -66,7 +83,7 @@ async function ofClip({ frames, stream, options, said }) {
       background.map(({ frame, matrix }) => [frame, matrix]),
       dropped,
     ]),
-    changes,
+    changes: changes.map(({ frame, object, gained, lost }) => [frame, object, gained, lost]),
   };
 }
 

@@ -25,8 +25,8 @@ NODE = shutil.which("node") or ""
 pytestmark = pytest.mark.skipif(not NODE, reason="there is no node to compare with")
 
 NAMES = {"mark_unknown": "markUnknown", "look_ahead": "lookAhead"}
-# What is said of a clip once it is segmented; Node has annotations in another form.
-SAID = ("annotations", "accepted", "locked", "named")
+# Edits of a clip once it is segmented.
+EDITS = ("accepted", "locked", "named")
 
 
 def sha256(content: Any) -> str:
@@ -74,28 +74,21 @@ class Asked:
         rgba[..., :3] = given
         return {"path": self.write(rgba.tobytes()), "width": width, "height": height}
 
-    def annotation(self, given: Any) -> Tuple[str, Any]:
-        """The option of Node for an annotation, and what it has there."""
-        said: Dict[str, Any] = {"frame": given.frame, "propagate": given.propagate}
-        if isinstance(given, Prompt):
-            said.update({"object": given.object, "clicks": [*([(*given.click, 1)] if given.click else []), *given.clicks]})
-            return "prompts", {**said, **({"box": given.box} if given.box else {})}
+    def annotation(self, given: Any) -> Dict[str, Any]:
+        """An annotation as Node has it."""
+        common: Dict[str, Any] = {"frame": given.frame, "propagate": given.propagate}
         if isinstance(given, Labels):
-            return "masks" if given.own else "corrections", {**said, "labels": self.write(given.labels.tobytes())}
-        labels = np.where(given.mask == 1, given.object, given.mask).astype(np.uint8)
-        return "corrections", {**said, "object": given.object, "labels": self.write(labels.tobytes())}
-
-    def said(self, given: Dict[str, Any]) -> Dict[str, Any]:
-        said: Dict[str, Any] = {"accepted": given["accepted"]} if "accepted" in given else {}
-        for option, annotation in map(self.annotation, given.get("annotations", ())):
-            said.setdefault(option, []).append(annotation)
-        return said
+            return {**common, "labels": self.write(given.labels.tobytes()), "own": given.own}
+        common["object"] = given.object
+        if isinstance(given, Prompt):
+            clicks = [*([(*given.click, 1)] if given.click else []), *given.clicks]
+            return {**common, "clicks": clicks, **({"box": given.box} if given.box else {})}
+        form = "mask" if isinstance(given, Mask) else "strokes"
+        return {**common, form: self.write(given.mask.tobytes())}
 
     def of_node(self) -> Any:
         def options(given: Dict[str, Any]) -> Dict[str, Any]:
-            named = {"edits": {"names": {number: "thing" for number in given["named"]}}} if "named" in given else {}
-            locked = {"locked": given["locked"]} if "locked" in given else {}
-            return {**{NAMES.get(name, name): value for name, value in given.items() if name not in SAID}, **named, **locked}
+            return {NAMES.get(name, name): value for name, value in given.items() if name not in (*EDITS, "annotations")}
 
         asked = {
             "pairs": [{"frames": [self.frame(one) for one in pair], "options": options(given)} for *pair, given in self.pairs],
@@ -104,7 +97,8 @@ class Asked:
                     "frames": [self.frame(one) for one in frames],
                     "stream": stream,
                     "options": options(given),
-                    "said": self.said(given),
+                    **{name: given[name] for name in EDITS if name in given},
+                    "annotations": [self.annotation(one) for one in given.get("annotations", ())],
                 }
                 for frames, stream, given in self.clips
             ],
@@ -182,7 +176,7 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
     real = [SAMPLES / "passing-cars" / "frames" / f"{index:02}.webp" for index in range(4)]
     partly = square_mask(1.5, 9, 255)
     partly[:, :40] = 255
-    said: Dict[str, Any] = {
+    annotations: Dict[str, Any] = {
         "annotations": [
             Labels(1, square_mask(0.5, 7, 0), own=True),
             Labels(4, square_mask(2, 7, 255), own=True, propagate="backward"),
@@ -201,8 +195,8 @@ def test_two_clips_whole_corrected_and_as_streams(tmp_path: Path) -> None:
     ]
     asked.clips = [
         (generated, False, {}),
-        (generated, False, {"quality": "fast", **said}),
-        (generated, False, {"quality": "fast", **said, "locked": [1]}),
+        (generated, False, {"quality": "fast", **annotations}),
+        (generated, False, {"quality": "fast", **annotations, "locked": [1]}),
         (generated, False, {"quality": "fast", "named": [1], "accepted": [0, 5], "annotations": others}),
         (generated, True, {"quality": "fast", "look_ahead": 2, "mark_unknown": True}),
         (moving(10, (120, 90)), True, {"quality": "fast"}),

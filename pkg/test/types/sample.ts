@@ -1,40 +1,45 @@
 // Code of a user; compiled under strict settings, never run.
 
 import {
-  type ClipAccepted,
+  type Clip,
+  type ClipAnnotation,
   type ClipChange,
-  type ClipCorrection,
-  type ClipPrompt,
-  type ClipEdits,
+  type ClipDeclaration,
+  type ClipEntry,
+  type ClipEvent,
   type ClipFrame,
-  type ClipMask,
-  type ClipOptions,
+  type ClipJournal,
+  type ClipStep,
   type ClipTracks,
   davisPalette,
   type ErrorCode,
   fitMotions,
-  initPoints,
   groupLabels,
   init,
+  initPoints,
   type MotionFit,
+  openClip,
   type Pixels,
   type Segmentation,
   Segmenter,
   SegmenterPool,
-  segmentClip,
   segmentPair,
   segmentPairs,
+  segmentStream,
+  solvePair,
   VeroneseError,
   version,
 } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
-import { encode, type EncodedFile, type Format, type LabelFrame, type LabelImage, readMask } from 'veronese/formats';
+import { type Annotations, encode, type EncodedFile, type Format, type LabelFrame, type LabelImage, readAnnotations, readMask } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function pictures(bitmap: ImageBitmap, frame: VideoFrame, file: File, image: HTMLImageElement, canvas: HTMLCanvasElement | OffscreenCanvas): Promise<void> {
   await segmentPair(bitmap, frame);
   await new Segmenter().segmentPair(file, canvas);
-  for await (const { labels } of segmentClip([image, file, canvas, bitmap, frame])) console.log(labels);
+  for await (const { labels } of segmentStream([image, file, canvas, bitmap, frame])) console.log(labels);
+  (await openClip([image, file, canvas])).close();
+  await solvePair(bitmap, file);
   for await (const { error } of segmentPairs([{ first: bitmap, second: file }])) console.log(error);
   // @ts-expect-error no picture
   await segmentPair(5, document);
@@ -73,53 +78,89 @@ export async function node(first: Uint8Array, second: Uint8Array): Promise<Motio
   }
 }
 
-export async function clip(frames: LabelFrame[], later: AsyncIterable<LabelFrame>): Promise<string> {
-  const formats: Format[] = ['youtube-vis', 'davis'];
+export async function formats(frames: LabelFrame[], later: AsyncIterable<LabelFrame>): Promise<string> {
+  const names: Format[] = ['youtube-vis', 'davis'];
   const files: EncodedFile[] = await encode('cvat-video', frames, { clip: 'a.mp4', shape: 'box', frameRate: 25 });
   // @ts-expect-error that is no format
   await encode('labels', later);
-  for (const format of formats) files.push(...(await encode(format, later, { names: { 1: 'car' }, classes: ['car'] })));
+  for (const format of names) files.push(...(await encode(format, later, { names: { 1: 'car' }, classes: ['car'] })));
   const { labels }: LabelImage = readMask(new ImageData(64, 48), { levels: 'exact' });
-  return files.map(({ name, content }) => `${name} ${content.length} ${labels.length}`).join();
+  const read: Annotations = readAnnotations([{ name: 'coco.json', bytes: new Uint8Array(9) }]);
+  return files.map(({ name, content }) => `${name} ${content.length} ${labels.length} ${read.boxes.length}`).join();
 }
 
-export async function follow(frames: AsyncIterable<ImageData>, read: (index: number) => Promise<Pixels>): Promise<ClipTracks> {
-  const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', onProgress: ({ frame, of }) => console.log(frame, of) });
+export async function stream(frames: AsyncIterable<ImageData>): Promise<ClipTracks> {
+  const stream = segmentStream(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', onProgress: ({ frame }) => console.log(frame) });
   await encode('coco', stream);
   for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
+  // @ts-expect-error a stream does not know where it ends
+  segmentStream(frames, { lookAhead: 'all' });
+  // @ts-expect-error frames that are read in any order are a clip
+  segmentStream({ length: 32, read: () => new ImageData(64, 48) });
+  // @ts-expect-error clips have the confidence of objects alone
+  segmentStream(frames, { confidence: true });
+  return stream.tracks();
+}
+
+export async function clip(read: (index: number) => Promise<Pixels>, saved: Uint8Array): Promise<ClipTracks> {
   const segmenter = new Segmenter();
-  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', markUnknown: true, signal: AbortSignal.timeout(1000) });
-  const first: IteratorResult<ClipFrame, void> = await whole.next();
-  if (!first.done) console.log(first.value.index);
-  const state: Uint8Array | undefined = await whole.state();
-  const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48), propagate: 'forward' }];
-  const prompts: ClipPrompt[] = [{ frame: 1, label: 7, box: [2, 3, 20, 10] }, { frame: 2, label: 8, click: [5, 5], propagate: 'none' }];
-  prompts.push({ frame: 2, object: 9, clicks: [[5, 5, 1], [9, 5, -1]], box: [2, 3, 20, 10] }, { frame: 3, object: 9 });
-  // @ts-expect-error a click is the object's or is not
-  prompts.push({ frame: 2, object: 9, clicks: [[5, 5, 0]] });
-  corrections.push({ frame: 3, object: 2, labels: new Uint8Array(64 * 48) });
-  const accepted: ClipAccepted[] = [4, { frame: 5, labels: new Uint8Array(64 * 48) }];
-  // @ts-expect-error a box has four numbers
-  prompts.push({ frame: 1, label: 7, box: [2, 3] });
-  const masks: ClipMask[] = [
-    { frame: 0, labels: new Uint8Array(64 * 48) },
-    { frame: 1, labels: new ImageData(64, 48), propagate: 'none' },
-    { frame: 1, png: new Uint8Array(99) },
-    { frame: 2, id: 7, rle: { size: [48, 64], counts: [64 * 48] } },
+  const journal: ClipJournal = { read: async () => undefined, append: async () => undefined, replace: async () => undefined };
+  const clip: Clip = await segmenter.openClip({ length: 32, read }, { journal, markUnknown: true, maxSize: 960 });
+  (await openClip([new ImageData(64, 48)], { saved })).close();
+  (await new SegmenterPool().openClip(['0.png', '1.png'], { journal: 'clip.journal' })).close();
+  const unsubscribe: () => void = clip.subscribe((event: ClipEvent) => {
+    if (event.type === 'progress') console.log(event.stage, event.done, event.of);
+    else if (event.type === 'draft') console.log(event.frame.labels);
+    else if (event.type === 'settled') console.log(event.step, event.error?.code);
+    else if (event.type === 'kept') console.log(event.bytes);
+  });
+  const solved = new Map<number, Uint8Array>([[1, await segmenter.solvePair(await read(0), await read(1), { quality: 'fast' })]]);
+  const range: ClipStep = clip.segment({ first: 0, last: 9, quality: 'fast', drafts: true, pairs: (frame) => solved.get(frame), signal: AbortSignal.timeout(1000) });
+  for await (const { index, labels } of range) console.log(index, labels.length);
+  const mask = new Uint8Array(64 * 48);
+  const annotations: ClipAnnotation[] = [
+    { frame: 3, object: 1, strokes: mask, propagate: 'forward' },
+    { frame: 3, object: clip.nextObject, mask, propagate: 'exact' },
+    { frame: 4, labels: mask, own: true },
+    { frame: 5, object: 2, clicks: [[5, 5, 1], [9, 5, -1]], box: [2, 3, 20, 10] },
   ];
-  const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => console.log(index, (await segmented()).labels.length);
-  void segmentClip({ length: 32, read }, { masks, locked: [2], onChange });
-  // @ts-expect-error run lengths are of an object with a number
-  void segmentClip({ length: 32, read }, { masks: [{ frame: 2, rle: { size: [48, 64], counts: '' } }] });
-  const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
-  const pairs = new Map<number, Uint8Array>();
-  const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };
-  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], prompts, accepted, edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), onPreview: ({ objects }) => console.log(objects.length), ...kept });
-  const changes: ClipChange[] = await again.changes();
-  console.log(again.tracks().objects[0]?.name, changes[0]?.gained);
-  // @ts-expect-error a clip tells the confidence of objects alone
-  segmentClip([], { confidence: true });
-  return whole.tracks();
+  const step = clip.annotate(...annotations);
+  const shown: ClipFrame = await step.shown;
+  const changes: readonly ClipChange[] = await step;
+  await clip.describe(1, { name: 'car', class: 'vehicle', colour: [255, 0, 0] }, { coalesce: true });
+  await Promise.all([clip.lock([1]), clip.accept('all'), clip.accept([3], false), clip.clear({ frame: 4 }), clip.merge(1, 2), clip.delete(3), clip.split(1, 4)]);
+  const declaration: ClipDeclaration = { annotations, locked: [1], descriptions: { 1: { name: 'car' } }, merged: [[1, 2]], deleted: [3], accepted: [0] };
+  await clip.replaceAnnotations(declaration);
+  const isUndone: boolean = await clip.undo();
+  const entry: ClipEntry | undefined = clip.objects[0];
+  console.log(shown.index, changes[0]?.gained, isUndone, entry?.became, clip.frames[3]?.accepted, clip.steps.waiting, (await clip.save()).length);
+  await encode('coco', [await clip.labels(3)]);
+  unsubscribe();
+  return clip.tracks();
+}
+
+export function mistakesOfClips(clip: Clip, frame: ImageData): void {
+  const mask = new Uint8Array(4);
+  // @ts-expect-error the quality is that of a range
+  void openClip([frame], { quality: 'fast' });
+  // @ts-expect-error a stream comes once
+  void openClip((async function* () {})());
+  // @ts-expect-error a clip looks at all frames
+  void clip.segment({ lookAhead: 2 });
+  // @ts-expect-error a mask is of an object
+  void clip.annotate({ frame: 1, mask });
+  // @ts-expect-error a box has four numbers
+  void clip.annotate({ frame: 1, object: 7, box: [2, 3] });
+  // @ts-expect-error a pixel belongs to the object or does not
+  void clip.annotate({ frame: 1, object: 7, clicks: [[5, 5, 0]] });
+  // @ts-expect-error that is no direction
+  void clip.annotate({ frame: 1, object: 7, mask, propagate: 'all' });
+  // @ts-expect-error frames by number
+  void clip.accept('some');
+  // @ts-expect-error the list is replaced, not changed
+  clip.objects.push();
+  // @ts-expect-error a pair that is solved has no confidence
+  void solvePair(frame, frame, { confidence: true });
 }
 
 export function mistakes(frame: ImageData): void {

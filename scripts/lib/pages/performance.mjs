@@ -7,7 +7,7 @@ const TITLES = {
   best: '`segmentPair`, best',
   farneback: 'OpenCV.js, Farneback’s flow alone',
   opencvPipeline: 'OpenCV.js, flow to labels',
-  clip: '`segmentClip`, fast, `lookAhead: 0`, a frame',
+  clip: '`segmentStream`, fast, `lookAhead: 0`, a frame',
 };
 
 export const PARTS = {

@@ -1,4 +1,4 @@
-// A clip: what the pairs of each frame tell alone, what all frames tell together, and how a stroke in one frame goes through the others.
+// A clip: what the pairs of each frame show alone, what all frames show together, and how a stroke in one frame spreads to the others.
 
 import { SegmenterPool } from '../../package/dist/web.js';
 import { brush, pathOf } from '../brush.mjs';
@@ -10,7 +10,8 @@ const COUNT = 25;
 const EVERY = 2;
 const MOST_WORKERS = 4;
 const RADIUS = 8;
-const SAID_NOTHING = 255;
+/** Left open by a stroke. */
+const OPEN = 255;
 const PER_SECOND = 6;
 /** A stroke to begin with: beneath the second car, on its shadow. */
 const EXAMPLE = { frame: 17, label: 0, points: [[228, 240], [306, 240]] };
@@ -20,18 +21,19 @@ const address = (frame) => new URL(`../../samples/passing-cars/frames/${String(2
 export default async function mount({ stage, say }) {
   const frames = await Promise.all(Array.from({ length: COUNT }, (_, frame) => pixels(address(frame))));
   const { width, height } = frames[0];
-  const source = { length: COUNT, read: (index) => frames[index] };
   const segmenter = new SegmenterPool({ jobs: Math.min(MOST_WORKERS, navigator.hardwareConcurrency || 1) });
+  const clip = await segmenter.openClip(frames);
 
-  /** Labels of each frame: of its pairs alone, of the whole clip, and with strokes. */
+  /** Labels of each frame: of its pairs alone, of the whole clip, and with strokes where those have changed it. */
   const [alone, whole, corrected] = [[], [], []];
-  /** The evidence of each pair, with which a run that was stopped goes on. */
-  const known = [];
-  let [state, strokes, frame, view, tool] = [undefined, [], EXAMPLE.frame, 'whole', 0];
-  let running;
+  /** The revision of each frame before there are strokes. */
+  let revisions = [];
+  let [strokes, frame, view, tool] = [[], EXAMPLE.frame, 'whole', 0];
+  /** Number of steps of the clip that have not taken effect. */
+  let working = 0;
   let objects = [];
-  /** The state to which a stopped stroke returns. */
-  let settled = { strokes, corrected: [] };
+  /** Settled when the labels of all frames that have changed are here. */
+  let reading = Promise.resolve();
 
   // The picture
   const screen = canvas({ width, height, label: 'The frame with the masks of its objects; the reading below says what they are' });
@@ -46,7 +48,7 @@ export default async function mount({ stage, say }) {
     step: 4,
     radius: RADIUS,
     describe: ([x, y]) => `column ${Math.round(x)}, row ${Math.round(y)}, on ${nameOf(seen()?.[Math.round(Math.min(y, height - 1)) * width + Math.round(Math.min(x, width - 1))])}`,
-    onStroke: (points) => state && correct([...strokes, { frame, label: tool, points }]),
+    onStroke: (points) => paint({ frame, label: tool, points }),
   });
 
   // The results of each frame
@@ -62,9 +64,9 @@ export default async function mount({ stage, say }) {
   const play = button('Play', () => (playing ? pause() : start()));
   const views = choice({ label: 'Masks of', options: [['alone', 'its pairs alone'], ['whole', 'the whole clip']], value: view, onInput: (value) => ((view = value), show()) });
   const tools = html('div', { class: 'tools' });
-  const example = button('Paint the shadow, for example', () => (show(EXAMPLE.frame), correct([...strokes, EXAMPLE])));
-  const back = button('Take back', () => correct(strokes.slice(0, -1)));
-  const stop = button('Stop', () => running?.abort());
+  const example = button('Paint the shadow, for example', () => (show(EXAMPLE.frame), paint(EXAMPLE)));
+  const back = button('Take back', takeBack);
+  const stop = button('Stop', () => clip.cancel());
 
   stage.append(
     beside(
@@ -106,7 +108,7 @@ export default async function mount({ stage, say }) {
     );
     pen.show();
     for (const one of strips) one.point(frame);
-    if (!running) say(reading());
+    if (working === 0) say(sentence());
   }
 
   function figures(index) {
@@ -130,68 +132,79 @@ export default async function mount({ stage, say }) {
     table.replaceChildren(...all.map((one, index) => row('td', [index + 1, one.sizes.map(({ id, pixels: size }) => `${id}: ${size}`).join(', '), one.alonePixels ?? '–', percent(one.agreement), one.changed])));
   }
 
-  function reading() {
+  function sentence() {
     const { sizes, alonePixels, agreement: share, changed: here } = figures(frame);
     if (!whole[frame]) return `Frame ${frame + 1} of ${COUNT}.`;
     const visible = sizes.filter(({ pixels: size }) => size);
     const clip = visible.length ? visible.map(({ id, pixels: size }) => `object ${id} has ${grouped(size)} pixels`).join(', ') : 'nothing moves';
-    const pairs = alonePixels === undefined ? 'No pair begins with this frame.' : share === undefined ? 'The pairs alone say the same.' : `The pairs alone find ${grouped(alonePixels)} pixels that move; both agree on ${percent(share)}.`;
-    const reached = corrected.filter(Boolean).length;
-    const spread = strokes.length ? ` ${strokes.length === 1 ? 'One stroke' : `${strokes.length} strokes`} changed ${grouped(here)} pixels here, and something in ${reached} of ${COUNT} frames.` : '';
+    const pairs = alonePixels === undefined ? 'No pair begins with this frame.' : share === undefined ? 'The pairs alone find the same.' : `The pairs alone find ${grouped(alonePixels)} pixels that move; both agree on ${percent(share)}.`;
+    const spread = strokes.length ? ` ${strokes.length === 1 ? 'One stroke' : `${strokes.length} strokes`} changed ${grouped(here)} pixels here, and something in ${reached()} of ${COUNT} frames.` : '';
     return `Frame ${frame + 1} of ${COUNT}: in the whole clip ${clip}. ${pairs}${spread}`;
   }
 
   function ready() {
-    running = undefined;
+    const isSegmented = revisions.length > 0;
     for (const one of strips) one.busy(undefined);
-    brushes.inert = !state;
-    example.disabled = !state || strokes.includes(EXAMPLE);
-    back.disabled = strokes.length === 0;
-    stop.disabled = true;
+    brushes.inert = !isSegmented;
+    example.disabled = !isSegmented || strokes.includes(EXAMPLE);
+    back.disabled = strokes.length === 0 || working > 0;
+    stop.disabled = working === 0;
     summarise();
     show();
   }
 
-  /** Runs something that can be stopped. Says whether it came to its end. */
-  async function run(work) {
-    running?.abort();
-    const mine = (running = new AbortController());
+  /** Waits for a step of the clip, which can be stopped. Returns whether it has taken effect. */
+  async function done(step) {
+    working += 1;
+    back.disabled = true;
     stop.disabled = false;
     try {
-      await work(mine);
-      return running === mine;
+      await step;
+      return true;
     } catch (thrown) {
-      if (running !== mine) return false;
       news.textContent = thrown.code === 'cancelled' ? 'Stopped.' : thrown.message;
-      return undefined;
+      return false;
+    } finally {
+      working -= 1;
     }
   }
 
+  clip.subscribe((event) => {
+    if (event.type === 'progress') for (const one of strips) one.busy(event.frame);
+    else if (event.type === 'draft') drafted(event.frame);
+    else if (event.type === 'frames' && revisions.length > 0) reading = Promise.all([reading, ...event.frames.map(changedIn)]);
+  });
+
+  function drafted({ index, labels }) {
+    alone[index] = labels;
+    news.textContent = `The pairs of ${alone.filter(Boolean).length} of ${COUNT} frames are solved.`;
+    say(news.textContent);
+    summarise();
+    if (index === frame) show();
+  }
+
+  /** Equal revisions have equal labels: a frame whose strokes are taken back is again as it was found. */
+  async function changedIn(index) {
+    const { labels } = await clip.labels(index);
+    corrected[index] = clip.frames[index].revision === revisions[index] ? undefined : labels;
+    if (clip.steps.waiting > 0) {
+      news.textContent = `The stroke has reached ${reached()} of ${COUNT} frames.`;
+      say(news.textContent);
+    }
+    summarise();
+    if (index === frame) show();
+  }
+
+  const reached = () => corrected.filter(Boolean).length;
+
   async function segment() {
-    const done = await run(async ({ signal }) => {
-      const clip = segmenter.segmentClip(source, {
-        quality: 'fast',
-        signal,
-        onPairs: (index, pairs) => void (known[index] = pairs),
-        knownPairs: (index) => known[index],
-        onPreview: ({ index, labels }) => {
-          alone[index] = labels;
-          news.textContent = `The pairs of ${alone.filter(Boolean).length} of ${COUNT} frames are solved.`;
-          say(news.textContent);
-          summarise();
-          if (index === frame) show();
-        },
-        onProgress: ({ frame: at, stage: what }) => {
-          if (what === 'pairs') for (const one of strips) one.busy(at);
-        },
-      });
-      for await (const { index, labels } of clip) whole[index] = labels;
-      objects = clip.tracks().objects.map(({ id }) => id);
-      state = await clip.state();
-    });
-    if (done === false) return;
-    if (done) news.textContent = 'Is something wrong? Choose what it is and paint over it.';
-    else news.replaceChildren('Stopped. ', button('Go on', segment));
+    const step = clip.segment({ quality: 'fast', drafts: true });
+    if (await done(step)) {
+      for await (const { index, labels } of step) whole[index] = labels;
+      objects = clip.objects.map(({ number }) => number);
+      revisions = clip.frames.map(({ revision }) => revision);
+      news.textContent = 'Is something wrong? Choose what it is and paint over it.';
+    } else news.replaceChildren('Stopped. ', button('Go on', segment));
     offerTools();
     ready();
   }
@@ -201,49 +214,30 @@ export default async function mount({ stage, say }) {
     tools.replaceChildren(choice({ label: 'This is', options, value: tool, onInput: (value) => (tool = value) }));
   }
 
-  /** The clip under the strokes `next`, which all count together. */
-  async function correct(next) {
-    strokes = next;
-    example.disabled = back.disabled = true;
-    const changes = [];
-    const done = await run(async ({ signal }) => {
-      const clip = segmenter.segmentClip(source, {
-        state,
-        corrections: corrections(),
-        changesOnly: true,
-        signal,
-        onChange: async (index, segmented) => {
-          changes[index] = (await segmented()).labels;
-          if (!signal.aborted) spreads(index, changes);
-        },
-        onProgress: ({ frame: at, stage: what }) => {
-          if (what === 'corrections') for (const one of strips) one.busy(at);
-        },
-      });
-      for await (const { index, labels } of clip) changes[index] = labels;
-    });
-    if (done === false) return;
-    if (done) settled = { strokes, corrected: changes };
-    strokes = settled.strokes;
-    for (let index = 0; index < COUNT; index++) corrected[index] = settled.corrected[index];
-    if (done) news.textContent = strokes.length ? `${changes.filter(Boolean).length} of ${COUNT} frames have changed.` : 'All strokes are taken back.';
+  /** Annotates the frame of a stroke. Strokes that follow while it spreads wait for it. */
+  async function paint(stroke) {
+    strokes = [...strokes, stroke];
+    const labels = new Uint8Array(width * height).fill(OPEN);
+    stamp(labels, { width, height }, { ...stroke, radius: RADIUS });
+    const result = done(clip.annotate({ frame: stroke.frame, labels }));
+    ready();
+    const isThere = await result;
+    await reading;
+    if (isThere) settled();
+    else strokes = strokes.filter((other) => other !== stroke);
     ready();
   }
 
-  function spreads(index, changes) {
-    corrected[index] = changes[index];
-    news.textContent = `The stroke has reached ${changes.filter(Boolean).length} of ${COUNT} frames.`;
-    say(news.textContent);
-    summarise();
-    if (index === frame) show();
+  async function takeBack() {
+    strokes = strokes.slice(0, -1);
+    await done(clip.undo());
+    await reading;
+    settled();
+    ready();
   }
 
-  function corrections() {
-    return [...new Set(strokes.map((stroke) => stroke.frame))].map((spoken) => {
-      const labels = new Uint8Array(width * height).fill(SAID_NOTHING);
-      for (const stroke of strokes) if (stroke.frame === spoken) stamp(labels, { width, height }, { ...stroke, radius: RADIUS });
-      return { frame: spoken, labels };
-    });
+  function settled() {
+    news.textContent = strokes.length ? `${reached()} of ${COUNT} frames have changed.` : 'All strokes are taken back.';
   }
 
   ready();

@@ -157,9 +157,11 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     for (index, frame) in clip.frames.iter_mut().enumerate() {
         let FrameState { layer, exact, accepted: was_accepted, .. } = &*frame;
         if let Some(layer) = layer.as_ref().filter(|_| *was_accepted && accepted.contains(&index)) {
-            let drawn =
-                exact.as_ref().map(|exact| exact.values()).unwrap_or_else(|| vec![UNLABELLED; layer.labels.len()]);
-            let labels = over(Some(layer.labels.values()), drawn);
+            let labels = layer.labels.values();
+            let labels = match exact {
+                Some(exact) => over(Some(labels), exact.values()),
+                None => labels,
+            };
             seen[index] = Some(labels.into_iter().map(|label| before.number(label)).collect());
         }
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };

@@ -1,6 +1,6 @@
 // Code of a program that knows neither the DOM nor Node: a server at the edge, a plug-in of an editor. Compiled, never run.
 
-import { type Pixels, segmentClip, Segmenter, segmentPair, segmentPairs, VeroneseError } from 'veronese';
+import { openClip, type Pixels, Segmenter, segmentPair, segmentPairs, segmentStream, solvePair, VeroneseError } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { encode, type LabelFrame } from 'veronese/formats';
 import { init, SegmenterPool } from 'veronese/slim';
@@ -19,7 +19,11 @@ export async function pair(file: Uint8Array, module: ArrayBuffer): Promise<strin
 
 export async function clip(frames: Pixels[]): Promise<number> {
   const found: LabelFrame[] = [];
-  for await (const { labels } of segmentClip(frames, { lookAhead: 2 })) found.push({ labels, width: 64, height: 48 });
+  for await (const { labels } of segmentStream(frames, { lookAhead: 2 })) found.push({ labels, width: 64, height: 48 });
+  const clip = await openClip(frames);
+  await clip.segment({ pairs: (frame) => solvePair(frames[frame - 1] as Pixels, frames[frame] as Pixels) });
+  for await (const frame of clip.annotate({ frame: 0, object: 1, box: [2, 3, 20, 10] })) found.push(frame);
+  clip[Symbol.dispose]();
   const segmenter = new Segmenter('veronese_bg.wasm');
   segmenter.close();
   const pool = new SegmenterPool({ worker: () => ({ postMessage: () => undefined, terminate: () => undefined }) });
