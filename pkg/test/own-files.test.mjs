@@ -136,8 +136,8 @@ describe('in our folder', () => {
       rmSync(out, { recursive: true });
     }
     await done(commands.convert[0]);
-    place('yolo/labels/f003.txt');
-    await refused([...commands.convert[0], '--to', 'yolo'], out, 'yolo/labels/f003.txt');
+    place('mots/gt/gt.txt');
+    await refused([...commands.convert[0], '--to', 'mots'], out, 'mots/gt/gt.txt');
   });
 
   test('no list leads to a file elsewhere, and no link', { skip: skipWindows }, async (t) => {
