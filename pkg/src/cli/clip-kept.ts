@@ -70,7 +70,7 @@ export class KeptClip {
 
   /** Removes what is kept. */
   static clear(output: Output): Promise<void> {
-    const names = [KEY, ...['', '.lock', '.new', '.damaged'].map((ending) => LOG + ending)];
+    const names = [KEY, ...['', '.veronese-lock', '.new', '.damaged'].map((ending) => LOG + ending)];
     return writing(output.folder, () => names.forEach((name) => rmSync(join(output.folder, name), { force: true })));
   }
 
