@@ -70,7 +70,7 @@ function harm({ harm }) {
     const wrong = sum(({ spoilt }) => spoilt);
     return [`${name} (${changes.length})`, before, after, worse, ...[right, wrong].map((pixels) => whole(Math.round(pixels / 1000))), fixed(wrong / right, 2)];
   });
-  return table(['what is said of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'], rows);
+  return table(['annotation of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'], rows);
 }
 
 function points({ points }) {
