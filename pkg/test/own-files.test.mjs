@@ -232,7 +232,7 @@ test('a run of clip that comes to the folder of another one is refused', async (
   const { code, stderr } = await veronese([...args, '--overlay']);
   assert.deepEqual([code, stderr], [1, `veronese: error: write-failed: the results cannot be written into '${out}': another run is writing there\n`]);
   assert.deepEqual(tree(out), before);
-  other.close();
+  await other.close();
   await done([...args, '--overlay']);
 });
 

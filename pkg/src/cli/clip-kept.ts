@@ -63,8 +63,7 @@ export class KeptClip {
       const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
       if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });
       // The range of a frame that could not be read.
-      clip?.close();
-      await journal.close?.();
+      await clip?.close();
     }
   }
 

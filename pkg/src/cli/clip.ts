@@ -100,7 +100,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     segmenter.close();
     throw thrown;
   } finally {
-    kept?.clip.close();
+    await kept?.clip.close();
     showing.close();
     output.discard();
     progress.clear();

@@ -11,6 +11,6 @@ export async function segmented(length, read, options, declaration = {}) {
     const frames = await Promise.all(Array.from({ length }, (_, index) => clip.labels(index)));
     return { frames, tracks: await clip.tracks() };
   } finally {
-    clip.close();
+    await clip.close();
   }
 }

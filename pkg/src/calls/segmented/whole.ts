@@ -6,7 +6,7 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } from '../messages.js';
 import { Ahead } from '../session/ahead.js';
 import { taken } from '../taking.js';
-import type { CheckedOptions, Whole } from './options.js';
+import type { CheckedOptions } from './options.js';
 import { checkCount, type Frames, reads, upTo } from '../clip/frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
@@ -16,7 +16,7 @@ import type { ClipResults } from './clip.js';
 /** If the source fails, the frames before come first. */
 export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: CheckedOptions, results: ClipResults): AsyncGenerator<ClipFrame, void, undefined> {
   const { transfer, onProgress } = task;
-  const { read, length: of } = task.source as Whole;
+  const { read, length: of } = task.source;
   // A state may be of the frames before one that failed.
   if (!task.state) checkCount(of);
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
@@ -42,8 +42,8 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: Ch
 /** Solves the pairs that are not known. Without a look-ahead, who solves them does not matter. */
 async function solved(clip: PlacedClip, frames: Frames, task: CheckedOptions): Promise<ClipSummary> {
   const { settings } = task;
-  const { read, length } = task.source as Whole;
-  const { size = 1, anywhere } = clip.place;
+  const { read, length } = task.source;
+  const { size, anywhere } = clip.place;
   const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
   const known = new Map<number, Uint8Array>();
   for (const index of task.knownPairs ? upTo(length) : []) {
@@ -96,7 +96,7 @@ async function restored(clip: PlacedClip, frames: Frames, task: CheckedOptions, 
 /** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
 async function annotated(clip: PlacedClip, frames: Frames, task: CheckedOptions, length: number): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
   const { source, onProgress, onChange } = task;
-  const { read } = source as Whole;
+  const { read } = source;
   const changed = new Set<number>();
   let step = await clip.step<Annotating>({ call: 'annotateClip', annotations: annotationsOf(task, length) });
   for (;;) {

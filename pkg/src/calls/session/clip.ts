@@ -116,7 +116,7 @@ export class OpenedClip implements Clip, StepClip {
 
   /** Begins with what {@link open} has answered, and goes on with annotations that are still to be applied. */
   begin(answer: ClipAnswer): void {
-    this.#answered(answer);
+    void this.#answered(answer);
     void this.#run();
   }
 
@@ -342,7 +342,7 @@ export class OpenedClip implements Clip, StepClip {
     for (const step of this.#given) step.reject(reason);
     this.#given.clear();
     this.#pending.clear();
-    for (const { reject } of [...this.#requests]) reject(reason);
+    for (const { reject } of this.#requests) reject(reason);
     const { writer, journal } = this.#parts;
     this.#emit({ type: 'closed', reason });
     this.#journalClosed = closeJournal(writer, journal);
@@ -559,7 +559,7 @@ export class OpenedClip implements Clip, StepClip {
   #label(found: LabelledFrame): void {
     const frame = sized(found, this.#sizeOf(found));
     this.#seen.set(frame.index, seenIn(frame));
-    for (const { index, resolve } of [...this.#requests]) if (index === frame.index) resolve(structuredClone(frame));
+    for (const { index, resolve } of this.#requests) if (index === frame.index) resolve(structuredClone(frame));
   }
 
   /** The clip's size, or that of the frame which was read last while a range of another size is segmented. */
@@ -683,7 +683,7 @@ export class OpenedClip implements Clip, StepClip {
   /** A frame cannot be read, or is another one than before: the labels are not known, the step is taken back, the range ends before it. */
   async #unreadable({ frame: index, stage, step: number }: WantedFrame, step: Step | undefined, thrown: unknown): Promise<void> {
     if (stage === 'labels') {
-      for (const { index: own, reject } of [...this.#requests]) if (own === index) reject(thrown);
+      for (const { index: own, reject } of this.#requests) if (own === index) reject(thrown);
       void this.#answered(await this.#send<ClipAnswer>((clip) => ({ call: 'lookAtClip', clip, index: undefined })));
       return;
     }
@@ -703,7 +703,7 @@ export class OpenedClip implements Clip, StepClip {
 
   /** Two homes were lost with the same frame: what wanted it is given up. */
   async #giveUp({ frame: index, stage, step: number }: WantedFrame, step: Step | undefined, thrown: VeroneseError): Promise<void> {
-    if (stage === 'labels') for (const { index: own, reject } of [...this.#requests]) if (own === index) reject(thrown);
+    if (stage === 'labels') for (const { index: own, reject } of this.#requests) if (own === index) reject(thrown);
     if (stage === 'labels') return;
     if (step) step.failure ??= { thrown };
     return this.#drop(number);

@@ -72,6 +72,7 @@ export class Step implements ClipStep {
     return (this.#shown ??= this.#clip.shownOf(this));
   }
 
+  // oxlint-disable-next-line unicorn/no-thenable -- a step is awaited
   then<Value = readonly ClipChange[], Reason = never>(
     onSettled?: ((changes: readonly ClipChange[]) => Value | PromiseLike<Value>) | null,
     onFailed?: ((reason: unknown) => Reason | PromiseLike<Reason>) | null,

@@ -69,7 +69,7 @@ class StoredJournal implements ClipJournal {
       const transaction = this.#database.transaction(ROWS, mode, { durability: 'strict' });
       const request = work(transaction.objectStore(ROWS));
       transaction.oncomplete = () => resolve(request.result);
-      transaction.onabort = () => reject(transaction.error as DOMException);
+      transaction.onabort = () => reject(transaction.error);
     }).catch((cause: unknown) => {
       throw failed(this.#name, cause);
     });
@@ -90,7 +90,7 @@ function opened(): Promise<IDBDatabase> {
       request.result.onversionchange = () => request.result.close();
       resolve(request.result);
     };
-    request.onerror = () => reject(request.error as DOMException);
+    request.onerror = () => reject(request.error);
   });
 }
 
