@@ -13,7 +13,7 @@ import { davisPng } from '../build/formats/pictures.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
 import { signalledAt } from './support/stopping.mjs';
-import { converted, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { converted, entries, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
 
 const [TRACKS, IMAGES] = [true, false].map((tracks) => Object.keys(FORMATS).filter((name) => (FORMATS[name].tracks ?? false) === tracks));
 
