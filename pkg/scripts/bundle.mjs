@@ -35,8 +35,8 @@ const SHARED = ['common/'];
 const BOTH_WAYS = ['formats/file-names.js'];
 /** One mask in another form: also for the calls, which do not need the readers of files of annotation tools. */
 const ONE_MASK = ['formats/png-reader.js', 'formats/reading/(?:mask|smoothed|coco-rle).js'];
-/** Shared by all entries with calls, but for what they load when masks or pictures are given. */
-const CALLS = ['module/', 'calls/(?!(?:clip/notes|segmented/given-masks|session/stored-journal|nothing|pictures)\\.js)', 'pool/', 'entries/package.js'];
+/** Shared by all entries with calls, but for what they load with the first clip or picture. */
+const CALLS = ['module/', 'calls/(?!(?:clip/notes|segmented/(?!clip)[\\w-]+|session/(?!open|frames|frame-cache)[\\w-]+|nothing|pictures)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const worker = await rolldown({ input: resolve(folder('build'), 'worker/worker.js'), platform: 'browser' });

@@ -299,7 +299,7 @@ describe('veronese batch VIDEO', () => {
     }
   });
 
-  test('takes damaged videos only when told to, wherever they are cut off', { skip }, async (t) => {
+  test('takes damaged videos only with --allow-damaged, wherever they are cut off', { skip }, async (t) => {
     const { frames, out, path } = clip(t, 10);
     const file = path('film.avi');
     ffmpeg('-i', join(frames, 'f%d.png'), '-c:v', 'rawvideo', '-pix_fmt', 'bgr24', file);
@@ -320,13 +320,13 @@ describe('veronese batch VIDEO', () => {
     }
   });
 
-  test('says what is missing where there is no ffmpeg', async (t) => {
+  test('names what is missing where there is no ffmpeg', async (t) => {
     const { code, stderr } = await veroneseProcess(['batch', temporaryFolder(t).file('film.mp4', '')], { env: { PATH: '/nowhere' } });
     assert.equal(code, 1);
     assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
   });
 
-  test('says what is interlaced, and what changes its size', () => {
+  test('notes what is interlaced, and what changes its size', () => {
     const line = (k, size = '320x240', fields = 'P') => `[Parsed_showinfo_0 @ 0x55] [info] n:   ${k} pts:  ${k} pts_time:${k / 25}  duration:1 duration_time:0.04 fmt:yuv420p cl:left sar:1/1 s:${size} i:${fields} iskey:1 type:I`;
     const notes = (lines) => {
       const about = { times: [] };

@@ -2,15 +2,16 @@
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode, encode } from 'fast-png';
-import { davisPalette, segmentClip, version } from 'veronese';
+import { davisPalette, segmentStream, version } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 import { clipFrames } from '../build/cli/clip-frames.js';
 import { notesOnVideo, timesOf, videoFrames } from '../build/cli/video.js';
-import { clip as framesOf, labelsOf, lines, tracksOf, tree } from './support/folders.mjs';
+import { segmented } from './support/direct.mjs';
+import { clip as framesOf, labelsOf, lines, results, tracksOf, tree } from './support/folders.mjs';
 import { frame, png, ramp } from './support/frames.mjs';
 import { entries, veronese } from './support/program.mjs';
 
@@ -38,13 +39,11 @@ describe('veronese clip', () => {
   test('writes labels of every frame and the tracks, and prints a line for each frame', async (t) => {
     const { frames, out } = clip(t);
     const { lines } = await run([frames, '--out', out, '--overlay', '--motions', '3']);
-    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', motions: 3 });
-    const expected = [];
-    for await (const one of direct) expected.push(one);
+    const { frames: expected, tracks: known } = await segmented(COUNT, clipFrame, { quality: 'fast', motions: 3 });
     assert.ok(expected[0].objects.length > 0, 'something moves');
     assert.deepEqual(lines, [
       ...expected.map(({ index, objects }) => ({ frame: index, name: `f${index}`, objects: objects.map(({ id }) => id) })),
-      { done: true, objects: direct.tracks().objects.length },
+      { done: true, objects: known.objects.length },
     ]);
 
     const files = NAMES.map((name) => `${name}.png`);
@@ -62,7 +61,7 @@ describe('veronese clip', () => {
 
     const { job, settings, ...tracks } = tracksOf(out);
     // Of a folder of frames no rate is known.
-    assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...direct.tracks() })));
+    assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...known })));
     assert.deepEqual(settings, { motions: 3, quality: 'fast', lookAhead: 'all', markUnknown: false, subject: false, every: 1, overlay: true, software: `veronese ${version}` });
   });
 
@@ -70,17 +69,17 @@ describe('veronese clip', () => {
     const { frames, path } = clip(t, 8);
     const alone = await run([frames, '--out', path('1'), '--jobs', '1']);
     const several = await run([frames, '--out', path('3'), '--jobs', '3']);
-    assert.deepEqual([several.stdout, tree(path('3'))], [alone.stdout, tree(path('1'))]);
+    assert.deepEqual([several.stdout, results(path('3'))], [alone.stdout, results(path('1'))]);
     rmSync(path('1', 'tracks.json'));
-    rmSync(path('1', '.clip', 'state'));
+    rmSync(path('1', '.clip', 'log'));
     const { stdout } = await run([frames, '--out', path('1'), '--jobs', '3']);
-    assert.deepEqual([stdout, tree(path('1'))], [alone.stdout, tree(path('3'))]);
+    assert.deepEqual([stdout, results(path('1'))], [alone.stdout, results(path('3'))]);
   });
 
   test('--look-ahead, --motions and --every reach the call; patterns, lists and single files keep their order', async (t) => {
     const { frames, path, one, out, file } = clip(t);
     await run([frames, '--out', out, '--look-ahead', '0', '--motions', '2', '--every', '2']);
-    const direct = segmentClip([0, 2, 4].map(clipFrame), { quality: 'fast', lookAhead: 0, motions: 2 });
+    const direct = segmentStream([0, 2, 4].map(clipFrame), { quality: 'fast', lookAhead: 0, motions: 2 });
     for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, 2 * index), labels);
     assert.deepEqual(tracksOf(out).frames, ['f0', 'f2', 'f4']);
     await run([path('frames', 'f[0-2].png'), '--out', out]);
@@ -93,13 +92,19 @@ describe('veronese clip', () => {
   });
 
   test('does nothing again that is finished, and starts anew with other options or inputs', async (t) => {
-    const { frames, one, out } = clip(t);
+    const { frames, one, out, path } = clip(t);
     const first = await run([frames, '--out', out]);
     const before = tree(out);
+    cpSync(out, path('before'), { recursive: true });
     const times = () => NAMES.map((name) => statSync(join(out, 'labels', `${name}.png`), { bigint: true }).mtimeNs);
     const written = times();
     const second = await run([frames, '--out', out]);
     assert.deepEqual([second.stdout, times(), tree(out)], [first.stdout, written, before]);
+
+    rmSync(join(out, 'labels', 'f2.png'));
+    const third = await run([frames, '--out', out]);
+    const isAgain = (time, k) => k === 2 || time === written[k];
+    assert.deepEqual([third.stdout, results(out), times().every(isAgain)], [first.stdout, results(path('before')), true], 'what is missing is written again');
 
     const anew = async (change, args = []) => {
       change();
@@ -108,7 +113,7 @@ describe('veronese clip', () => {
       assert.ok(times().every((time, k) => time > at[k]), change.name);
     };
     await anew(function loss() { rmSync(join(out, 'tracks.json')); });
-    assert.deepEqual(tree(out), before);
+    assert.deepEqual(results(out), results(path('before')));
     await anew(function option() {}, ['--motions', '2', '--overlay']);
     assert.ok(existsSync(join(out, 'overlay', 'f0.png')));
     await anew(function content() { writeFileSync(one(5), png(frame(7, SIZE))); });
@@ -117,6 +122,19 @@ describe('veronese clip', () => {
     renameSync(one(5), join(frames, 'g.png'));
     await run([frames, '--out', out]);
     assert.deepEqual(readdirSync(join(out, 'labels')), ['f0.png', 'f1.png', 'f2.png', 'f3.png', 'f4.png', 'g.png']);
+  });
+
+  test('frames that are all alike have a note, unless that was asked for', async (t) => {
+    const { frames, out, path } = framesOf(t, 3, () => clipFrame(0));
+    const { code, stderr } = await veronese(['clip', frames, '--out', out]);
+    assert.deepEqual([code, tracksOf(out).notes.map((note) => note.code)], [0, ['no-motion']]);
+    assert.match(stderr, /^veronese: note: nothing moves[^\n]+\n$/);
+    mkdirSync(path('painted'));
+    writeFileSync(path('painted', 'edits.json'), '{"accepted": ["f1"]}');
+    for (const more of [['--motions', '1'], ['--corrections', path('painted')]]) {
+      await run([frames, '--out', out, ...more]);
+      assert.equal(tracksOf(out).notes, undefined);
+    }
   });
 
   test('frames with one stem, too few frames and missing ones are refused before anything is written', async (t) => {
@@ -161,7 +179,7 @@ describe('frames as cameras write them', () => {
     return encode({ width, height, channels: 1, depth: 16, data: samples });
   };
 
-  test('samples of 16 bits in a small part of their range are stretched alike in all frames, and that is said', async (t) => {
+  test('samples of 16 bits in a small part of their range are stretched alike in all frames, with a note', async (t) => {
     const { frames, one, out, path } = clip(t);
     for (let k = 0; k < COUNT; k++) writeFileSync(one(k), deep(k));
     const { code, stderr, stdout } = await veronese(['clip', '--quality', 'fast', frames, '--out', out]);
@@ -270,7 +288,7 @@ describe('veronese clip VIDEO', () => {
     });
   }
 
-  test('says what is assumed of a video, in tracks.json too', { skip }, async (t) => {
+  test('notes what is assumed of a video, in tracks.json too', { skip }, async (t) => {
     const [noteCode, sentence, args] = ODD['has other pixels than squares'];
     const { file, out } = video(t, 'a.mkv', ...args, '-c:v', 'ffv1');
     for (const name of ['clip', 'batch']) {
@@ -329,7 +347,7 @@ describe('veronese clip VIDEO', () => {
 
   const canWrite = !skip && /libwebp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-encoders']).stdout);
   const canRead = !skip && /webp_anim/.test(spawnSync('ffmpeg', ['-hide_banner', '-demuxers']).stdout);
-  test('an animated WebP is a clip, where ffmpeg reads it; elsewhere an error says what to do', { skip: skip || (!canWrite && 'this ffmpeg writes no WebP') }, async (t) => {
+  test('an animated WebP is a clip, where ffmpeg reads it; elsewhere an error has the remedy', { skip: skip || (!canWrite && 'this ffmpeg writes no WebP') }, async (t) => {
     const { file, out } = video(t, 'a.webp', '-c:v', 'libwebp_anim', '-lossless', '1');
     if (canRead) assert.equal((await framesIn(file)).length, COUNT);
     else {

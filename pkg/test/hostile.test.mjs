@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
-import { after, describe, test } from 'node:test';
+import { after, before, describe, test } from 'node:test';
 import { inspect, isDeepStrictEqual } from 'node:util';
 import { Worker } from 'node:worker_threads';
 import * as index from 'veronese';
@@ -15,7 +15,8 @@ import * as slim from 'veronese/slim';
 import { glue } from '../build/module/glue.js';
 import { optionsOf } from '../build/element/options.js';
 import { png } from './support/frames.mjs';
-import { CALLS, CLIPS, EMPTY, FINITE, OPTIONS, VALUES, all, checked, first, found, measurements, named, outcome, second } from './support/hostile.mjs';
+import { temporaryFolder } from './support/program.mjs';
+import { CALLS, COMMANDS, EMPTY, FINITE, OPENINGS, OPTIONS, STREAMS, VALUES, all, checked, first, found, measurements, named, outcome, second } from './support/hostile.mjs';
 import { failure } from './support/shapes.mjs';
 import { soaking } from './support/soak.mjs';
 
@@ -100,17 +101,59 @@ describe('direct calls and workers', () => {
   });
 });
 
-describe('clips, directly and in workers', () => {
+describe('streams, directly and in workers', () => {
   const { segmenter, checkWorker } = segmenterOf();
-  for (const [place, [args, harmless]] of Object.entries(CLIPS)) {
+  for (const [place, [args, harmless]] of Object.entries(STREAMS)) {
     test(place, async () => {
-      await everywhere((value) => all(index.segmentClip(...args(value))), harmless, async (value, direct) => {
-        const there = await outcome(() => all(segmenter.segmentClip(...args(value))));
+      await everywhere((value) => all(index.segmentStream(...args(value))), harmless, async (value, direct) => {
+        const there = await outcome(() => all(segmenter.segmentStream(...args(value))));
         if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
       });
       await checkWorker();
     });
   }
+});
+
+describe('clips, directly and in workers', () => {
+  const { segmenter, checkWorker } = segmenterOf();
+  for (const [place, [args, harmless]] of Object.entries(OPENINGS)) {
+    test(`openClip: ${place}`, async (t) => {
+      const [{ path }, before] = [temporaryFolder(t), process.cwd()];
+      process.chdir(path('.'));
+      t.after(() => process.chdir(before));
+      await everywhere(async (value) => {
+        for (const open of [index.openClip, (...given) => segmenter.openClip(...given)]) {
+          const clip = await open(...args(value));
+          await clip.close();
+        }
+      }, harmless);
+    });
+  }
+
+  for (const where of ['direct', 'in a worker']) {
+    describe(where, () => {
+      let clip;
+      before(async () => {
+        clip = await (where === 'direct' ? index.openClip([first, second]) : segmenter.openClip([first, second]));
+        await clip.segment({ quality: 'fast' });
+        await clip.annotate({ frame: 0, object: 1, mask: new Uint8Array(256).fill(1, 0, 64) });
+      });
+      after(() => clip.close());
+      for (const [place, [name, args, harmless]] of Object.entries(COMMANDS)) {
+        test(place, async () => {
+          const { undo } = clip.steps;
+          await everywhere(async (value) => {
+            const result = await clip[name](...args(value));
+            while (clip.steps.undo > undo) await clip.undo();
+            return result;
+          }, harmless);
+          assert.deepEqual([clip.steps.undo, clip.steps.waiting], [undo, 0]);
+        });
+      }
+    });
+  }
+
+  test('the worker is the same', checkWorker);
 });
 
 describe('segmentPairs and pools', () => {

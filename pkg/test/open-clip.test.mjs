@@ -3,9 +3,10 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { existsSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { hostname } from 'node:os';
+import { join } from 'node:path';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { openClip, Segmenter, SegmenterPool, solvePair } from 'veronese';
 import { random } from '../../scripts/lib/random.mjs';
@@ -177,6 +178,38 @@ describe('a clip', () => {
     assert.deepEqual((await clip.tracks()).objects.map(({ id, first, last }) => [id, first, last]), [[1, 0, 6]]);
   });
 
+  test('segments a range in the middle again, with the frames beside it', async (t) => {
+    const clip = await segmented(t);
+    const labels = await labelsOf(clip);
+    const events = eventsOf(clip);
+    await clip.segment({ ...FAST, first: 2, last: 4 });
+    const outside = (all) => all.filter((_, index) => index < 2 || index > 4);
+    assert.deepEqual(outside(await labelsOf(clip)), outside(labels));
+    assert.deepEqual((await clip.tracks()).objects.map(({ id, first, last }) => [id, first, last]), [[1, 0, 6]]);
+    assert.deepEqual(events.progress.map(({ frame, done, of }) => [frame, done, of]), [[2, 0, 3], [3, 1, 3], [4, 2, 3]]);
+  });
+
+  test('a frame of another size ends the range, and spoils nothing', async (t) => {
+    const frames = FRAMES.map((given, k) => (k === 0 ? frame(0, { width: 80, height: 48 }) : given));
+    const clip = await opened(t, { frames });
+    assert.match((await failure(() => clip.segment(FAST))).message, /^frame 1: .*80×48/);
+    await clip.segment({ ...FAST, first: 1 });
+    assert.deepEqual([clip.width, clip.frames.filter(({ hasMasks }) => hasMasks).length], [64, 6]);
+  });
+
+  test('a frame that never comes holds up nothing else', async (t) => {
+    let isSilent = false;
+    const read = (index) => (isSilent && index === 3 ? new Promise(() => {}) : FRAMES[index]);
+    const first = await segmented(t, { frames: { length: COUNT, read } });
+    const clip = await opened(t, { frames: { length: COUNT, read }, saved: await first.save() });
+    isSilent = true;
+    const stroke = clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
+    assert.equal((await clip.labels(5)).index, 5);
+    stroke.cancel();
+    assert.equal((await failure(() => stroke)).code, 'cancelled');
+    await clip.annotate({ frame: 1, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255), propagate: 'none' });
+  });
+
   test('drafts come while a range is segmented, where they are asked for', async (t) => {
     const clip = await opened(t);
     const events = eventsOf(clip);
@@ -287,7 +320,7 @@ describe('arguments', () => {
       [() => clip.annotate({ frame: 0, object: 1, clicks: [[64, 0, 1]] }), /'clicks' must be/],
       [() => clip.annotate({ frame: 0, object: 1, clicks: [[4, 0, 2]] }), /'clicks' must be/],
       [() => clip.annotate({ frame: 0, object: 1, mask: label, propagate: 'all' }), /'propagate' must be one of/],
-      [() => clip.annotate({ frame: 0, object: 1, msak: label }), /there is no 'msak'/],
+      [() => clip.annotate({ frame: 0, object: 1, masque: label }), /there is no 'masque'/],
       [() => clip.clear({ frame: 9 }), /there is no frame 9 in a clip of 7 frames/],
       [() => clip.accept([0.5]), /there is no frame 0.5/],
       [() => clip.accept('some'), /must be a list of frames/],
@@ -325,7 +358,7 @@ describe('arguments', () => {
     ]) assert.equal((await failure(() => openClip(given, options))).code, code);
     const one = await openClip(FRAMES.slice(0, 1));
     assert.equal((await failure(() => one.segment())).code, 'too-few-frames');
-    one.close();
+    await one.close();
   });
 
   test('are the caller\'s again when the call returns', async (t) => {
@@ -355,8 +388,10 @@ describe('in workers', () => {
         assert.deepEqual(await labelsOf(other), expected);
       }
       assert.deepEqual(given, expected);
+      const events = eventsOf(clip);
       segmenter.close();
       assert.equal((await failure(() => clip.labels(0))).code, 'cancelled');
+      assert.equal(events.closed[0].reason.code, 'cancelled');
     }
   });
 
@@ -427,14 +462,12 @@ describe('a journal', () => {
     await clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
     assert.match((await failure(() => openClip(FRAMES, { journal }))).message, /another clip has '.*' open/);
     const [labels, { objects, steps }] = [await labelsOf(clip), clip];
-    clip.close();
-    await setTimeout(20);
+    await clip.close();
     const again = await opened(t, { journal });
     assert.deepEqual([again.objects, again.steps, again.isDamaged], [objects, steps, false]);
     assert.deepEqual(await labelsOf(again), labels);
     assert.equal(await again.undo(), true);
-    again.close();
-    await setTimeout(20);
+    await again.close();
     assert.equal((await failure(() => openClip(FRAMES, { journal, saved: new Uint8Array(8) }))).message, "option 'saved': the journal has a clip already: give one of the two");
     assert.equal((await failure(() => openClip(FRAMES, { journal: path('none', 'clip.log') }))).code, 'file-not-found');
   });
@@ -446,20 +479,54 @@ describe('a journal', () => {
     const before = await labelsOf(clip);
     const length = statSync(journal).size;
     await clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
-    clip.close();
-    await setTimeout(20);
+    await clip.close();
     const content = readFileSync(journal);
     writeFileSync(journal, content.subarray(0, length + 5));
     const cut = await opened(t, { journal });
     assert.deepEqual([await labelsOf(cut), cut.isDamaged, statSync(journal).size], [before, false, length]);
-    cut.close();
-    await setTimeout(20);
+    await cut.close();
     const wrong = Buffer.from(content);
     wrong[length + 20] ^= 1;
     writeFileSync(journal, wrong);
     const damaged = await opened(t, { journal });
     assert.deepEqual([await labelsOf(damaged), damaged.isDamaged], [before, true]);
     assert.deepEqual(readFileSync(`${journal}.damaged`), wrong);
+  });
+
+  test('has the commands that were given before the clip was closed, and is locked by its one place', async (t) => {
+    const { path } = temporaryFolder(t);
+    const [journal, link] = [path('clip.log'), path('link')];
+    symlinkSync(path('.'), link);
+    const clip = await segmented(t, { journal, place: workers(t).place });
+    const step = clip.annotate({ frame: 3, object: 2, strokes: rectangle([2, 2, 8, 8], 1, 255) });
+    const described = clip.describe(1, { name: 'square' });
+    const elsewhere = join(link, 'clip.log');
+    assert.match((await failure(() => openClip(FRAMES, { journal: elsewhere }))).message, /another clip has/);
+    await clip.close();
+    for (const each of [step, described]) assert.ok(['clip-closed', undefined].includes((await each.then(() => ({}), (error) => error)).code));
+    const again = await opened(t, { journal: elsewhere });
+    await again.lock([1], false);
+    assert.deepEqual(again.objects.map(({ number, name }) => [number, name]), [[1, 'square'], [2, '']]);
+    await again.close();
+    // A process that is no more, another machine, and what is no lock.
+    const lock = `${journal}.veronese-lock`;
+    const cases = [[`4194303 ${hostname()}\n`, true], [`${process.pid} elsewhere\n`, false], ['text', false]];
+    for (const [content, isFree] of cases) {
+      writeFileSync(lock, content);
+      const outcome = await openClip(FRAMES, { journal }).then((clip) => clip.close().then(() => true), () => false);
+      assert.equal(outcome, isFree, content);
+      assert.equal(existsSync(lock), !isFree);
+      if (!isFree) rmSync(lock);
+    }
+  });
+
+  test('of the caller keeps its own bytes', async (t) => {
+    const clip = await segmented(t);
+    const saved = Buffer.from(await clip.save());
+    const bytes = saved.length;
+    const kept = { read: async () => saved, append: async () => {}, replace: async () => {} };
+    const again = await opened(t, { journal: kept, place: workers(t).place });
+    assert.deepEqual([again.frames[0].hasMasks, saved.length], [true, bytes]);
   });
 
   test('that fails is tried again, and the clip goes on', async (t) => {

@@ -6,7 +6,8 @@ import { appendFileSync, cpSync, existsSync, linkSync, mkdirSync, readFileSync, 
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { clipFolder } from './support/clip.mjs';
-import { clip, tree } from './support/folders.mjs';
+import { openClip } from 'veronese';
+import { clip, results, tree } from './support/folders.mjs';
 import { entries, veronese, veroneseProcess } from './support/program.mjs';
 import { cases } from './support/soak.mjs';
 import { signalledAt } from './support/stopping.mjs';
@@ -22,7 +23,7 @@ function made(t, count = 4) {
     pair: [['pair', one(0), one(1), '--quality', 'fast', '--out', out], 'labels.png'],
     batch: [['batch', frames, '--quality', 'fast', '--jobs', '1', '--out', out], '000001-f1/labels.png'],
     clip: [['clip', frames, '--quality', 'fast', '--out', out], 'labels/f1.png'],
-    convert: [['convert', path('drawn'), '--to', 'labelme,coco', '--out', out], 'labelme/f001.json'],
+    convert: [['convert', path('drawn'), '--to', 'yolo,coco', '--out', out], 'yolo/labels/f001.txt'],
     corrections: [['convert', path('drawn', 'coco.json'), '--to', 'corrections', '--out', out], 'edits.json'],
   };
   const place = (path, content = 'mine') => {
@@ -58,7 +59,7 @@ describe('a folder that is not ours', () => {
       place('z.txt');
       await refused(args, out, 'z.txt');
       place(result);
-      await refused(args, out, command === 'batch' ? '000001-f1' : command === 'convert' ? 'labelme' : result);
+      await refused(args, out, command === 'batch' ? '000001-f1' : command === 'convert' ? 'yolo' : result);
       rmSync(out, { recursive: true });
       place('.veronese', 'a list of mine');
       await refused(args, out, '.veronese');
@@ -68,7 +69,7 @@ describe('a folder that is not ours', () => {
       assert.equal(readFileSync(join(out, '.DS_Store'), 'utf8'), 'mine');
       rmSync(out, { recursive: true });
     }
-    place('.clip/state');
+    place('.clip/log');
     await refused(commands.clip[0], out, '.clip');
   });
 
@@ -105,7 +106,7 @@ describe('in our folder', () => {
       const [args, result] = commands[command];
       await done(args);
       const files = tree(out);
-      const mine = ['mine.txt', 'mask-x.png', 'labels/notes.txt', 'labels/g.png', '.clip/mine', '000001-f1/mine.txt', 'labelme/g.json'];
+      const mine = ['mine.txt', 'mask-x.png', 'labels/notes.txt', 'labels/g.png', '.clip/mine', '000001-f1/mine.txt', 'yolo/labels/g.txt'];
       for (const name of mine) place(name);
       rmSync(path('copy'), { recursive: true, force: true });
       cpSync(out, path('copy'), { recursive: true });
@@ -135,8 +136,8 @@ describe('in our folder', () => {
       rmSync(out, { recursive: true });
     }
     await done(commands.convert[0]);
-    place('yolo/labels/f003.txt');
-    await refused([...commands.convert[0], '--to', 'yolo'], out, 'yolo/labels/f003.txt');
+    place('mots/gt/gt.txt');
+    await refused([...commands.convert[0], '--to', 'mots'], out, 'mots/gt/gt.txt');
   });
 
   test('no list leads to a file elsewhere, and no link', { skip: skipWindows }, async (t) => {
@@ -156,7 +157,7 @@ describe('in our folder', () => {
     await refused([...args, '--overlay'], out, 'overlay.png');
   });
 
-  test('what is read is not overwritten, whatever is said', async (t) => {
+  test('what is read is not overwritten, even with --force', async (t) => {
     const { commands: { pair: [pair], clip: [clip] }, out } = made(t);
     await done([...clip, '--overlay']);
     await refused(['clip', join(out, 'overlay'), '--quality', 'fast', '--overlay', '--force', '--out', out], out, 'overlay/f0.png');
@@ -169,7 +170,7 @@ describe('in our folder', () => {
 
   test('a pipe in the place of a result keeps nobody waiting', { skip: spawnSync('mkfifo', ['--version']).status !== 0 && 'there is no mkfifo' }, async (t) => {
     const { commands, out } = made(t);
-    for (const [command, pipe] of [['pair', 'labels.png'], ['pair', '.veronese'], ['batch', '000000-f0/result.json'], ['clip', 'tracks.json'], ['clip', '.clip/state']]) {
+    for (const [command, pipe] of [['pair', 'labels.png'], ['pair', '.veronese'], ['batch', '000000-f0/result.json'], ['clip', 'tracks.json'], ['clip', '.clip/log']]) {
       mkdirSync(dirname(join(out, pipe)), { recursive: true });
       assert.equal(spawnSync('mkfifo', [join(out, pipe)]).status, 0);
       const { code, stderr } = await veronese(commands[command][0]);
@@ -188,7 +189,7 @@ describe('interrupted runs', { skip: skipWindows }, () => {
       const [args] = commands[command];
       const other = command === 'convert' ? [...args, '--from', '2'] : [...args, '--motions', '2'];
       await done(args);
-      const expected = tree(out);
+      const [expected, names] = [results(out), Object.keys(tree(out))];
       rmSync(out, { recursive: true });
       const ends = (first, places) => places.map(([n, when]) => [first, n, when]);
       const few = [[undefined, 3, 'after'], [other, 1, 'after']];
@@ -198,24 +199,41 @@ describe('interrupted runs', { skip: skipWindows }, () => {
         const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { n, when }));
         assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
         await done(args);
-        assert.deepEqual(tree(out), expected, 'the files of a straight run, and nothing half-written');
+        assert.deepEqual([results(out), Object.keys(tree(out))], [expected, names], 'the files of a straight run, and nothing half-written');
         rmSync(out, { recursive: true });
       }
     }
   });
 
-  test('of a clip leave files of others alone, and name a new one in their way', async (t) => {
+  test('of a clip name a new file in their way', async (t) => {
     const folder = made(t);
     const { commands, out, place } = folder;
     const args = [...commands.clip[0], '--look-ahead', '0'];
     const { signal } = await veroneseProcess(args, signalledAt(folder, 'SIGKILL', { path: /f2\.png$/ }));
-    assert.equal(signal, 'SIGKILL');
-    assert.ok(existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
+    assert.ok(signal === 'SIGKILL' && existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
     place('labels/f3.png');
     await refused(args, out, 'labels/f3.png');
     rmSync(join(out, 'labels', 'f3.png'));
+    // One that comes while it is worked on stays.
+    const { code, stderr } = await veronese(args, { onLine: () => place('tracks.json') });
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
+    assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
+    rmSync(join(out, 'tracks.json'));
     await done(args);
   });
+});
+
+test('a run of clip that comes to the folder of another one is refused', async (t) => {
+  const { commands: { clip: [args] }, out } = made(t);
+  await done(args);
+  const other = await openClip({ length: 4, read: () => undefined }, { journal: join(out, '.clip', 'log') });
+  const before = tree(out);
+  const { code, stderr } = await veronese([...args, '--overlay']);
+  assert.deepEqual([code, stderr], [1, `veronese: error: write-failed: the results cannot be written into '${out}': another run is writing there\n`]);
+  assert.deepEqual(tree(out), before);
+  await other.close();
+  await done([...args, '--overlay']);
 });
 
 test('two batches into one folder at once both end well', async (t) => {
@@ -223,12 +241,4 @@ test('two batches into one folder at once both end well', async (t) => {
   for (const { code, stderr } of await Promise.all([veroneseProcess(args), veroneseProcess(args)])) assert.deepEqual([code, stderr], [0, '']);
   await done(args);
   assert.equal(entries(out).length, 4);
-});
-
-test('a file that comes into the way while a clip is worked on stays', { skip: skipWindows }, async (t) => {
-  const { commands: { clip: [args] }, out, place } = made(t);
-  const { code, stderr } = await veronese([...args, '--look-ahead', '0'], { onLine: () => place('tracks.json') });
-  assert.equal(code, 1);
-  assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
-  assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
 });

@@ -53,10 +53,10 @@ describe('npm pack', () => {
 test('sizes stay within their budgets', () => {
   const zipped = (path) => gzipSync(read(path), { level: 9 }).length;
   const core = zipped('wasm/veronese_bg.wasm');
-  assert.ok(core <= 238 * 1024, `the core module has ${core} bytes`);
+  assert.ok(core <= 278 * 1024, `the core module has ${core} bytes`);
   const points = zipped('wasm/points/veronese_points_bg.wasm');
   assert.ok(points <= 66 * 1024, `the module of measurements has ${points} bytes`);
-  for (const [entry, kilobytes] of [['web', 24], ['element', 33]]) {
+  for (const [entry, kilobytes] of [['web', 22], ['element', 33]]) {
     const scripts = loadedBy(`dist/${entry}.js`);
     assert.ok(scripts.size > 1, 'the imports are found');
     const bytes = [...scripts].reduce((sum, name) => sum + zipped(name), 0);

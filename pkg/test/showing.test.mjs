@@ -74,11 +74,11 @@ test('films have all frames, their size and rate, and transparency around an obj
   const decoded = (name, ...decoder) => spawnSync('ffmpeg', [...decoder, '-i', join(out, name), '-f', 'rawvideo', '-pix_fmt', 'rgba', '-fps_mode', 'passthrough', 'pipe:1'], { maxBuffer: 1e9 });
   const labels = decode(readFileSync(join(out, 'labels/f0.png'))).data;
   for (const name of films) {
-    const { stdout, stderr: said } = decoded(name, ...(name === 'cutout-1.webm' ? ['-c:v', 'libvpx-vp9'] : []));
+    const { stdout, stderr: messages } = decoded(name, ...(name === 'cutout-1.webm' ? ['-c:v', 'libvpx-vp9'] : []));
     // A row or column more where colours have half the resolution.
     const width = (name.startsWith('beside') ? 2 : 1) * 63 + (/\.(gif|mov)$|^beside/.test(name) ? 0 : 1);
-    assert.equal(stdout.length, 4 * width * 48 * COUNT, `${name}: ${said}`);
-    assert.match(String(said), / 10 fps/, name);
+    assert.equal(stdout.length, 4 * width * 48 * COUNT, `${name}: ${messages}`);
+    assert.match(String(messages), / 10 fps/, name);
     const at = (x, y) => [...stdout.subarray(4 * (y * width + x), 4 * (y * width + x) + 4)];
     if (name.startsWith('cutout')) assert.deepEqual([[32, 24], [5, 5]].map(([x, y]) => at(x, y)[3] > 127), [labels[24 * 63 + 32] === 1, false], name);
     if (name.startsWith('overlay')) assert.ok(at(32, 24)[0] > at(32, 24)[2] + 30 && Math.abs(at(5, 5)[0] - at(5, 5)[2]) < 30, `${name}: the square is red, the rest as it was`);

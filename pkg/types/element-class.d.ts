@@ -1,6 +1,6 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipClick, ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, FramePicture, Pixels, Progress, Segmentation, VeroneseError, WasmSource, WorkerLike } from './index.js';
+import type { Clip, ClipFrame, ClipTracks, FramePicture, Pixels, Progress, Segmentation, VeroneseError, WasmSource, WorkerLike } from './index.js';
 
 /** A frame: a URL, a picture such as a file or a bitmap, or pixels. */
 export type FrameSource = string | URL | FramePicture | Pixels;
@@ -19,21 +19,27 @@ export type ClipFrames =
 /** The events of the element's own, each with what its `detail` holds. */
 export interface VeroneseSegmenterEvents {
   /** Work goes on: on two frames, or on a frame of a clip, whose progress has a `frame`. */
-  progress: Progress | ClipProgress;
+  progress: Progress | ElementClipProgress;
   /** Two frames are segmented. */
   result: Segmentation;
-  /** A frame of a clip is done, or has changed by a correction. */
+  /** A frame of a clip has new labels: it is segmented, or a step of the element's `clip` has changed it. */
   frame: ClipFrame;
-  /** All frames of a clip are done, or a correction has spread to them. */
+  /** All frames of a clip are done, or another step of it has taken effect. */
   tracks: ClipTracks;
-  /** A correction is about to begin: it does not if the default of the event is prevented. */
-  'veronese-correction': ClipCorrection | ClipPrompt;
-  /** Another frame of a clip is shown. */
+  /** A frame of a clip is shown, or shown again with other labels. */
   show: { index: number; width: number; height: number; labels: Uint8Array };
   /** A person has chosen an object, or none. */
   select: number | null;
   /** Frames could not be read, segmented or shown. */
   error: VeroneseError;
+}
+
+/** The progress of a clip. `of` is the number of frames to segment; an annotation that spreads has none. Of a stream there is only `frame`. */
+export interface ElementClipProgress {
+  frame: number;
+  stage?: 'pairs' | 'annotations';
+  done?: number;
+  of?: number | undefined;
 }
 
 export type VeroneseSegmenterEventMap = Omit<HTMLElementEventMap, keyof VeroneseSegmenterEvents> & {
@@ -64,12 +70,6 @@ export interface VeroneseSegmenterMessages {
   error: (error: VeroneseError) => string;
 }
 
-/** An object that clicks and a box point to, as a {@link ClipPrompt} without its frame. */
-export type ElementPrompt =
-  | { object: number; clicks?: readonly ClipClick[] | undefined; box?: readonly [x: number, y: number, width: number, height: number] | undefined }
-  | { label: number; box: readonly [x: number, y: number, width: number, height: number] }
-  | { label: number; click: readonly [x: number, y: number] };
-
 /**
  * Segments two frames or a clip, and shows the masks over the frames.
  *
@@ -78,8 +78,12 @@ export type ElementPrompt =
  * `controls` (any of `play`, `legend` and `zoom`); `name`, `disabled` and `required`. The element segments when it is connected and
  * whenever an attribute changes, and stops when it is disconnected.
  *
- * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
- * `detail`. They do not bubble. Where nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
+ * Frames that can be read again are a {@link clip}, which takes annotations. The frame that is shown is drawn again as soon as its labels
+ * change. When a step has taken effect, or was undone, `frame` comes for each frame that it has changed, then `tracks`. A step that fails
+ * rejects, and is no `error` of the element.
+ *
+ * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select` and `error`, each with a `detail`. They do not bubble. Where
+ * nothing is found, the picture's `status` says why, and so do the `notes` of `result` and `tracks`.
  *
  * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
  * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer. With `zoom`, the wheel and the keys
@@ -87,7 +91,7 @@ export type ElementPrompt =
  *
  * Forms: under its `name`, the element submits indexed PNG files with the DAVIS palette, whose indices are {@link labels}: `labels.png`
  * of two frames, or one file for each frame of a clip that is done, `00000.png` and on, once the clip has ended or was aborted. It is
- * invalid while it segments, after an error, and without masks if it is `required`. A reset shows the first frame and chooses no object.
+ * invalid while it works, an annotation that spreads included, after an error, and without masks if it is `required`. A reset shows the first frame and chooses no object.
  * A disabled element still segments, but takes no input and submits nothing.
  *
  * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`, `--veronese-status-background`,
@@ -108,8 +112,8 @@ export class VeroneseSegmenterElement extends HTMLElement {
   /** Sets both frames and segments them. Pixels and pictures are copied before the call returns. */
   setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
   /**
-   * The frames of a clip, in place of what the attributes name. Setting them cancels what is running and segments them, if the element is
-   * connected. `undefined` or `null` goes back to the attributes.
+   * The frames of a clip, in place of what the attributes name. Setting them cancels what is running, closes the clip before, and segments
+   * them, if the element is connected. `undefined` or `null` goes back to the attributes.
    */
   get frames(): ClipFrames | undefined;
   set frames(frames: ClipFrames | undefined | null);
@@ -124,27 +128,19 @@ export class VeroneseSegmenterElement extends HTMLElement {
   currentFrame: number;
   /** The chosen object (or mask of two frames), null for none. Set by a script, it raises no event. */
   selected: number | null;
-  /** The objects of the frames of a clip that are done; undefined for two frames. */
+  /**
+   * The clip, to annotate, to lock, to undo and to read; undefined for two frames, for a stream, and until it is open. It stays the same while
+   * the frames do, also if an attribute changes, and is closed when the element gets other frames or is disconnected.
+   */
+  readonly clip: Clip | undefined;
+  /** The objects of the frames of a clip that are done, as in the last event `tracks`; undefined for two frames. */
   tracks(): ClipTracks | undefined;
   /**
    * Segments the frames with the current attributes: two frames to a `Segmentation`, a clip to its tracks. A new call cancels the
-   * previous one, which rejects with code `cancelled`. A stream that has ended cannot be segmented again.
+   * previous one, which rejects with code `cancelled`. The same frames are segmented again in the same clip, which keeps its annotations. A stream that has ended cannot be segmented again.
    */
   segment(): Promise<Segmentation | ClipTracks>;
-  /**
-   * Says what is certain in a frame of a clip whose frames are all done and can be read again, as {@link ClipCorrection} does, and spreads it;
-   * resolves to the indices of the frames that change. The event `veronese-correction` comes first, and stops it if its default is
-   * prevented. Corrections are made one after another; the frame that is shown follows at once. When one has spread, the event `frame` comes
-   * for each frame that it has changed, then `tracks`. Where it fails or is stopped ({@link abort}), nothing has changed. To undo one, say
-   * what was said of the frame before; labels that are all 255 take back what was painted. With `object` the labels are about that one alone.
-   * Instead of labels, clicks and a box point to an object, as a {@link ClipPrompt} does.
-   */
-  correct(frame: number, labels: Uint8Array | ElementPrompt, options?: { propagate?: ClipPropagation | undefined; object?: number | undefined }): Promise<number[]>;
-  /** Objects of the clip of which no later correction changes a pixel, as the option `locked` of a clip; all others can be changed. */
-  lock(objects: readonly number[]): void;
-  /** Frames of the clip in which later corrections of other frames change nothing, as the option `accepted` of a clip; no others. */
-  accept(frames: readonly number[]): void;
-  /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */
+  /** Cancels all that has not taken effect; the last result is kept, and so are the frames of a clip that are done. */
   abort(): void;
   /** One number per pixel of what is shown: labels, or groups if the element is `grouped` or shows the `subject`; of a clip, objects. 255 is unlabelled. */
   labels(): Uint8Array | undefined;

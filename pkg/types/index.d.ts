@@ -261,7 +261,7 @@ export interface PointMeasurements {
 
 /**
  * The frames of a clip, all of one size: a list, or how many there are and a function that reads any of them. Frames are read more than once,
- * in any order, and must be the same each time.
+ * in any order, also one while another is read, and must be the same each time.
  */
 export type ClipFrames = readonly FrameInput[] | { readonly length: number; read(index: number): FrameInput | Promise<FrameInput> };
 
@@ -389,13 +389,13 @@ export interface ClipFrameStatus {
   accepted: boolean;
   /** Whether a person has annotated it. */
   annotated: boolean;
-  /** Equal revisions have equal labels; 0 before it is segmented. */
+  /** Equal revisions have equal labels; 0 before it is segmented. While a step takes effect it is that from before. */
   revision: number;
 }
 
 /**
  * A step of a clip, which takes effect in the background. Awaited, it gives the pixels that objects gained and lost when it has taken effect and
- * is kept, or rejects; then nothing has changed. Iterated, it gives the frames that it has changed, in order, with their labels; a range gives
+ * the journal has it (or has failed: see the event `unkept`), or rejects; then nothing has changed. Iterated, it gives the frames that it has changed, in order, with their labels; a range gives
  * all its frames. Of a range whose frame cannot be read, the frames before get masks, and the step rejects afterwards with that error.
  */
 export interface ClipStep extends PromiseLike<readonly ClipChange[]>, AsyncIterable<ClipFrame> {
@@ -417,12 +417,16 @@ export type ClipEvent =
   | { type: 'progress'; stage: 'pairs' | 'annotations'; frame: number; done: number; of: number | undefined }
   /** A step has taken effect, or failed. */
   | { type: 'settled'; step: number; error?: VeroneseError }
-  /** The journal has so many more bytes. */
+  /** So many bytes were written to the journal. */
   | { type: 'kept'; bytes: number }
   /** The journal has failed. The clip goes on, and its records are written with the next ones. */
   | { type: 'unkept'; error: VeroneseError }
   /** The worker was lost, for this reason, and the clip goes on in another one. */
-  | { type: 'revived'; reason: VeroneseError };
+  | { type: 'revived'; reason: VeroneseError }
+  /** A frame cannot be read that an annotation from before the clip was opened needs. It is tried again with the next command. */
+  | { type: 'paused'; frame: number; error: VeroneseError }
+  /** The clip is closed: by {@link Clip.close}, with its segmenter, or because no worker can be had. */
+  | { type: 'closed'; reason: VeroneseError };
 
 /**
  * A clip that is segmented, annotated and read, from its opening to its closing. Objects are numbered 1 to 254 and keep their number in all
@@ -442,7 +446,7 @@ export interface Clip {
   readonly objects: readonly ClipEntry[];
   /** The status of each frame. The list is replaced when it changes. */
   readonly frames: readonly ClipFrameStatus[];
-  /** Numbers of steps that can be undone and redone, and of those that have not taken effect. */
+  /** How many steps can be undone and redone, and how many have not taken effect. */
   readonly steps: { readonly undo: number; readonly redo: number; readonly waiting: number };
   /** The lowest number that no object has had; 0 if none is left. */
   readonly nextObject: number;
@@ -477,7 +481,7 @@ export interface Clip {
   redo(): Promise<boolean>;
   /** Cancels all steps that have not taken effect. */
   cancel(): void;
-  /** Ends ranges that are being segmented after the frames whose pairs are solved. */
+  /** Ends the range that is being segmented after the frames whose pairs are solved. */
   finish(): void;
   /** The labels of a frame as they are now; they come before all other work. Waits for a range that is coming to the frame. */
   labels(frame: number, options?: { signal?: AbortSignal | undefined }): Promise<ClipFrame>;
@@ -487,8 +491,11 @@ export interface Clip {
   save(): Promise<Uint8Array>;
   /** Calls a listener with all events; returns what ends that. */
   subscribe(listener: (event: ClipEvent) => void): () => void;
-  /** Frees what the clip holds. Steps that have not taken effect reject with code `clip-closed`; the journal keeps them. */
-  close(): void;
+  /**
+   * Frees what the clip holds. Steps that have not taken effect reject with code `clip-closed`; the journal keeps them. Resolves when the journal can
+   * be opened again.
+   */
+  close(): Promise<void>;
   [Symbol.dispose](): void;
 }
 

@@ -14,11 +14,9 @@ interface Frames {
   second?: FrameSource | undefined;
 }
 
-/** `onResult` hears the event `result`, and so on; `onCorrection` hears `veronese-correction`. */
+/** `onResult` hears the event `result`, and so on. */
 type Listeners = {
-  [Type in keyof VeroneseSegmenterEvents as Type extends 'veronese-correction' ? 'onCorrection' : `on${Capitalize<Type>}`]?:
-    | ((event: CustomEvent<VeroneseSegmenterEvents[Type]>) => void)
-    | undefined;
+  [Type in keyof VeroneseSegmenterEvents as `on${Capitalize<Type>}`]?: ((event: CustomEvent<VeroneseSegmenterEvents[Type]>) => void) | undefined;
 };
 
 type Own = Frames & Omit<VeroneseSegmenterAttributes, keyof Frames> & VeroneseSegmenterProperties & Listeners;

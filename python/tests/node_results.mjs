@@ -66,7 +66,7 @@ async function segmented({ frames, stream, options: { markUnknown, ...options },
   const labels = [];
   for (const index of frames.keys()) labels.push(hash((await clip.labels(index)).labels));
   const tracks = await clip.tracks();
-  clip.close();
+  await clip.close();
   return { labels, tracks, changes };
 }
 

@@ -33,7 +33,7 @@ const run = async (pairs, count = n) => {
   for (let index = 0; index < count; index++) all.push(await clip.labels(index));
   const labelled = seconds() - since - tracked;
   const saved = await clip.save();
-  clip.close();
+  await clip.close();
   return { tracked, labelled, all, saved };
 };
 // A module is slow until it is compiled.

@@ -205,26 +205,32 @@ impl Annotations {
             }
         }
         self.prompts.iter().try_for_each(|prompt| prompt.check(size))?;
-        for labels in self.accepted.iter().flatten().filter_map(|of| of.labels.as_ref()) {
-            check_labels("accepted", labels, size)?;
+        for Accepted { labels, .. } in self.accepted.iter().flatten() {
+            if let Some(labels) = labels {
+                check_labels("accepted", labels, size)?;
+            }
         }
         let is_number = |[object, number]: &&[u8; 2]| is_object(*object) && *number != UNLABELLED;
         if let Some([object, number]) = self.numbers.iter().find(|numbers| !is_number(numbers)) {
             let reason = "objects are 1 to 254, the background is 0";
             return invalid("objects", format!("object {object} cannot get the number {number}: {reason}"));
         }
-        if let Some(object) = self.locked.iter().chain(&self.named).flatten().find(|object| !is_object(**object)) {
-            return invalid("locked", format!("{object} is no number of an object: these are 1 to 254"));
+        for objects in [&self.locked, &self.named].into_iter().flatten() {
+            if let Some(object) = objects.iter().find(|object| !is_object(**object)) {
+                return invalid("locked", format!("{object} is no number of an object: these are 1 to 254"));
+            }
         }
         Ok(())
     }
 
     /// The indices of the annotated frames.
-    pub(super) fn frames(&self) -> impl Iterator<Item = usize> {
-        let painted = self.masks.iter().chain(&self.corrections).map(|painted| painted.frame);
-        let accepted = self.accepted.iter().flatten().map(|accepted| accepted.frame);
-        let cleared = self.cleared.iter().map(|(frame, _)| *frame);
-        painted.chain(self.prompts.iter().map(|prompt| prompt.frame)).chain(accepted).chain(cleared)
+    pub(super) fn frames(&self) -> Vec<usize> {
+        let mut frames = Vec::new();
+        self.masks.iter().chain(&self.corrections).for_each(|of| frames.push(of.frame));
+        self.prompts.iter().for_each(|of| frames.push(of.frame));
+        self.accepted.iter().flatten().for_each(|of| frames.push(of.frame));
+        self.cleared.iter().for_each(|(frame, _)| frames.push(*frame));
+        frames
     }
 }
 

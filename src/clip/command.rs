@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::annotation::{Click, Spread};
+use super::annotation::{Click, ObjectSet, Spread};
 use super::objects::Description;
 use super::runs::Runs;
 use super::saved::{Saved, saved};
@@ -168,16 +168,20 @@ impl Command {
         }
     }
 
-    /// The objects that may be new.
-    pub(super) fn new_objects(&self) -> Vec<u8> {
-        let split = if let Command::Split { new, .. } = self { Some(*new) } else { None };
-        let objects = self.annotations().iter().flat_map(|annotation| match &annotation.content {
-            Content::Strokes { object, .. } | Content::Mask { object, .. } | Content::Prompt { object, .. } => {
-                vec![*object]
-            }
-            Content::Labels(labels) | Content::Given(labels) => labels.clone(),
-        });
-        objects.chain(split).collect()
+    /// Adds the objects that may be new.
+    pub(super) fn add_objects(&self, objects: &mut ObjectSet) {
+        if let Command::Split { new, .. } = self {
+            objects[usize::from(*new)] = true;
+        }
+        for annotation in self.annotations() {
+            let numbers = match &annotation.content {
+                Content::Strokes { object, .. } | Content::Mask { object, .. } | Content::Prompt { object, .. } => {
+                    std::slice::from_ref(object)
+                }
+                Content::Labels(labels) | Content::Given(labels) => labels,
+            };
+            numbers.iter().for_each(|&number| objects[usize::from(number)] = true);
+        }
     }
 
     /// Checks that labels and places are of frames that there can be.

@@ -293,7 +293,7 @@ impl SceneCorrection {
             let is_gone = |label: u8| changing.contains(&label) && !state.anchors(label);
             let is_open = !self.is_done[t - self.scene[0]] && !state.accepted;
             let Some(layer) = state.layer.as_ref().filter(|_| is_open) else { continue };
-            if layer.labels.each().any(|(label, _)| is_gone(label)) {
+            if layer.labels.any(&is_gone) {
                 let labels = layer.labels.map(|label| if is_gone(label) { UNLABELLED } else { label });
                 let log_odds = clip.log_odds_of(t, layer);
                 changes.add(t);

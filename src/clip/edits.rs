@@ -17,11 +17,10 @@ impl SegmentedClip {
     pub(super) fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
         let mut user_objects: ObjectSet =
             std::array::from_fn(|k| self.frames.iter().any(|frame| frame.anchors(k as u8)));
-        let exact = self.frames.iter().filter_map(|frame| frame.exact.as_ref()).flat_map(|exact| exact.each());
-        exact.for_each(|(label, _)| user_objects[usize::from(label)] = true);
         let mut is_found = [false; 256];
-        for (label, _) in self.frames.iter().flat_map(|frame| frame.found_labels().each()) {
-            is_found[usize::from(label)] = true;
+        for frame in &self.frames {
+            frame.exact.iter().for_each(|exact| exact.mark(&mut user_objects));
+            frame.found_labels().mark(&mut is_found);
         }
         let objects = self.objects_mut();
         let is_taken = |k: &u8, objects: &Objects| {

@@ -1,6 +1,6 @@
 //! A person's annotations of one frame, as they were given, and the seeds of each object that follow from them.
 
-use super::annotation::{ObjectSet, Painted, Prompt, Seed, Spread};
+use super::annotation::{ObjectSet, Painted, Prompt, Seed, Spread, is_object};
 use super::options::model;
 use super::runs::Runs;
 use super::saved::saved;
@@ -128,11 +128,15 @@ impl FrameAnnotation {
         (self.painted.iter().map(painted).collect(), prompts)
     }
 
-    /// The labels of the label map, and the objects of strokes and prompts.
-    pub(super) fn objects(&self) -> impl Iterator<Item = u8> + '_ {
-        let maps = self.painted.iter().filter(|of| of.object == 0).flat_map(|of| of.labels.each());
-        let strokes = self.painted.iter().map(|of| of.object);
-        maps.map(|(label, _)| label).chain(strokes).chain(self.prompts.iter().map(|of| of.prompt.object))
+    /// Marks the labels of the label map, and the objects of strokes and prompts.
+    pub(super) fn mark(&self, is_there: &mut ObjectSet) {
+        for Strokes { object, labels, .. } in &self.painted {
+            is_there[usize::from(*object)] = true;
+            if *object == 0 {
+                labels.mark(is_there);
+            }
+        }
+        self.prompts.iter().for_each(|of| is_there[usize::from(of.prompt.object)] = true);
     }
 
     /// Removes the strokes and prompts of deleted objects, whose `numbers` are 0. Label maps stay, because they also exclude other objects.
@@ -180,7 +184,7 @@ impl FrameAnnotation {
     /// Whether there is a label map without object numbers. It erases all objects at its zeros.
     #[inline(never)]
     pub(super) fn names_no_object(&self) -> bool {
-        self.strokes(0).is_some_and(|map| map.labels.each().all(|(label, _)| label == 0 || label == UNLABELLED))
+        self.strokes(0).is_some_and(|map| !map.labels.any(&is_object))
     }
 
     /// Whether any annotation has the number of an object.

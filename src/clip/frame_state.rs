@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::annotation::ObjectSet;
 use super::frame_annotation::FrameAnnotation;
 use super::layer::Layer;
 use super::pairs::KeptLayeredMotion;
@@ -81,10 +82,15 @@ impl FrameState {
         self.found.as_ref().is_some_and(|found| found.back.is_some())
     }
 
-    /// The objects found in the frame or shown by its layers, with their numbers of pixels at the size of each.
-    pub(super) fn labels(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
-        let layers = [self.layer.as_ref().map(|layer| &layer.labels), self.exact.as_deref()];
-        std::iter::once(self.found_labels()).chain(layers.into_iter().flatten()).flat_map(Runs::each)
+    /// Marks the objects found in the frame or shown by its layers.
+    pub(super) fn mark(&self, is_there: &mut ObjectSet) {
+        self.found_labels().mark(is_there);
+        if let Some(layer) = &self.layer {
+            layer.labels.mark(is_there);
+        }
+        if let Some(exact) = &self.exact {
+            exact.mark(is_there);
+        }
     }
 
     /// Whether the frame was accepted with an object in it.

@@ -73,7 +73,7 @@ enum Step {
 
 impl ClipJob {
     fn new(clip: &mut SegmentedClip, annotations: Annotations) -> Result<ClipJob> {
-        annotations.frames().try_for_each(|frame| clip.check_index(frame))?;
+        annotations.frames().into_iter().try_for_each(|frame| clip.check_index(frame))?;
         annotations.check(clip.size())?;
         if let Some(object) = annotated_locked_object(clip, &annotations) {
             return Err(Error::ObjectLocked { object });
@@ -82,7 +82,9 @@ impl ClipJob {
         let Annotations { mut masks, cleared, corrections, prompts, locked, named, accepted, numbers } = annotations;
         let mut job = ClipJob { steps: VecDeque::new(), correction: None, locks, numbers, changes: Changes::default() };
         let mut is_given = [false; 256];
-        masks.iter().flat_map(|mask| &mask.labels).for_each(|&label| is_given[usize::from(label)] = true);
+        for mask in &masks {
+            mask.labels.iter().for_each(|&label| is_given[usize::from(label)] = true);
+        }
         let given: Vec<u8> = (1..UNLABELLED).filter(|&label| is_given[usize::from(label)]).collect();
         given.iter().for_each(|&label| clip.objects_mut().given[usize::from(label)] = true);
         if !given.is_empty() {
@@ -110,9 +112,11 @@ impl ClipJob {
                 masks.retain(|mask| corrections.iter().any(|painted| painted.frame == mask.frame));
             }
         }
-        let prompts = prompts.into_iter().map(|prompt| (prompt.frame, Change::Prompt(prompt)));
-        let cleared = cleared.into_iter().map(|(frame, object)| (frame, Change::Clear(object)));
-        job.steps.extend(by_scene(clip, cleared.chain(painted(&masks, &corrections)).chain(prompts)));
+        let mut changes: Vec<(usize, Change)> = Vec::new();
+        changes.extend(cleared.into_iter().map(|(frame, object)| (frame, Change::Clear(object))));
+        changes.append(&mut painted(&masks, &corrections));
+        changes.extend(prompts.into_iter().map(|prompt| (prompt.frame, Change::Prompt(prompt))));
+        job.steps.extend(by_scene(clip, changes));
         job.conclude(clip);
         Ok(job)
     }
@@ -196,7 +200,8 @@ fn locks_of(clip: &mut SegmentedClip) -> &mut ObjectSet {
 }
 
 /// One step per scene: annotations of its frames spread together.
-fn by_scene(clip: &SegmentedClip, changes: impl Iterator<Item = (usize, Change)>) -> impl Iterator<Item = Step> {
+#[inline(never)]
+fn by_scene(clip: &SegmentedClip, changes: Vec<(usize, Change)>) -> Vec<Step> {
     let mut scenes: Vec<VecDeque<(usize, Change)>> = Vec::new();
     for (index, change) in changes {
         let scene = clip.scene(index);
@@ -205,11 +210,12 @@ fn by_scene(clip: &SegmentedClip, changes: impl Iterator<Item = (usize, Change)>
             None => scenes.push(VecDeque::from([(index, change)])),
         }
     }
-    scenes.into_iter().map(Step::Correct)
+    scenes.into_iter().map(Step::Correct).collect()
 }
 
 /// The painted annotations of each frame. A correction replaces the mask of its frame where it is not 255.
-fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (usize, Change)> {
+#[inline(never)]
+fn painted(masks: &[Painted], corrections: &[Painted]) -> Vec<(usize, Change)> {
     let mut frames: Vec<(usize, Vec<Painted>)> = Vec::new();
     for painted in masks.iter().chain(corrections) {
         let at = frames.iter().position(|(index, _)| *index == painted.frame).unwrap_or_else(|| {
@@ -226,7 +232,7 @@ fn painted(masks: &[Painted], corrections: &[Painted]) -> impl Iterator<Item = (
             }
         }
     }
-    frames.into_iter().map(|(index, painted)| (index, Change::Painted(painted)))
+    frames.into_iter().map(|(index, painted)| (index, Change::Painted(painted))).collect()
 }
 
 /// Objects that are annotated and locked by the same call. Their annotations still take effect.
@@ -249,19 +255,16 @@ fn annotated_locked_object(clip: &SegmentedClip, annotations: &Annotations) -> O
         None => clip.objects.locked[usize::from(*object)],
     };
     let is_locked = |object: &u8| clip.objects.locked[usize::from(*object)] && stays_locked(object);
-    let before = |frame: usize| clip.frames[frame].annotation.as_deref().cloned().unwrap_or_default();
-    let painted = |painted: &Painted| {
-        let before = before(painted.frame);
-        let mut now: FrameAnnotation = before.clone();
-        now.paint(painted);
-        (1..UNLABELLED).find(|object| is_locked(object) && !now.agrees(&before, *object))
-    };
-    let taken_back = |(frame, object): &(usize, Option<u8>)| {
-        let before = before(*frame);
+    let before =
+        |frame: usize| -> FrameAnnotation { clip.frames[frame].annotation.as_deref().cloned().unwrap_or_default() };
+    let changed = |frame: usize, change: &dyn Fn(&mut FrameAnnotation)| {
+        let before = before(frame);
         let mut now = before.clone();
-        now.clear(*object);
+        change(&mut now);
         (1..UNLABELLED).find(|object| is_locked(object) && !now.agrees(&before, *object))
     };
+    let painted = |painted: &Painted| changed(painted.frame, &|now| now.paint(painted));
+    let taken_back = |(frame, object): &(usize, Option<u8>)| changed(*frame, &|now| now.clear(*object));
     let prompted =
         |prompt: &&Prompt| is_locked(&prompt.object) && before(prompt.frame).prompt(prompt.object) != Some(prompt);
     // An object cannot be deleted and locked at once, and a locked one is not merged.

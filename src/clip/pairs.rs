@@ -105,9 +105,9 @@ impl KeptLayeredMotion {
     }
 
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {
-        let known = |label: u8| usize::from(label) < self.motions.len();
+        let is_unknown = |label: u8| usize::from(label) >= self.motions.len();
         self.labels.is_valid(pixels)
-            && self.labels.each().all(|(label, _)| known(label))
+            && !self.labels.any(&is_unknown)
             && self.motions.iter().all(AffineMotion::is_finite)
     }
 }

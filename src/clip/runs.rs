@@ -63,13 +63,24 @@ impl Runs {
     }
 
     /// Whether any pixel has a value.
-    #[inline(never)]
     pub(crate) fn names(&self, value: u8) -> bool {
-        self.each().any(|(own, _)| own == value)
+        self.any(&|own| own == value)
+    }
+
+    /// Whether any pixel has such a value. Not generic, so that it is compiled only once.
+    #[inline(never)]
+    pub(crate) fn any(&self, is_it: &dyn Fn(u8) -> bool) -> bool {
+        self.each().any(|(value, _)| is_it(value))
+    }
+
+    /// Marks the values that there are.
+    #[inline(never)]
+    pub(crate) fn mark(&self, is_there: &mut [bool; 256]) {
+        self.each().for_each(|(value, _)| is_there[usize::from(value)] = true);
     }
 
     /// Every value with the length of its run.
-    pub(crate) fn each(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
+    fn each(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
         let mut bytes = self.0.iter();
         std::iter::from_fn(move || {
             let value = *bytes.next()?;

@@ -9,11 +9,13 @@ use crate::motion::AffineMotion;
 use crate::pair::frame_motions::Prior;
 
 /// A value that can be written as bytes and read again.
-pub(super) trait Saved: Sized {
+pub(super) trait Saved {
     /// Appends the bytes of the value.
     fn write(&self, bytes: &mut Vec<u8>);
     /// Takes a value from the front of the bytes; `None` if they end too early or are not such a value.
-    fn read(bytes: &mut &[u8]) -> Option<Self>;
+    fn read(bytes: &mut &[u8]) -> Option<Self>
+    where
+        Self: Sized;
 }
 
 /// A kind of saved bytes.

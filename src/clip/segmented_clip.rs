@@ -68,15 +68,18 @@ impl SegmentedClip {
 
     /// Indices of the frames that contain an object, by its current number.
     pub fn frames_with(&self, object: u8) -> Vec<usize> {
-        let is_it = |(label, _): (u8, usize)| self.objects.number(label) == object;
-        (0..self.len()).filter(|&index| self.frames[index].labels().any(is_it)).collect()
+        let has_it = |index: &usize| {
+            let mut is_there: ObjectSet = [false; 256];
+            self.frames[*index].mark(&mut is_there);
+            is_there.iter().zip(&self.objects.numbers).any(|(is_there, number)| *is_there && *number == object)
+        };
+        (0..self.len()).filter(has_it).collect()
     }
 
     /// The objects in any frame, by their numbers before merges and deletions.
     pub fn objects(&self) -> Vec<u8> {
         let mut is_there: ObjectSet = [false; 256];
-        let labels = self.frames.iter().flat_map(FrameState::labels);
-        labels.for_each(|(label, _)| is_there[usize::from(label)] = true);
+        self.frames.iter().for_each(|frame| frame.mark(&mut is_there));
         (1..UNLABELLED).filter(|&object| is_there[usize::from(object)]).collect()
     }
 
@@ -84,9 +87,12 @@ impl SegmentedClip {
     pub(super) fn annotated(&self) -> ObjectSet {
         let mut annotated = [false; 256];
         for frame in &self.frames {
-            let exact = frame.exact.iter().flat_map(|exact| exact.each()).map(|(label, _)| label);
-            let objects = frame.annotation.iter().flat_map(|annotation| annotation.objects()).chain(exact);
-            objects.for_each(|object| annotated[usize::from(object)] = true);
+            if let Some(annotation) = &frame.annotation {
+                annotation.mark(&mut annotated);
+            }
+            if let Some(exact) = &frame.exact {
+                exact.mark(&mut annotated);
+            }
         }
         annotated
     }
@@ -94,8 +100,7 @@ impl SegmentedClip {
     /// Notes the numbers of all objects, which are not given again.
     pub(super) fn mark_used(&mut self) {
         let mut used = self.annotated();
-        let labels = self.frames.iter().flat_map(FrameState::labels);
-        labels.for_each(|(label, _)| used[usize::from(label)] = true);
+        self.frames.iter().for_each(|frame| frame.mark(&mut used));
         let is_new = |k: usize| used[k] && !self.objects.used[k];
         let new: Vec<usize> = (1..usize::from(UNLABELLED)).filter(|&k| is_new(k)).collect();
         if !new.is_empty() {
@@ -139,7 +144,7 @@ impl SegmentedClip {
         let Objects { numbers, locked, named, .. } = &*self.objects;
         let mut protected: ObjectSet = std::array::from_fn(|k| locked[k] || named[k]);
         for layer in self.frames.iter().filter(|frame| frame.accepted).filter_map(|frame| frame.layer.as_ref()) {
-            layer.labels.each().for_each(|(label, _)| protected[usize::from(label)] = true);
+            layer.labels.mark(&mut protected);
         }
         let is_merged = |(k, number): &(usize, &u8)| **number != 0 && usize::from(**number) != *k;
         for (k, &number) in numbers.iter().enumerate().filter(is_merged) {
@@ -221,7 +226,7 @@ impl SegmentedClip {
     /// Whether an object, or one that was merged into it, was found in a frame.
     pub(super) fn is_found_in(&self, index: usize, object: u8) -> bool {
         let objects = self.objects_of_found();
-        self.frames[index].found_labels().each().any(|(label, _)| objects[usize::from(label)] == object)
+        self.frames[index].found_labels().any(&|label| objects[usize::from(label)] == object)
     }
 
     /// For each label found automatically, its object. An object that was annotated before it was merged keeps its own annotations, and a

@@ -54,9 +54,10 @@ pub fn open_clip(clip: u32, frames: usize, mark_unknown: bool, saved: Option<Vec
 /// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
 #[wasm_bindgen(js_name = applyClip)]
 pub fn apply_clip(clip: u32, given: &JsValue) -> Result<JsValue, JsValue> {
-    let command = command(given)?;
+    let mut command = Some(command(given)?);
     with(clip, &mut |clip| {
-        let step = clip.apply(command.clone())?;
+        let Some(command) = command.take() else { return Ok(JsValue::NULL) };
+        let step = clip.apply(command)?;
         Ok(answer(Record::new().number("step", step_number(step)), clip, true))
     })
 }

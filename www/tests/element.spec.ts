@@ -74,7 +74,7 @@ test('a clip of files: the labels, objects and tracks of the package', async ({ 
   }, files.map(({ buffer }) => buffer.toString('base64')));
   expect(found.told.map(({ index }) => index)).toEqual([0, 1, 2, 3, 4]);
   found.told.forEach(({ labels }, index) => expect(differences(labels, expected[index]!)).toBe(0));
-  expect(found.stages).toEqual(['pairs of 5', 'labels of 5']);
+  expect(found.stages).toEqual(['pairs of 5']);
   expect(found.tracks.objects.map(({ id }) => id)).toEqual([...new Set(found.told.flatMap(({ ids }) => ids))]);
   expect(found.tracks.objects.length).toBeGreaterThan(0);
   expect(found).toMatchObject({ same: true, count: 5 });
@@ -191,8 +191,9 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
   });
 
   await test.step('frames that cannot be used are errors with a code', async () => {
-    const codes = await page.evaluate(async () => {
+    const { codes, before } = await page.evaluate(async () => {
       const element = document.createElement('veronese-segmenter');
+      element.setAttribute('quality', 'fast');
       document.body.append(element);
       const codes: string[] = [];
       const code = (): Promise<string> => new Promise((resolve) => element.addEventListener('error', ({ detail }) => resolve(detail.code), { once: true }));
@@ -205,12 +206,19 @@ test('frames of every kind; those that cannot be used; abort and removal; a form
       const told = code();
       element.src = URL.createObjectURL(new Blob(['no video']));
       codes.push(await told);
+      // The frames before one of them are done.
+      const before: unknown[] = [];
+      for (const type of ['frame', 'tracks', 'error'] as const) element.addEventListener(type, ({ detail }) => before.push('index' in detail ? detail.index : type));
+      const failed = code();
+      element.frames = [...clip(3), null!];
+      before.push(await failed, element.frameCount, element.checkValidity());
       // It goes on.
       const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve, { once: true }));
       element.frames = [first!, second!];
       await tracks;
-      return codes;
+      return { codes, before: before.slice(0, 7) };
     });
+    expect(before).toEqual([0, 1, 2, 'error', 'invalid-input', 3, false]);
     expect(codes).toEqual(['invalid-input', 'invalid-input', 'invalid-input', 'frame-size-mismatch', 'unreadable-image', 'invalid-input', 'unreadable-image', 'unreadable-video']);
   });
 
@@ -403,100 +411,121 @@ unwatched('says what happened, in words that a page may replace', async ({ page 
   await expect(element.getByRole('img')).toHaveAccessibleName('frame 1 of 3 with the masks of 1 object');
 });
 
-test('a clip takes corrections: the host may stop them, and undo them', async ({ page }) => {
+test('the clip of the element takes annotations: what it shows, its events and a form follow', async ({ page }) => {
   await openEmpty(page);
   const found = await page.evaluate(async () => {
-    const element = document.createElement('veronese-segmenter');
-    element.setAttribute('quality', 'fast');
-    document.body.append(element);
-    const done = (): Promise<void> => new Promise((resolve) => element.addEventListener('tracks', () => resolve(), { once: true }));
-    const codeOf = (promise: Promise<unknown>): Promise<string> => promise.then(() => '', ({ code }: { code: string }) => code);
-    const segmented = done();
+    const workers: Worker[] = [];
+    window.Worker = class extends Worker {
+      constructor(...given: ConstructorParameters<typeof Worker>) {
+        super(...given);
+        workers.push(this);
+      }
+    };
+    document.body.innerHTML = '<form><veronese-segmenter name="masks" quality="fast"></veronese-segmenter></form>';
+    const form = document.querySelector('form')!;
+    const element = document.querySelector('veronese-segmenter') as VeroneseSegmenterElement;
+    const once = (type: string): Promise<unknown> => new Promise((resolve) => element.addEventListener(type, resolve, { once: true }));
+    const codeOf = (step: PromiseLike<unknown>): Promise<string> => Promise.resolve(step).then(() => 'answered', ({ code }: { code: string }) => code);
+    const sizes = (): string => String(new FormData(form).getAll('masks').map((file) => (file as File).size));
+    const before = once('tracks');
     element.frames = clip(6);
-    const early = await codeOf(element.correct(0, new Uint8Array(96 * 64)));
-    await segmented;
-    const frames: number[] = [];
-    element.addEventListener('frame', ({ detail }) => frames.push(detail.index));
-    const shown = (): string => String(element.labels());
-    const before = shown();
-    const mask = (label: number): Uint8Array =>
+    const early = element.clip;
+    await before;
+    const opened = element.clip!;
+    const told: string[] = [];
+    for (const type of ['frame', 'tracks', 'error'] as const) {
+      element.addEventListener(type, ({ detail }) => told.push('index' in detail ? `${type} ${detail.index}` : type));
+    }
+    const [labels, files, ids] = [String(element.labels()), sizes(), () => element.tracks()!.objects.map(({ id }) => id)];
+    const map = (label: number): Uint8Array =>
       Uint8Array.from({ length: 96 * 64 }, (_, p) => {
         const [x, y] = [p % 96, Math.floor(p / 96)];
         return x >= 30 && x < 60 && y >= 20 && y < 44 ? label : 0;
       });
-    const ids = (): number[] | undefined => element.tracks()?.objects.map(({ id }) => id);
 
-    // The frame that is shown is right before the correction has spread.
-    const labels = mask(9);
-    const spreading = element.correct(0, labels);
-    labels.fill(0);
+    // The frame that is shown is right before the annotation has spread; the form waits until it has.
+    const annotated = once('tracks');
     let isSpread = false;
-    const spread = spreading.finally(() => (isSpread = true));
-    const first = await new Promise<[string, boolean]>((resolve) =>
-      element.addEventListener('show', () => resolve([shown(), isSpread || frames.length > 0]), { once: true }),
-    );
+    const step = opened.annotate({ frame: 0, labels: map(9) });
+    const spread = step.then((changes) => ((isSpread = true), [...new Set(changes.map(({ frame }) => frame))]));
+    await once('show');
+    const drawn = [String(element.labels()) === String(map(9)), isSpread, told.length, form.checkValidity()];
     const changed = await spread;
-    const corrected = { changed, told: frames.splice(0), ids: ids(), exact: shown() === String(mask(9)), first: first[0] === String(mask(9)), late: first[1] };
+    await annotated;
+    const after = { changed, told: told.splice(0), ids: ids(), valid: form.checkValidity(), carried: sizes() !== files };
 
-    // Stopped by a listener, by abort and by a mistake: nothing changes.
-    const after = shown();
-    const asked: unknown[] = [];
-    element.addEventListener('veronese-correction', (event) => (asked.push(event.detail.frame, event.detail.propagate), event.preventDefault()), { once: true });
-    const stopped = await element.correct(1, mask(5), { propagate: 'none' });
-    const aborted = codeOf(element.correct(0, mask(5)));
-    await new Promise((resolve) => element.addEventListener('progress', resolve, { once: true }));
-    element.abort();
-    const codes = [await aborted, await codeOf(element.correct(6, mask(5))), await codeOf(element.correct(0, new Uint8Array(5)))];
-    const unchanged = { asked, stopped, codes, told: frames.splice(0), ids: ids(), same: shown() === after, valid: element.checkValidity() };
-
-    // Undone by saying nothing; one after another; where they are to spread.
-    const nothing = new Uint8Array(96 * 64).fill(255);
-    await element.correct(0, nothing);
-    const back = { ids: ids(), same: shown() === before };
-    const [none, undone] = await Promise.all([element.correct(3, mask(7), { propagate: 'none' }), element.correct(3, nothing)]);
-    const alone = { none, undone };
-    // A box and a click.
-    const point = async (said: Parameters<typeof element.correct>[1]): Promise<unknown[]> => {
-      const changed = await element.correct(0, said);
-      const seen = [changed.includes(0), ids(), [...element.labels()!].every((label, p) => label !== 9 || (p % 96 >= 20 && p % 96 < 70))];
-      await element.correct(0, nothing);
-      return seen;
+    // Undone and done again: it is drawn, told and carried as it was.
+    const moved = async (what: 'undo' | 'redo'): Promise<unknown> => {
+      const tracks = once('tracks');
+      await opened[what]();
+      await tracks;
+      return { told: told.splice(0), ids: ids(), first: String(element.labels()) === labels, files: sizes() === files };
     };
-    const pointed = [await point({ label: 9, box: [20, 10, 50, 44] }), await point({ label: 9, click: [45, 30] })];
-    const outside = await codeOf(element.correct(0, { label: 9, click: [96, 0] }));
-    element.lock([1]);
-    const pixels = (): string => String(element.mask(1));
-    const object = pixels();
-    await element.correct(0, mask(9).map((label, p) => (label > 0 && p % 96 < 45 ? label : 255)));
-    const locked = pixels() === object;
-    const again = done();
-    element.frames = clip(3).values();
+    const undone = await moved('undo');
+    const redone = await moved('redo');
+    await moved('undo');
+
+    // A lock changes no frame; what fails, and what is aborted, changes nothing.
+    const locked = once('tracks');
+    await opened.lock([1]);
+    await locked;
+    const alone = told.splice(0);
+    const refused = await codeOf(opened.annotate({ frame: 0, object: 1, mask: map(1) }));
+    const wrong = await codeOf(opened.annotate({ frame: 6, labels: map(5) }));
+    const aborted = codeOf(opened.annotate({ frame: 0, labels: map(5) }));
+    await once('progress');
+    element.abort();
+    const codes = [refused, wrong, await aborted];
+    while (!element.checkValidity()) await new Promise((resolve) => setTimeout(resolve, 10));
+    const unchanged = { codes, told: told.splice(0), same: String(element.labels()) === labels && sizes() === files };
+
+    // An attribute that changes segments the same clip again, with what was annotated; a frame that is not shown is told.
+    const spoken = once('tracks');
+    await opened.annotate({ frame: 3, object: 7, mask: map(1), propagate: 'none' });
+    await spoken;
+    const again = once('tracks');
+    element.setAttribute('motions', '2');
     await again;
-    const stream = await codeOf(element.correct(0, mask(9)));
-    element.remove();
-    return { early, corrected, unchanged, alone, back, pointed, outside, locked, stream };
+    const kept = [element.clip === opened, ids(), opened.frames.map(({ annotated }) => annotated).indexOf(true)];
+
+    // All workers are lost: the clip goes on in another one.
+    told.splice(0);
+    for (const worker of workers) worker.dispatchEvent(new ErrorEvent('error', { message: 'gone' }));
+    const revived = once('tracks');
+    await opened.annotate({ frame: 0, object: 9, mask: new Uint8Array(96 * 64).fill(1, 0, 960), propagate: 'none' });
+    await revived;
+    const lost = [told.splice(0), element.labels()![0]];
+
+    // Other frames and removal close it.
+    element.frames = clip(2);
+    const closed = [element.clip, await codeOf(opened.labels(0))];
+    await once('tracks');
+    const second = element.clip!;
+    form.remove();
+    closed.push(element.clip, await codeOf(second.labels(0)));
+    document.body.append(element);
+    await once('tracks');
+    const third = element.clip !== second && element.frameCount === 2;
+    element.frames = clip(3).values();
+    await once('tracks');
+    return { early, drawn, after, undone, redone, alone, unchanged, kept, lost, closed, third, stream: element.clip };
   });
-  const all = [0, 1, 2, 3, 4, 5];
-  expect(found).toMatchObject({
-    early: 'invalid-input',
-    corrected: { told: all, ids: [9], exact: true, first: true, late: false },
-    unchanged: {
-      asked: [1, 'none'],
-      stopped: [],
-      codes: ['cancelled', 'invalid-option', 'invalid-option'],
-      told: [],
-      ids: [9],
-      same: true,
-      valid: true,
-    },
-    alone: { none: [3], undone: [3] },
-    back: { ids: [1], same: true },
-    pointed: [[true, [9], true], [true, [9], expect.any(Boolean)]],
-    outside: 'invalid-option',
-    locked: true,
-    stream: 'invalid-input',
+  const frames = [0, 1, 2, 3, 4, 5];
+  const told = [...frames.map((index) => `frame ${index}`), 'tracks'];
+  expect(found).toEqual({
+    early: undefined,
+    drawn: [true, false, 0, false],
+    after: { changed: frames, told, ids: [9], valid: true, carried: true },
+    undone: { told, ids: [1], first: true, files: true },
+    redone: { told, ids: [9], first: false, files: false },
+    alone: ['tracks'],
+    unchanged: { codes: ['object-locked', 'invalid-option', 'cancelled'], told: [], same: true },
+    kept: [true, [1, 7], 3],
+    lost: [['frame 0', 'tracks'], 9],
+    closed: [undefined, 'clip-closed', undefined, 'clip-closed'],
+    third: true,
+    stream: undefined,
   });
-  expect(found.corrected.changed).toEqual(all);
 });
 
 test('the keyboard steps through frames and chooses objects', async ({ page }) => {

@@ -44,8 +44,11 @@ async function* streamed(
   results: StreamResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const { call, transfer, maxSize, settings } = reading(() => parted(entriesOf(options, [...OPTIONS, 'signal', 'onProgress', 'transfer']), OPTIONS));
-  const { [Symbol.asyncIterator]: asynchronous, [Symbol.iterator]: synchronous } = reading(() => Object(source) as Partial<AsyncIterable<unknown> & Iterable<unknown>>);
-  if (typeof asynchronous !== 'function' && typeof synchronous !== 'function') throw invalidInput('the frames must be an iterable or async iterable of pixels');
+  const isIterable = reading(() => {
+    const { [Symbol.asyncIterator]: asynchronous, [Symbol.iterator]: synchronous } = Object(source) as Partial<AsyncIterable<unknown> & Iterable<unknown>>;
+    return typeof asynchronous === 'function' || typeof synchronous === 'function';
+  });
+  if (!isIterable) throw invalidInput('the frames must be an iterable or async iterable of pixels');
   const { signal } = call;
   const onProgress = call.onProgress as StreamOptions['onProgress'];
   if (signal?.aborted) throw cancelled(signal);

@@ -15,7 +15,7 @@ import { FORMATS, isFormat } from '../formats/encode.js';
 const SHORTEST_SIDE = 16;
 const LONGEST_LOOK_AHEAD = 8;
 
-/** By command who reads what is asked. */
+/** The reader of arguments of each command. */
 const READ = { pair, batch, clip, convert, points };
 
 type Values = ReturnType<typeof parsed>['values'];
@@ -27,7 +27,7 @@ export type CorrectionsCommand = Extract<ReturnType<typeof convert>, { name: 'co
 export type ClipCommand = ReturnType<typeof clip>;
 export type BatchCommand = ReturnType<typeof batch>;
 export type Command = { quiet?: boolean } & (
-  | { name: 'help'; of: CommandName | 'all' | undefined }
+  | { name: 'help'; topic: CommandName | 'all' | undefined }
   | { name: 'version' }
   | ReturnType<(typeof READ)[keyof typeof READ]>
 );
@@ -40,11 +40,11 @@ export function parseCommand(args: string[]): Command {
   const { values, positionals, tokens } = parsed(args);
   const [name, ...files] = positionals;
   if (values.version) return { name: 'version' };
-  if (name === undefined && values.help) return { name: 'help', of: args.includes('--help') ? 'all' : undefined };
-  if (name === 'help') return { name: 'help', of: files[0] === undefined ? undefined : commandNamed(files[0]) };
+  if (name === undefined && values.help) return { name: 'help', topic: args.includes('--help') ? 'all' : undefined };
+  if (name === 'help') return { name: 'help', topic: files[0] === undefined ? undefined : commandNamed(files[0]) };
   if (name === undefined) throw usage(`a command is missing${hint(undefined)}`);
   const command = commandNamed(name);
-  if (values.help) return { name: 'help', of: command };
+  if (values.help) return { name: 'help', topic: command };
   const own = optionsOf(command).map((option) => option.name);
   const given = tokens.filter((token) => token.kind === 'option');
   for (const { name: option, value } of given) {
@@ -107,6 +107,7 @@ function clip(values: Values, files: string[]) {
     markUnknown: values['mark-unknown'],
     subject: values.subject,
   };
+  if (lookAhead !== undefined && (masks ?? corrections) !== undefined) throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
   const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
   if (values.levels !== undefined && masks === undefined && corrections === undefined) throw usage("'--levels' needs '--masks' or '--corrections'");

@@ -3,13 +3,12 @@
 import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import type { AnnotationNote, Levels } from '../../types/formats.js';
-import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
-import { editsOf, isObjectNumber, RANGE } from '../calls/segmented/edits.js';
-import { checkUnlocked, isPropagation, isWithin, promptOf, SPREADS } from '../calls/segmented/annotations.js';
+import type { ClipAnnotation, ClipClick, ClipDeclaration } from '../../types/index.js';
 import { isListOf, isNumber, isObject, isWhole, UNLABELLED, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaledLabels, scaledSize } from '../common/scaling.js';
 import type { ClipCommand } from './arguments.js';
+import { checkUnlocked, type Edits, editsOf, isObjectNumber, isPropagation, type ObjectEdits, type Propagation, promptOf, RANGE, SPREADS, withMerged } from './clip-edits.js';
 import type { ClipFrames } from './clip-frames.js';
 import { UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
@@ -26,19 +25,33 @@ export const EDITS = 'edits.json';
 const FARTHEST = 1e5;
 
 /** The content of edits.json. */
-interface Edits {
-  edits: ClipEdits;
-  prompts: FullPrompt[];
+interface Content {
+  edits: Edits;
+  prompts: Prompt[];
   /** Of polygons: where an object is in a frame, and 0 where it is not. */
   outlines: Outline[];
   /** Frames, where there is a list of them. */
   accepted: number[] | undefined;
   /** By frame. */
-  propagate: Map<number, ClipPropagation>;
+  propagate: Map<number, Propagation>;
 }
 
-type Outline = Required<Pick<ClipCorrection, 'frame' | 'object' | 'labels'>>;
-type FullPrompt = Extract<ClipPrompt, { object: number }>;
+/** Labels of a frame. */
+interface Labelled {
+  frame: number;
+  labels: Uint8Array;
+}
+
+interface Outline extends Labelled {
+  object: number;
+}
+
+interface Prompt {
+  frame: number;
+  object: number;
+  clicks?: ClipClick[];
+  box?: [x: number, y: number, width: number, height: number];
+}
 
 /** The label images of a folder, by the names of their frames. */
 interface Images {
@@ -61,18 +74,15 @@ interface LabelImage {
 }
 
 /** The annotations of a folder. */
-interface Folder extends Edits, Images {
-  labels: ClipCorrection[];
+interface Folder extends Content, Images {
+  labels: Labelled[];
   sha256: string;
 }
 
 export interface Corrections {
-  masks: ClipCorrection[];
-  corrections: ClipCorrection[];
-  prompts: ClipPrompt[];
-  /** Frames. */
-  accepted: number[];
-  edits: ClipEdits;
+  declaration: ClipDeclaration & { annotations: ClipAnnotation[]; accepted: number[] };
+  /** Objects that are edited, and not annotated as well. */
+  edited: number[];
   /** The files of all. */
   paths: string[];
   /** Hash of the content of each folder that has annotations. */
@@ -90,40 +100,75 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
   const corrections = await read(command.corrections, paintedLabels);
   const both = [masks, corrections].filter((folder) => folder !== undefined);
   if (both.length === 0) return undefined;
-  const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
+  const ofBoth = (reason: string) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`);
+  const edits = editsOfBoth(both, ofBoth);
+  const [prompts, outlines] = [both.flatMap((folder) => folder.prompts), both.flatMap((folder) => folder.outlines)];
+  for (const list of [prompts, outlines]) {
+    const again = list.find(({ frame, object }, at) => list.findIndex((other) => other.frame === frame && other.object === object) < at);
+    if (again) throw ofBoth(`object ${again.object} is annotated in '${frames.files[again.frame]?.stem}' twice`);
+  }
+  const labels = both.flatMap((folder) => folder.labels);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
-  const spread = <T extends { frame: number }>(annotations: T[] = []) => annotations.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
-  const prompts = both.flatMap((folder) => folder.prompts);
-  const outlines = both.flatMap((folder) => folder.outlines);
-  const idle = [...propagate.keys()].find((frame) => ![...both.flatMap(({ labels }) => labels), ...prompts, ...outlines].some((each) => each.frame === frame));
+  const idle = [...propagate.keys()].find((frame) => ![...labels, ...prompts, ...outlines].some((each) => each.frame === frame));
   if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', which has no annotation`);
-  const edits = {
-    merge: all(({ merge }) => merge),
-    delete: [...all((edits) => edits.delete), ...all(({ background }) => background)],
-    locked: all(({ locked }) => locked),
-    names: { ...masks?.edits.names, ...corrections?.edits.names },
-  };
-  const { locked, numbers } = editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${EDITS}' of both folders: ${reason}`));
-  checkUnlocked(locked, numbers);
-  // What is merged into an object is not outside its outline either.
-  const merged = outlines.flatMap(({ frame, object: into, labels }) => {
-    const others = [...numbers.keys()].filter((object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object));
-    return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
-  });
+  const annotations: ClipAnnotation[] = [
+    ...(masks?.labels ?? []).map((each) => ({ ...each, own: true })),
+    ...(corrections?.labels ?? []),
+    ...[...outsideOf(outlines, edits), ...outlines].map(({ frame, object, labels }) => ({ frame, object, mask: labels.map((label) => (label === object ? 1 : label)) })),
+    ...prompts,
+  ];
+  const annotated = new Set([...[...labels, ...outlines].flatMap(({ labels }) => [...new Set(labels)]), ...prompts.map(({ object }) => object)]);
+  const edited = [...[...edits.numbers].flat(), ...edits.names.keys(), ...edits.locked].filter((object) => object > 0 && !annotated.has(object));
   return {
-    masks: spread(masks?.labels),
-    corrections: spread([...(corrections?.labels ?? []), ...merged, ...outlines]),
-    prompts: spread(prompts),
-    accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
-    edits,
+    declaration: {
+      ...declared(edits),
+      annotations: annotations.map((each) => ({ ...each, propagate: propagate.get(each.frame) })),
+      accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
+    },
+    edited: [...new Set(edited)].sort((one, other) => one - other),
     paths: both.flatMap(({ paths }) => paths),
     hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
     notes: both.flatMap(({ notes }) => notes),
   };
 }
 
+function editsOfBoth(both: readonly Folder[], wrong: (reason: string) => VeroneseError): ObjectEdits {
+  const all = <T>(read: (edits: Edits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
+  const joined = {
+    merge: all(({ merge }) => merge),
+    delete: [...all((edits) => edits.delete), ...all(({ background }) => background)],
+    locked: all(({ locked }) => locked),
+    names: Object.assign({}, ...both.map(({ edits }) => edits.names)),
+  };
+  const edits = editsOf(joined, wrong);
+  checkUnlocked(edits);
+  return edits;
+}
+
+/** What is merged into a deleted object is deleted. What is merged into a named one is part of it at once, and so protected as it is. */
+function declared({ numbers, names, locked }: ObjectEdits): ClipDeclaration {
+  const deleted = new Set([...numbers.keys()].filter((object) => numbers.get(object) === 0));
+  for (const _ of numbers) for (const [object, number] of numbers) if (deleted.has(number)) deleted.add(object);
+  const nameOf = (object: number) => names.get(object) ?? names.get(numbers.get(object) ?? object);
+  const named = withMerged(names.keys(), numbers);
+  return {
+    locked,
+    descriptions: Object.fromEntries(named.map((object) => [object, { name: nameOf(object) }])),
+    merged: [...numbers].filter(([object]) => !deleted.has(object)).map(([object, into]) => [into, object]),
+    deleted: [...deleted],
+  };
+}
+
+/** Where objects are not that are merged into an outlined one: outside its outline, as it is. */
+function outsideOf(outlines: readonly Outline[], { numbers }: ObjectEdits): Outline[] {
+  return outlines.flatMap(({ frame, object: into, labels }) => {
+    const others = [...numbers.keys()].filter((object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object));
+    return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
+  });
+}
+
 async function readFolder(folder: string, frames: ClipFrames, maxSize: number | undefined, found: Images): Promise<Folder> {
-  const labelled: ClipCorrection[] = [];
+  const labelled: Labelled[] = [];
   for (const { path, stem, ...image } of found.images) {
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
@@ -136,7 +181,7 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
     labelled.push({ frame, labels });
   }
   labelled.sort((one, other) => one.frame - other.frame);
-  const none: Edits = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
+  const none: Content = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
   const hasEdits = found.names.includes(EDITS);
   const content = hasEdits ? await readEdits(join(folder, EDITS), frames, maxSize) : none;
   const { edits, prompts, outlines, accepted, propagate } = content;
@@ -148,7 +193,7 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
     throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
   }
   const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
-  const hashes = [...labelled, ...outlines].map(({ frame, object, labels }: ClipCorrection) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
+  const hashes = [...labelled, ...outlines].map(({ frame, object, labels }: Labelled & Partial<Outline>) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
   const all = [hashes, edits, ...propagate, prompts, accepted];
   const paths = [...new Set([...found.names.map((name) => join(folder, name)), ...found.paths])];
   return { ...found, notes, ...content, labels: labelled, paths, sha256: sha256(JSON.stringify(all)) };
@@ -219,7 +264,7 @@ function namesIn(folder: string): string[] {
 }
 
 /** Frames are called by their names. */
-async function readEdits(path: string, frames: ClipFrames, maxSize: number | undefined): Promise<Edits> {
+async function readEdits(path: string, frames: ClipFrames, maxSize: number | undefined): Promise<Content> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
   editsOf(content, wrong, ['prompts', 'polygons', 'accepted', 'propagate', 'size']);
@@ -244,13 +289,13 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
   };
   const scale = own === undefined ? 1 : await scaleOf(own, frames, maxSize, wrong);
   // One after another: the first keeps its pixels.
-  const prompts: FullPrompt[] = [];
+  const prompts: Prompt[] = [];
   for (const { entry, frame, bad } of entriesOf('prompts', listed, ['clicks', 'box'])) {
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
     const prompt = scaledPrompt({ ...entry, frame }, scale);
-    if (!isWithin(promptOf(prompt, bad), await sizeOf())) throw bad('is not within the frame');
-    if (prompts.some((other) => other.frame === frame && other.object === prompt['object'])) throw bad(`is the second one of object ${String(prompt['object'])} in its frame`);
-    prompts.push(prompt as unknown as FullPrompt);
+    const object = promptOf(prompt, await sizeOf(), bad);
+    if (prompts.some((other) => other.frame === frame && other.object === object)) throw bad(`is the second one of object ${object} in its frame`);
+    prompts.push({ ...prompt, frame, object });
   }
   const outlines = new Map<string, Outline>();
   for (const { entry: { object, points }, frame, bad } of entriesOf('polygons', polygons, ['points'])) {
@@ -267,7 +312,7 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
   }
   const isName = (name: unknown): name is string => typeof name === 'string';
   if (accepted !== undefined && !isListOf(accepted, isName)) throw wrong("'accepted' must be a list of names of frames");
-  const spreads = Object.entries(propagate).map(([name, way]): [number, ClipPropagation] => {
+  const spreads = Object.entries(propagate).map(([name, way]): [number, Propagation] => {
     const frame = frameOf('propagate', name);
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];

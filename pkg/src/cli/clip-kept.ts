@@ -1,101 +1,103 @@
-// The pairs of an unfinished clip, and the state of a finished one: so that pairs are solved once, and that
-// accepted frames stay what they were. A file begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
+// The clip of an output folder: its journal, and beside it what the journal does not have: the frames and settings that it is of, and the
+// annotations that it has. A journal of another clip, or one that cannot be read, is begun anew.
 
-import { readdirSync, rmSync } from 'node:fs';
+import { rmSync } from 'node:fs';
 import { join } from 'node:path';
-import { deflateRawSync, inflateRawSync } from 'node:zlib';
+import type { Clip, ClipChange, Segmenter } from '../../types/index.js';
+import { VeroneseError } from '../common/errors.js';
+import { openFile } from '../entries/journal-file.js';
 import { HIDDEN } from './clip-folder.js';
-import type { FrameFile } from './clip-store.js';
-import { readWritten, sha256, writing } from './files.js';
+import type { ClipFrames } from './clip-frames.js';
+import { lookAt, makeFolder, readWritten, sha256, writeFailed, writing } from './files.js';
 import type { Output } from './output.js';
 
-const STATE = 'state';
-const PAIRS = '.pairs';
-const ACCEPTED = '.accepted';
-const OURS = /^state$|\.(pairs|accepted)$/;
-/** Length of the hash in front, bytes. */
-const HASH = 32;
+const KEY = `${HIDDEN}/key`;
+const LOG = `${HIDDEN}/log`;
+
+/** The content of the file beside the journal. */
+interface Key {
+  /** Hash of the frames and the settings of the masks. */
+  clip: string;
+  /** Hash of the annotations, and of the clip with them. */
+  annotated?: string;
+  /** What they have changed. */
+  changes?: readonly ClipChange[];
+}
 
 export class KeptClip {
+  readonly clip: Clip;
   readonly #output: Output;
-  readonly #folder: string;
-  readonly #frames: readonly FrameFile[];
-  /** For each frame a hash of the settings, of its content and of that of the frames before it. */
-  readonly #keys: string[] = [];
+  #key: Key;
 
-  /** `settings`: what decides how pairs are solved. */
-  constructor(output: Output, settings: object, frames: readonly FrameFile[]) {
+  private constructor(clip: Clip, output: Output, key: Key) {
+    this.clip = clip;
     this.#output = output;
-    this.#folder = join(output.folder, HIDDEN);
-    this.#frames = frames;
-    let key = sha256(JSON.stringify(settings));
-    for (const frame of frames) this.#keys.push((key = sha256(key + frame.sha256)));
+    this.#key = key;
   }
 
-  pairs(index: number): Uint8Array | undefined {
-    return this.#read(nameOf(index, PAIRS), this.#keys[index]);
-  }
-
-  keepPairs(index: number, pairs: Uint8Array): Promise<void> {
-    return this.#write(nameOf(index, PAIRS), this.#keys[index], pairs);
-  }
-
-  state(): Uint8Array | undefined {
-    return this.#read(STATE, this.#keys.at(-1));
-  }
-
-  /** The pairs are no longer needed. */
-  async keepState(state: Uint8Array): Promise<void> {
-    await this.#write(STATE, this.#keys.at(-1), state);
-    await this.#remove(/\.pairs$/);
-  }
-
-  /** The labels with which a frame was accepted, whatever the settings were. */
-  accepted(index: number): Uint8Array | undefined {
-    const packed = this.#read(nameOf(index, ACCEPTED), this.#frames[index]?.sha256);
-    return packed && new Uint8Array(inflateRawSync(packed));
-  }
-
-  /** Keeps labels of accepted frames, by index, and of no others. */
-  async keepAccepted(labels: ReadonlyMap<number, Uint8Array>): Promise<void> {
-    for (const [index, own] of labels) await this.#write(nameOf(index, ACCEPTED), this.#frames[index]?.sha256, deflateRawSync(own));
-    const names = new Set([...labels.keys()].map((index) => nameOf(index, ACCEPTED)));
-    await this.#remove(/\.accepted$/, names);
-  }
-
-  clear(): Promise<void> {
-    return this.#remove(OURS);
-  }
-
-  #read(name: string, key: string | undefined): Uint8Array | undefined {
-    try {
-      const file = readWritten(join(this.#folder, name)) ?? Buffer.alloc(0);
-      const content = new Uint8Array(file.subarray(HASH));
-      return file.subarray(0, HASH).equals(hashOf(key, content)) ? content : undefined;
-    } catch {
-      return undefined;
+  /** `settings`: what decides about the masks. */
+  static async open(segmenter: Segmenter, output: Output, frames: ClipFrames, settings: object, markUnknown: boolean): Promise<KeptClip> {
+    const own: Key = { clip: sha256(JSON.stringify({ settings, frames: frames.files.map(({ sha256 }) => sha256) })) };
+    const path = (name: string) => join(output.folder, name);
+    await writing(output.folder, () => {
+      output.add([HIDDEN]);
+      makeFolder(path(HIDDEN));
+      // A link would lead elsewhere.
+      if (lookAt(path(LOG))?.isFile() === false) rmSync(path(LOG));
+    });
+    const known = keyIn(path(KEY));
+    for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG)); ; isNew = true) {
+      const journal = await openFile(path(LOG)).catch((thrown: unknown) => {
+        const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
+        throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;
+      });
+      if (isNew) {
+        await journal.replace(new Uint8Array());
+        await write(output, own);
+      }
+      const clip = await segmenter.openClip({ length: frames.length, read: frames.read }, { journal, markUnknown }).catch((thrown: unknown) => {
+        if (isNew) throw thrown;
+        return undefined;
+      });
+      rmSync(path(`${LOG}.damaged`), { force: true });
+      const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
+      if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });
+      // The range of a frame that could not be read.
+      await clip?.close();
     }
   }
 
-  #write(name: string, key: string | undefined, content: Uint8Array): Promise<void> {
-    return writing(this.#output.folder, () => this.#output.write(`${HIDDEN}/${name}`, Buffer.concat([hashOf(key, content), content]), HIDDEN));
+  /** Removes what is kept. */
+  static clear(output: Output): Promise<void> {
+    const names = [KEY, ...['', '.veronese-lock', '.new', '.damaged'].map((ending) => LOG + ending)];
+    return writing(output.folder, () => names.forEach((name) => rmSync(join(output.folder, name), { force: true })));
   }
 
-  #remove(isOld: RegExp, kept: ReadonlySet<string> = new Set()): Promise<void> {
-    let names: string[] = [];
-    try {
-      names = readdirSync(this.#folder);
-    } catch {
-      // There is no folder.
-    }
-    return writing(this.#output.folder, () => names.filter((name) => isOld.test(name) && !kept.has(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
+  /** What these annotations have changed; undefined unless the clip has them, and no others. */
+  changes(annotations: unknown): readonly ClipChange[] | undefined {
+    return this.#key.annotated === this.#hash(annotations) ? (this.#key.changes ?? []) : undefined;
+  }
+
+  /** The clip has these annotations now. */
+  async annotated(annotations: unknown, changes: readonly ClipChange[]): Promise<void> {
+    this.#key = { ...this.#key, annotated: this.#hash(annotations), changes };
+    await write(this.#output, this.#key);
+  }
+
+  #hash(annotations: unknown): string {
+    const { frames, objects } = this.clip;
+    return sha256(JSON.stringify({ annotations, frames, objects }));
   }
 }
 
-function nameOf(index: number, ending: string): string {
-  return String(index).padStart(5, '0') + ending;
+function keyIn(path: string): Key | undefined {
+  try {
+    return JSON.parse(readWritten(path)?.toString() ?? '') as Key;
+  } catch {
+    return undefined; // Missing or damaged.
+  }
 }
 
-function hashOf(key: string | undefined, content: Uint8Array): Buffer {
-  return Buffer.from(sha256(Buffer.concat([Buffer.from(String(key)), content])), 'hex');
+function write(output: Output, key: Key): Promise<void> {
+  return writing(output.folder, () => output.write(KEY, JSON.stringify(key), HIDDEN));
 }

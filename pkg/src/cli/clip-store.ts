@@ -22,7 +22,7 @@ export interface ClipManifest extends Omit<ClipTracks, 'notes'> {
   /** Names of the frames' own files. */
   files: string[];
   /** The changes by corrections, where there are any. */
-  changes?: ClipChange[];
+  changes?: readonly ClipChange[];
   /** What was assumed, where something was. */
   notes?: readonly AnnotationNote[];
   settings: { overlay: boolean; show?: readonly string[]; [name: string]: unknown };
@@ -48,21 +48,33 @@ export class ClipStore {
     this.#settings = settings;
   }
 
-  /** The manifest of a finished run on the same frames with the same settings, if all files are there. */
+  /** The manifest of a finished run on the same frames with the same settings. */
   finished(frames: readonly FrameFile[]): ClipManifest | undefined {
-    return this.before(frames, this.#settings);
+    return this.#manifest(frames, this.#settings);
   }
 
-  /** The manifest of a finished run on the same frames, with any settings or these, if all files are there. */
-  before(frames: readonly FrameFile[], settings?: ClipManifest['settings']): ClipManifest | undefined {
-    const isThere = (path: string) => lookAt(join(this.#output.folder, path))?.isFile();
+  /** The manifest of a finished run on the same frames, with any settings, if all files are there. */
+  before(frames: readonly FrameFile[]): ClipManifest | undefined {
+    const manifest = this.#manifest(frames);
+    return manifest && this.#areThere(imagesOf(frames, manifest.settings)) ? manifest : undefined;
+  }
+
+  /** Whether all images of a frame are there, and what is shown of the clip. */
+  isThere(frame: FrameFile): boolean {
+    return this.#areThere(imagesOf([frame], this.#settings));
+  }
+
+  #manifest(frames: readonly FrameFile[], settings?: ClipManifest['settings']): ClipManifest | undefined {
     try {
       const manifest = JSON.parse(readWritten(join(this.#output.folder, TRACKS))?.toString() ?? '') as ClipManifest;
-      if (manifest.job !== jobOf(settings ?? manifest.settings, frames)) return undefined;
-      return imagesOf(frames, manifest.settings).every(isThere) ? manifest : undefined;
+      return manifest.job === jobOf(settings ?? manifest.settings, frames) ? manifest : undefined;
     } catch {
       return undefined; // Missing or foreign.
     }
+  }
+
+  #areThere(paths: readonly string[]): boolean {
+    return paths.every((path) => lookAt(join(this.#output.folder, path))?.isFile());
   }
 
   /** Checks the places of all files. Throws `file-exists`. */
@@ -94,7 +106,7 @@ export class ClipStore {
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the manifest. */
-  async end(frames: readonly FrameFile[], about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
+  async end(frames: readonly FrameFile[], about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: readonly ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
     const manifest: ClipManifest = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };

@@ -1,7 +1,7 @@
 // `clip`: writes the labels of each frame, prints a line of JSON for each, and writes the tracks at the end.
 
 import { join } from 'node:path';
-import type { Clip, ClipChange, ClipFrame, ClipProgress, Note, Segmenter as SegmenterType } from '../../types/index.js';
+import type { ClipAnnotation, ClipChange, ClipFrame, ClipTracks, Note, Segmenter } from '../../types/index.js';
 import { version } from '../calls/version.js';
 import { UNLABELLED } from '../common/checks.js';
 import { davisPalette } from '../common/palette.js';
@@ -25,6 +25,14 @@ import { oneForEach } from './threads.js';
 
 const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
 
+/** Frames as they are labelled, and what is known after them. */
+interface Labelled {
+  frames: AsyncIterable<ClipFrame>;
+  tracks: () => ClipTracks | Promise<ClipTracks>;
+  changes: readonly ClipChange[];
+  notes: Note[];
+}
+
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const { out, options, every, overlay: wanted, show, maxSize, force } = command;
@@ -35,43 +43,51 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const progress = new Passes(frames.length, io);
   const rate = command.frameRate ?? frames.times.frameRate;
   const showing = new Showing(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
+  let kept: KeptClip | undefined;
   try {
     const corrections = await readCorrections(command, frames);
     for (const each of corrections?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
     const store = new ClipStore(output, { ...options, every, maxSize, ...corrections?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
     const before = store.finished(frames.files);
-    if (before) {
-      // Masks may be the same ones in other files by now: of those the note above is right.
-      for (const each of before.notes ?? []) if (!each.code.startsWith('mask-')) note(io, each);
-      return await report(before, io);
-    }
+    const missing = frames.files.flatMap((file, index) => (store.isThere(file) ? [] : [index]));
+    if (before && missing.length === 0) return await report(before, io);
     store.check(frames.files, [...frames.paths, ...(corrections?.paths ?? [])]);
 
-    const kept = new KeptClip(output, { ...options, markUnknown: undefined, maxSize, software, range: frames.range }, frames.files);
-    const accepted = await acceptedAsSeen(out, corrections, frames, { store, kept });
-    // If this run is interrupted, the next one has them.
-    await kept.keepAccepted(accepted);
-    await store.begin();
-    const streams = options.lookAhead !== 'all' && !corrections;
-    const onProgress = progress.listener;
-    const segmented = streams
-      ? segmenter.segmentClip(frames, { ...options, onProgress })
-      : await corrected(segmenter, frames, command, corrections && { ...corrections, seen: accepted }, kept, onProgress);
-    for await (const frame of segmented) {
+    const { motions, quality, subject, markUnknown } = options;
+    const masks = { motions, quality, subject };
+    if (options.lookAhead !== 'all') await KeptClip.clear(output);
+    else kept = await KeptClip.open(segmenter, output, frames, { ...masks, maxSize, range: frames.range, software }, markUnknown);
+    const write = async (frame: ClipFrame) => {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted, show.length > 0 ? showing : undefined));
       progress.clear();
-      await print(io, jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
+      return stem;
+    };
+    if (kept && before && show.length === 0 && kept.changes(corrections?.hashes)) {
+      for await (const frame of labelled(kept, missing, progress)) await write(frame);
+      return await report(before, io);
+    }
+    let segmented: Labelled;
+    if (kept) {
+      kept.clip.subscribe((event) => event.type === 'progress' && progress.update(event));
+      await segment(kept, frames, masks);
+      segmented = await annotated(kept, frames, corrections, store.before(frames.files) && out, progress);
+    } else segmented = streamed(segmenter, frames, options, progress);
+    await store.begin();
+    for await (const frame of segmented.frames) {
+      const name = await write(frame);
+      await print(io, jsonLine({ frame: frame.index, name, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
     const { films, sheet } = await showing.end();
     if (films.length > 0 || sheet) await store.show(films, sheet);
-    const { notes = [], ...tracks } = segmented.tracks();
-    if (streams) await kept.clear();
-    const changes = await segmented.changes();
+    const { notes: reasons = [], ...tracks } = await segmented.tracks();
+    // Of one motion that was asked for, and of what a person has corrected, there is nothing to say.
+    const notes = corrections || motions === 1 ? [] : reasons;
+    const { changes } = segmented;
     if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
-    const found = [...frames.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
+    const found = [...frames.notes, ...segmented.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
     await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(corrections?.notes ?? []), ...found]);
     for (const each of found) note(io, each);
     for (const { name, object } of show) {
@@ -84,6 +100,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     segmenter.close();
     throw thrown;
   } finally {
+    await kept?.clip.close();
     showing.close();
     output.discard();
     progress.clear();
@@ -91,71 +108,77 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   }
 }
 
-/** A clip whose pairs are solved once and kept, with its corrections; of the frames up to the first bad one. */
-async function corrected(
-  segmenter: SegmenterType,
-  frames: ClipFrames,
-  { options }: ClipCommand,
-  given: (Corrections & { seen: ReadonlyMap<number, Uint8Array> }) | undefined,
-  kept: KeptClip,
-  onProgress: (progress: ClipProgress) => void,
-): Promise<Clip> {
-  const state = kept.state() ?? (await solved(segmenter, frames, options, kept, onProgress));
-  const length = frames.failure?.index ?? frames.length;
-  const isThere = ({ frame }: { frame: number }) => frame < length;
-  const [masks, corrections, prompts] = [given?.masks.filter(isThere), given?.corrections.filter(isThere), given?.prompts.filter(isThere)];
-  const accepted = given?.accepted.map((frame) => ({ frame, labels: given.seen.get(frame) })).filter(isThere);
-  const { markUnknown } = options;
-  const all = { masks, corrections, prompts, accepted, edits: given?.edits };
-  return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, ...all, onProgress });
-}
-
-/**
- * The labels of accepted frames as the person saw them: those of the last run that was finished here, or of one that was begun after it. A
- * frame without is accepted as it is found.
- */
-async function acceptedAsSeen(
-  out: string,
-  corrections: Corrections | undefined,
-  frames: ClipFrames,
-  { store, kept }: { store: ClipStore; kept: KeptClip },
-): Promise<Map<number, Uint8Array>> {
-  const seen = new Map<number, Uint8Array>();
-  if (!corrections || corrections.accepted.length === 0) return seen;
-  const before = store.before(frames.files);
-  for (const frame of corrections.accepted) {
-    const stem = before?.frames[frame];
-    const labels = stem === undefined ? kept.accepted(frame) : (await readLabels(join(out, LABELS, `${stem}.png`))).labels;
-    const mask = corrections.masks.find((mask) => mask.frame === frame);
-    if (labels) seen.set(frame, mask ? labelsUnder(mask.labels, labels) : labels);
+/** Segments the clip unless it has its masks; up to the first bad frame. */
+async function segment({ clip }: KeptClip, frames: ClipFrames, options: Pick<ClipCommand['options'], 'motions' | 'quality' | 'subject'>): Promise<void> {
+  if (clip.frames.every(({ hasMasks }) => hasMasks)) return;
+  try {
+    await clip.segment(options);
+  } catch (thrown) {
+    if (!frames.failure) throw thrown;
   }
-  return seen;
 }
 
-/** The labels that were seen of a frame, with a mask that may have been given since: it is about the objects that it names. */
-function labelsUnder(mask: Uint8Array, seen: Uint8Array): Uint8Array {
-  const named = new Set(mask);
-  return seen.map((label, p) => {
-    const given = mask[p] as number;
-    return given !== UNLABELLED && (given > 0 || named.has(label)) ? given : label;
-  });
+/** The clip with its annotations. `before`: the folder with the results of a finished run on these frames, if there is one. */
+async function annotated(kept: KeptClip, frames: ClipFrames, corrections: Corrections | undefined, before: string | undefined, progress: Passes): Promise<Labelled> {
+  const { clip } = kept;
+  const indices = clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? [index] : []));
+  let changes = indices.length > 0 ? kept.changes(corrections?.hashes) : [];
+  if (!changes) {
+    const { annotations = [], accepted = [], ...edits } = corrections?.declaration ?? {};
+    const isThere = (frame: number) => indices.includes(frame);
+    const stays = accepted.filter(isThere);
+    if (before !== undefined) await acceptAsSeen(kept, frames, stays, before);
+    changes = await clip.replaceAnnotations({ ...edits, annotations: annotations.filter(({ frame }) => isThere(frame)), accepted: stays });
+    await kept.annotated(corrections?.hashes, changes);
+  }
+  const notes = missingNotes(corrections?.edited ?? [], clip.objects.map(({ number }) => number));
+  return { frames: labelled(kept, indices, progress), tracks: () => clip.tracks(), changes, notes };
 }
 
-async function solved(
-  segmenter: SegmenterType,
-  frames: ClipFrames,
-  options: ClipCommand['options'],
-  kept: KeptClip,
-  onProgress: (progress: ClipProgress) => void,
-): Promise<Uint8Array | undefined> {
-  const hooks = { knownPairs: (index: number) => kept.pairs(index), onPairs: (index: number, pairs: Uint8Array) => kept.keepPairs(index, pairs) };
-  const solving = segmenter.segmentClip(frames, { ...options, ...hooks, onProgress });
-  // All pairs are solved before the first frame comes.
-  await solving.next();
-  const state = await solving.state();
-  await solving.return();
-  if (state && !frames.failure) await kept.keepState(state);
-  return state;
+/** Accepts frames with the labels that a person saw. If this run is interrupted, the next one finds them accepted. */
+async function acceptAsSeen({ clip }: KeptClip, { files }: ClipFrames, accepted: readonly number[], folder: string): Promise<void> {
+  const fresh = accepted.filter((frame) => !clip.frames[frame]?.accepted);
+  if (fresh.length === 0) return;
+  const annotations: ClipAnnotation[] = [];
+  for (const frame of fresh) {
+    const { labels } = await readLabels(join(folder, LABELS, `${files[frame]?.stem}.png`));
+    // A map is about the objects that it names; an eraser about all.
+    for (const map of [labels, labels.map((label) => (label === 0 ? 0 : UNLABELLED))]) annotations.push({ frame, labels: map, propagate: 'none' });
+  }
+  await clip.replaceAnnotations({ annotations, accepted: accepted.filter((frame) => !fresh.includes(frame)) });
+  await clip.accept(fresh);
+}
+
+/** The labels of frames, in order: the next frame is labelled while one is looked at. */
+async function* labelled({ clip }: KeptClip, indices: readonly number[], progress: Passes): AsyncGenerator<ClipFrame, void, undefined> {
+  const ask = (at: number) => {
+    const labels = indices[at] === undefined ? undefined : clip.labels(indices[at]);
+    labels?.catch(() => undefined);
+    return labels;
+  };
+  for (let at = 0, next = ask(0); next; at++) {
+    progress.update({ stage: 'labels', frame: indices[at] as number });
+    const frame = await next;
+    next = ask(at + 1);
+    yield frame;
+  }
+}
+
+function streamed(segmenter: Segmenter, frames: ClipFrames, { lookAhead, ...options }: ClipCommand['options'], progress: Passes): Labelled {
+  const source = async function* () {
+    for (let index = 0; index < frames.length; index++) yield await frames.read(index);
+  };
+  const onProgress = ({ frame }: { frame: number }) => progress.update({ stage: 'pairs', frame });
+  const stream = segmenter.segmentStream(source(), { ...options, lookAhead: Number(lookAhead), onProgress });
+  return { frames: stream, tracks: () => stream.tracks(), changes: [], notes: [] };
+}
+
+/** Says which edits change nothing. */
+function missingNotes(edited: readonly number[], objects: readonly number[]): Note[] {
+  const missing = edited.filter((object) => !objects.includes(object));
+  const there = objects.length > 0 ? `the objects are ${objects.join(', ')}` : 'there is no object';
+  const message = `edits of objects that are not there change nothing: ${missing.join(', ')}; ${there}`;
+  return missing.length > 0 ? [{ code: 'object-missing', message }] : [];
 }
 
 /** The progress bar of each pass over the frames. */
@@ -170,14 +193,14 @@ class Passes {
     this.#io = io;
   }
 
-  readonly listener = ({ frame, stage }: ClipProgress): void => {
+  update({ stage, frame }: { stage: string; frame: number }): void {
     if (stage !== this.#stage) {
-      // Corrections come to some frames, and to some of them more than once.
-      this.#bar = new ProgressBar(stage === 'corrections' ? undefined : this.#count, this.#io.stderr, { unit: 'frames', title: `${stage}: ` });
+      // Annotations come to some frames, and to some of them more than once.
+      this.#bar = new ProgressBar(stage === 'annotations' ? undefined : this.#count, this.#io.stderr, { unit: 'frames', title: `${stage}: ` });
     }
     this.#stage = stage;
     this.#bar?.update({ done: frame, skipped: 0, failed: 0 });
-  };
+  }
 
   clear(): void {
     this.#bar?.clear();
@@ -200,7 +223,9 @@ function rateNote({ frames }: ClipCommand): Note {
 }
 
 /** Prints what the run that wrote the manifest printed. */
-async function report({ frames, objects, changes = [] }: ClipManifest, io: Io): Promise<void> {
+async function report({ frames, objects, changes = [], notes = [] }: ClipManifest, io: Io): Promise<void> {
+  // Masks may be the same ones in other files by now: what is true of those was said before.
+  for (const each of notes) if (!each.code.startsWith('mask-')) note(io, each);
   for (const [frame, name] of frames.entries()) {
     const seen = objects.filter((object) => object.frames.some((entry) => entry.frame === frame));
     await print(io, jsonLine({ frame, name, objects: seen.map(({ id }) => id) }));

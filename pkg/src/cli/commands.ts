@@ -96,7 +96,7 @@ export interface CommandText {
   more?: string;
   options: readonly OptionName[];
   /** What options are for, where this command has words of its own. */
-  texts?: { readonly [option in OptionName]?: string };
+  texts: { readonly [option in OptionName]?: string };
   examples: readonly (readonly [purpose: string, line: string])[];
 }
 
@@ -176,7 +176,7 @@ export const isCommand = (name: string): name is CommandName => Object.hasOwn(CO
 
 /** The options of a command, those of all commands last. */
 export function optionsOf(command: CommandName): (Option & { name: OptionName })[] {
-  const { options, texts = {} }: CommandText = COMMANDS[command];
+  const { options, texts }: CommandText = COMMANDS[command];
   return [...options, ...ALWAYS].map((name) => ({ ...OPTIONS[name], name, text: texts[name] ?? OPTIONS[name].text }));
 }
 

@@ -23,7 +23,7 @@ export async function convert(command: ConvertCommand, output: Output, io: Io): 
   checkOptions(command, kind);
   const { frames, metadata, count } = await opened(command, kind);
   // Names that depend on frames are checked when they are written.
-  if (kind !== 'pair') await output.check(to.flatMap((name) => FORMATS[name].files));
+  if (kind !== 'pair') output.check(to.flatMap((name) => FORMATS[name].files));
   const files = await output.stage(async (write) => {
     for (const name of to) {
       const clip = ['cvat-video', 'label-studio-video'].includes(name) ? (video ?? metadata.clip) : metadata.clip;

@@ -38,7 +38,7 @@ export async function main(args: string[], io: Io): Promise<number> {
 
 async function answer(command: Exclude<Command, BatchCommand | ClipCommand>, io: Io): Promise<string> {
   const outputIn = (folder: string, { force }: { force: boolean }, isInput = false) => new Output(folder, { force, isInput, signal: io.signal });
-  if (command.name === 'help') return (await import('./help.js')).help(command.of, heading(io));
+  if (command.name === 'help') return (await import('./help.js')).help(command.topic, heading(io));
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') {
     const folder = command.out ?? command.folder;

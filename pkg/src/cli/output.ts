@@ -69,8 +69,8 @@ export class Output {
     const fresh = paths.filter((path) => this.#listed.get(keyOf(path)) !== path);
     if (this.#hasList && fresh.length === 0) return;
     for (const path of fresh) this.#listed.set(keyOf(path), path);
-    if (this.#hasList) appendFileSync(join(this.folder, LIST), fresh.map((path) => `\n${path}`).join(''));
-    else this.#move(LIST, [HEADER, ...fresh].join('\n'));
+    if (this.#hasList) appendFileSync(join(this.folder, LIST), fresh.map((path) => `\n${path}\n`).join(''));
+    else this.#move(LIST, [HEADER, ...fresh, ''].join('\n'));
     this.#hasList = true;
   }
 
@@ -78,7 +78,7 @@ export class Output {
   settle(): void {
     this.#readList();
     const there = [...this.#listed.values()].filter((path) => lookAt(join(this.folder, path)));
-    this.#move(LIST, [HEADER, ...there.sort()].join('\n'));
+    this.#move(LIST, [HEADER, ...there.sort(), ''].join('\n'));
   }
 
   /** Writes a file at once: no signal comes in between. `listed`: a folder that is listed as a whole, with the file in it. */

@@ -39,18 +39,18 @@ function say(stderr: Stderr, kind: keyof typeof KINDS, sentence: string): void {
   stderr.write(`${begin} ${sentence.replace(/\s+/g, ' ').trim()}\n`);
 }
 
-/** Of what ended the work. */
+/** Prints the error that ended the work. */
 export function complain({ stderr }: Io, thrown: unknown): void {
   const { code, message } = veroneseError(thrown);
   say(stderr, 'error', `${code}: ${message}`);
 }
 
-/** Of what does not end it. */
+/** Prints what does not end it. */
 export function warn({ stderr }: Io, sentence: string): void {
   if (!stderr.quiet) say(stderr, 'warning', sentence);
 }
 
-/** Of what was assumed. */
+/** Prints what was assumed. */
 export function note({ stderr }: Io, { message }: { message: string }): void {
   if (!stderr.quiet) say(stderr, 'note', message);
 }

@@ -1,188 +1,221 @@
-// A clip in the element: frames of any kind for `segmentClip`, the pictures and masks of those that are done, a timeline. Loaded
-// when there is a clip.
+// A clip in the element: the open clip or the stream, the frame that is shown, what is told of its changes. Loaded when there is a clip.
 
-import type { ClipFrames, FrameSource, VeroneseSegmenterMessages } from '../../types/element-class.js';
-import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
-import { Tracks } from '../calls/clip/tracks.js';
+import type { ClipFrames, ElementClipProgress, VeroneseSegmenterMessages } from '../../types/element-class.js';
+import type { Clip, ClipEvent, ClipFrame, ClipStream, ClipTracks, Pixels, SegmenterPool, SegmentOptions, StreamSource } from '../../types/index.js';
+import { type ClipSource, sourceOf } from './clip-source.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
-import { type Place, pixelsOf } from './sources.js';
-import { Video } from './video.js';
+import type { Place } from './sources.js';
+import { Timeline } from './timeline.js';
 import { part } from './view.js';
 
-/** Of a clip that plays, milliseconds. */
-const FRAME_TIME = 40;
-
-/** The source of a clip's frames. */
-interface Source {
-  /** For `segmentClip`. */
-  frames: ClipSource;
-  /** Number of frames, if it is known. */
-  length?: number;
-  /** Reads a frame that was given to `segmentClip` already, or any frame of those that can be read again. */
-  picture: (index: number) => Promise<Pixels>;
-  /** Of the frames, once one has been read. */
-  size: { width: number; height: number };
-  close?: () => void;
-}
-
-/** A frame without its labels, which are kept packed. */
-type FoundFrame = Omit<ClipFrame, 'labels'>;
+type Pool = Pick<SegmenterPool, 'openClip' | 'segmentStream'>;
 
 export interface ShownFrame {
   index: number;
   /** Number of frames, as far as it is known. */
   of: number;
   picture: Pixels;
-  labels: Uint8Array;
+  /** Undefined while the frame has no masks. */
+  labels: Uint8Array | undefined;
 }
 
-/** Called when a clip can show a frame, or cannot. */
 interface Listeners {
+  /** A frame is to be drawn, or drawn again. */
   show: (frame: ShownFrame) => void;
+  /** A frame has other labels than before. */
+  frame: (frame: ClipFrame) => void;
+  /** All frames with other labels have been told. */
+  masks: () => Promise<void>;
+  /** A step has taken effect. */
+  tracks: (tracks: ClipTracks) => void;
+  progress: (progress: ElementClipProgress) => void;
+  /** {@link ElementClip.isBusy} may have changed. */
+  change: () => void;
   fail: (thrown: unknown) => void;
 }
 
 export class ElementClip {
-  readonly timeline = part('input', 'timeline');
+  readonly timeline: Timeline;
   readonly progress = part('progress', 'progress');
-  /** A button that plays the frames, and the number of the one that is shown. */
-  readonly controls = part('div', 'controls');
-  readonly #play = part('button', 'play');
-  readonly #number = part('span', 'number');
-  #plays = false;
-  readonly #done: Packed[] = [];
-  readonly #found: FoundFrame[] = [];
+  /** What it was opened with. */
+  readonly given: ClipFrames | string;
+  readonly #place: Place;
   readonly #texts: () => VeroneseSegmenterMessages;
   readonly #listeners: Listeners;
-  #source: Source | undefined;
-  #clip: Clip | undefined;
-  /** The state of a clip whose frames are all done and can be read again. */
-  #state: Uint8Array | undefined;
-  #isCorrected = false;
+  readonly #ending = new AbortController();
+  #source: ClipSource | undefined;
+  /** Undefined for a stream, and until it is open. */
+  clip: Clip | undefined;
+  #stream: ClipStream | undefined;
+  /** The frames of a stream that are done. */
+  readonly #done: Packed[] = [];
+  /** Revisions of the frames as listeners know them. */
+  readonly #told: number[] = [];
+  /** Masks as files, until they change. */
+  readonly #files = new Map<number, Promise<File>>();
+  #tracks: ClipTracks = { objects: [], background: [], dropped: 0 };
+  /** Until the listeners know of all that has changed. */
+  #telling: Promise<void> | undefined;
+  /** Whether something has changed since they began to be told. */
+  #isBehind = false;
+  /** What there is to tell besides frames: a step that has taken effect, or steps that were undone or done again. */
+  #news: 'settled' | 'moved' | undefined;
+  /** Calls of {@link segment} that have not ended. */
+  #segmenting = 0;
   #current = 0;
+  /** Whether the frame that is shown has other labels since. */
+  #isStale = false;
+  #picture: { index: number; pixels: Promise<Pixels> } | undefined;
   /** Until the frame that is wanted is shown. */
   #showing: Promise<void> | undefined;
-  #closed = false;
 
-  constructor(texts: () => VeroneseSegmenterMessages, listeners: Listeners) {
+  constructor(given: ClipFrames | string, base: string, texts: () => VeroneseSegmenterMessages, listeners: Listeners) {
+    this.given = given;
+    this.#place = { base, signal: this.#ending.signal };
     this.#texts = texts;
     this.#listeners = listeners;
-    this.timeline.type = 'range';
-    this.timeline.min = this.timeline.max = this.timeline.value = '0';
-    this.timeline.addEventListener('input', (event) => {
-      // Seen from outside it would be an input of the element, whose value it does not change.
-      event.stopPropagation();
-      this.show(this.timeline.valueAsNumber);
-    });
-    this.#play.type = 'button';
-    this.#play.addEventListener('click', () => (this.#plays ? this.#pause() : void this.#run()));
-    // The slider says the same.
-    this.#number.ariaHidden = 'true';
-    this.controls.append(this.#play, this.#number);
+    this.timeline = new Timeline(this, texts);
     this.name();
   }
 
-  /** Shows frame after frame, from the first one where the last one is shown, until a person stops it or there are no more. */
-  async #run(): Promise<void> {
-    this.#plays = true;
-    this.#mark();
-    if (this.#current === this.length - 1) this.show(0);
-    while (this.#plays && !this.#closed) {
-      await Promise.all([this.shown(), new Promise((resolve) => setTimeout(resolve, FRAME_TIME))]);
-      if (this.#current >= this.length - 1) this.#pause();
-      else if (this.#plays) this.show(this.#current + 1);
-    }
-  }
-
-  #pause(): void {
-    this.#plays = false;
-    this.#mark();
-  }
-
-  set disabled(disabled: boolean) {
-    this.timeline.disabled = this.#play.disabled = disabled;
+  get #isClosed(): boolean {
+    return this.#ending.signal.aborted;
   }
 
   /** Names the slider and the progress. */
   name(): void {
-    this.timeline.setAttribute('aria-label', this.#texts().timeline);
     this.progress.setAttribute('aria-label', this.#texts().progress);
-    this.#mark();
+    this.timeline.mark();
   }
 
-  /** Number of frames that are done. */
+  /** Number of frames up to the last one with masks. */
   get length(): number {
-    return this.#done.length;
+    return this.clip ? this.clip.frames.reduce((length, { hasMasks }, index) => (hasMasks ? index + 1 : length), 0) : this.#done.length;
   }
 
-  /** Whether frames come once, as those of a camera. */
-  get streams(): boolean {
-    return this.#source?.length === undefined;
+  /** Whether steps have not taken effect, or listeners do not know all that has. */
+  get isBusy(): boolean {
+    return this.#telling !== undefined || (this.clip?.steps.waiting ?? 0) > 0;
   }
 
-  async open(given: ClipFrames | string, place: Place): Promise<void> {
-    this.#source = await sourceOf(given, place);
+  /** Those that listeners know; of a stream those of the frames that are done. */
+  get tracks(): ClipTracks {
+    return this.#stream?.tracks() ?? this.#tracks;
   }
 
-  /** The first frame, before it has masks. Frames that come once are not taken for it. */
-  async poster(): Promise<Pixels | undefined> {
-    const { length, picture } = this.#source as Source;
-    if (length === undefined) return undefined;
-    return length > 0 ? picture(0) : undefined;
-  }
-
-  /** Yields each frame when it can be shown. `begin` begins to segment frames. */
-  async *segment(begin: (frames: ClipSource) => Clip): AsyncGenerator<ClipFrame, void, undefined> {
-    const { frames, size } = this.#source as Source;
-    const clip = begin(frames);
-    this.#clip = clip;
-    for await (const frame of clip) {
-      const { labels, ...found } = frame;
-      this.#done.push(await packed(labels, size.width, size.height));
-      this.#found.push(found);
-      this.#mark();
-      yield frame;
+  /** Opens the source, and the clip unless the frames are a stream. The first frame is shown meanwhile. */
+  async open(pool: Pool): Promise<void> {
+    const source = await sourceOf(this.given, this.#place);
+    if (this.#isClosed) return source.close?.();
+    this.#source = source;
+    const { frames } = source;
+    if (!frames) return;
+    const opening = pool.openClip(frames).then((clip) => {
+      if (this.#isClosed) return clip.close();
+      this.clip = clip;
+      clip.subscribe((event) => this.#hear(event));
+    });
+    // A frame that cannot be read is the error before it.
+    opening.catch(() => undefined);
+    if (frames.length > 0) {
+      const first = await this.#pixels(0);
+      if (!this.#isClosed) this.#draw(0, first, undefined);
     }
-    this.#state = await clip.state();
+    await opening;
   }
 
-  /** Whether all frames are done and can be read again. */
-  get takesCorrections(): boolean {
-    return this.#state !== undefined;
+  /** Segments all frames. When it ends, listeners know of all frames with masks, also if it fails. */
+  async segment(pool: Pool, options: SegmentOptions & { signal: AbortSignal }): Promise<ClipTracks> {
+    const { clip } = this;
+    if (!clip) return this.#follow(pool.segmentStream(this.#source?.stream as StreamSource, { ...options, onProgress: this.#listeners.progress }));
+    this.progress.removeAttribute('value');
+    this.#segmenting += 1;
+    try {
+      await clip.segment(options);
+      this.#news = undefined;
+    } finally {
+      this.#segmenting -= 1;
+      await this.#tell();
+    }
+    return (this.#tracks = await clip.tracks());
   }
 
-  /** Yields the frames that change, when all of them have: before, the clip stays as it was. `begin` begins to correct frames. */
-  async *correct(begin: (frames: ClipSource, state: Uint8Array) => Clip): AsyncGenerator<ClipFrame, void, undefined> {
-    const { frames, size } = this.#source as Source;
-    const clip = begin(frames, this.#state as Uint8Array);
-    const changed: [FoundFrame, Packed][] = [];
-    for await (const { labels, ...found } of clip) changed.push([found, await packed(labels, size.width, size.height)]);
-    this.#state = (await clip.state()) as Uint8Array;
-    this.#isCorrected = true;
-    for (const [found, done] of changed) [this.#found[found.index], this.#done[found.index]] = [found, done];
-    for (const [found, done] of changed) yield { ...found, labels: await unpacked(done) };
+  async #follow(stream: ClipStream): Promise<ClipTracks> {
+    this.#stream = stream;
+    for await (const frame of stream) {
+      this.#done.push(await packed(frame.labels, frame.width, frame.height));
+      this.timeline.mark();
+      this.#listeners.frame(frame);
+      // The latest frame is shown, unless a person looks at an earlier one.
+      if (frame.index === 0 || this.#current === frame.index - 1) this.show(frame.index);
+    }
+    await this.shown();
+    await this.#listeners.masks();
+    return stream.tracks();
   }
 
-  /** Shows the labels that a frame has while a correction spreads, if it is the frame that is wanted. */
-  async preview({ index, labels }: ClipFrame): Promise<void> {
-    const { length = this.length, picture } = this.#source as Source;
-    const shown = await picture(index);
-    if (index === this.#current && !this.#closed) this.#listeners.show({ index, of: length, picture: shown, labels });
+  #hear(event: ClipEvent): void {
+    if (this.#isClosed) return;
+    if (event.type === 'progress') this.#report(event);
+    if (event.type === 'frames') {
+      for (const index of event.frames) this.#files.delete(index);
+      this.#isStale ||= event.frames.includes(this.#current);
+      if (this.#isStale) this.show(this.#current);
+      this.timeline.mark();
+    }
+    const isSettled = event.type === 'settled';
+    // What is undone or done again is no step of its own.
+    const isMoved = event.type === 'frames' && this.clip?.steps.waiting === 0 && this.#segmenting === 0;
+    if (isSettled && !event.error) this.#news = 'settled';
+    else if (isMoved) this.#news ??= 'moved';
+    if (isSettled || isMoved) void this.#tell();
+    this.#listeners.change();
   }
 
-  report({ frame, of, stage }: ClipProgress): void {
-    // The pairs are nearly all the work.
-    if (of !== undefined) this.progress.value = stage === 'pairs' ? frame / of : 1;
+  #report({ stage, frame, done, of }: Extract<ClipEvent, { type: 'progress' }>): void {
+    if (of !== undefined) this.progress.value = done / of;
+    this.#listeners.progress({ stage, frame, done, of });
   }
 
-  /** The objects of the frames that are done. */
-  tracks(): ClipTracks {
-    const found = this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
-    if (!this.#isCorrected) return found;
-    const tracks = new Tracks();
-    tracks.dropped = found.dropped;
-    for (const found of this.#found) tracks.add(found);
-    return tracks.value();
+  /** Tells listeners what has changed; resolves when they know. */
+  #tell(): Promise<void> {
+    this.#isBehind = true;
+    return (this.#telling ??= this.#tellAll(this.clip as Clip));
+  }
+
+  async #tellAll(clip: Clip): Promise<void> {
+    let tracks: ClipTracks | undefined;
+    try {
+      for (let isChanged = false; this.#isBehind && !this.#isClosed; ) {
+        this.#isBehind = false;
+        isChanged = (await this.#tellFrames(clip)) || isChanged;
+        await this.shown();
+        await this.#listeners.masks();
+        const isNew = this.#news === 'settled' || (this.#news === 'moved' && isChanged);
+        if (isNew && this.#segmenting === 0) tracks = await clip.tracks();
+      }
+    } catch (thrown) {
+      if (!this.#isClosed) this.#listeners.fail(thrown);
+    }
+    this.#telling = undefined;
+    if (this.#isClosed) return;
+    if (this.#segmenting === 0) this.#news = undefined;
+    if (tracks) this.#listeners.tracks((this.#tracks = tracks));
+    this.#listeners.change();
+  }
+
+  /** Returns whether there were some. */
+  async #tellFrames(clip: Clip): Promise<boolean> {
+    let isChanged = false;
+    for (const [index, { hasMasks, revision }] of clip.frames.entries()) {
+      if ((this.#told[index] ?? 0) === revision) continue;
+      isChanged = true;
+      const frame = hasMasks ? await clip.labels(index) : undefined;
+      // Another step may be spreading to it, and may be cancelled.
+      this.#told[index] = clip.steps.waiting > 0 ? -1 : revision;
+      if (frame) this.#listeners.frame(frame);
+    }
+    return isChanged;
   }
 
   /** Index of the frame that is shown, or will be once it is read. */
@@ -193,7 +226,7 @@ export class ElementClip {
   /** Shows a frame, or the one that is done and nearest to it. Of those that are asked for while one is read, the latest is shown. */
   show(index: number): void {
     this.#current = Math.max(0, Math.min(this.length - 1, Math.trunc(index) || 0));
-    this.#mark();
+    this.timeline.mark();
     this.#showing ??= this.#showLatest();
   }
 
@@ -203,84 +236,62 @@ export class ElementClip {
   }
 
   async #showLatest(): Promise<void> {
-    for (let index = -1; index !== this.#current && !this.#closed; ) {
+    for (let index = -1; (index !== this.#current || this.#isStale) && !this.#isClosed; ) {
       index = this.#current;
+      this.#isStale = false;
       try {
-        const [picture, labels] = await Promise.all([(this.#source as Source).picture(index), unpacked(this.#done[index] as Packed)]);
-        if (!this.#closed) this.#listeners.show({ index, of: this.#source?.length ?? this.length, picture, labels });
+        const [picture, labels] = await Promise.all([this.#pixels(index), this.#labels(index)]);
+        if (!this.#isClosed) this.#draw(index, picture, labels);
       } catch (thrown) {
-        if (!this.#closed) this.#listeners.fail(thrown);
+        if (!this.#isClosed) this.#listeners.fail(thrown);
       }
     }
     this.#showing = undefined;
   }
 
-  #mark(): void {
-    this.timeline.max = String(Math.max(0, this.length - 1));
-    this.timeline.value = String(this.#current);
-    this.#number.textContent = this.#texts().time(this.#current + 1, this.length);
-    this.timeline.setAttribute('aria-valuetext', this.#number.textContent);
-    this.#play.textContent = this.#plays ? this.#texts().pause : this.#texts().play;
+  #draw(index: number, picture: Pixels, labels: Uint8Array | undefined): void {
+    this.#listeners.show({ index, of: this.#source?.frames?.length ?? this.length, picture, labels });
   }
 
-  /** The masks that are done, as `veronese clip` names those of a video. */
-  files(): File[] {
-    return this.#done.map((done, index) => fileOf(done, `${String(index).padStart(5, '0')}.png`));
+  async #labels(index: number): Promise<Uint8Array | undefined> {
+    if (this.clip?.frames[index]?.hasMasks) return (await this.clip.labels(index)).labels;
+    const done = this.#done[index];
+    return done && unpacked(done);
+  }
+
+  /** The pixels of a frame. The last ones are kept: its labels change while an annotation spreads. */
+  #pixels(index: number): Promise<Pixels> {
+    if (this.#picture?.index === index) return this.#picture.pixels;
+    // A copy: whoever reads the frames may have one buffer for all.
+    const pixels = (this.#source as ClipSource).picture(index).then(({ data, width, height }) => ({ data: data.slice(), width, height }));
+    const picture = { index, pixels };
+    this.#picture = picture;
+    pixels.catch(() => {
+      if (this.#picture === picture) this.#picture = undefined;
+    });
+    return pixels;
+  }
+
+  /** The masks, as `veronese clip` names those of a video. */
+  files(): Promise<File[]> {
+    const named = (index: number, masks: Packed) => fileOf(masks, `${String(index).padStart(5, '0')}.png`);
+    const { clip } = this;
+    if (!clip) return Promise.resolve(this.#done.map((done, index) => named(index, done)));
+    const file = (index: number) => {
+      const made = this.#files.get(index) ?? clip.labels(index).then(async ({ labels, width, height }) => named(index, await packed(labels, width, height)));
+      this.#files.set(index, made);
+      // It is tried again.
+      made.catch(() => this.#files.delete(index));
+      return made;
+    };
+    return Promise.all(clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? file(index) : [])));
   }
 
   close(): void {
-    this.#closed = true;
-    this.timeline.remove();
-    this.controls.remove();
+    this.#ending.abort();
+    void this.clip?.close();
+    this.timeline.close();
     this.progress.remove();
     this.#source?.close?.();
   }
-}
-
-async function sourceOf(given: ClipFrames | string, place: Place): Promise<Source> {
-  const size = { width: 0, height: 0 };
-  const measured = async (frame: Promise<Pixels>) => {
-    const pixels = await frame;
-    [size.width, size.height] = [pixels.width, pixels.height];
-    return pixels;
-  };
-  const decoded = (index: number, source: FrameSource) => measured(pixelsOf(`frame ${index}`, source, place));
-  if (typeof given === 'string') {
-    const video = new Video(new URL(given, place.base).href);
-    await video.open();
-    return { ...again(video.length, (index) => measured(video.read(index))), size, close: () => video.close() };
-  }
-  if (Array.isArray(given) || 'read' in Object(given)) {
-    const frames = Array.isArray(given) ? listed(given.slice()) : (given as Readable);
-    return { ...again(frames.length, async (index) => decoded(index, await frames.read(index))), size };
-  }
-  const each = given as AsyncIterable<FrameSource>;
-  const isIterable = Symbol.asyncIterator in Object(each) || Symbol.iterator in Object(each);
-  const pictures: Promise<Blob>[] = [];
-  async function* once() {
-    for await (const frame of each) {
-      const pixels = await decoded(pictures.length, frame);
-      pictures.push(pictureOf(pixels));
-      yield pixels;
-    }
-  }
-  // `segmentClip` refuses frames that are no source.
-  return { frames: isIterable ? once() : (given as never), picture: async (index) => decoded(index, await (pictures[index] as Promise<Blob>)), size };
-}
-
-function again(length: number, read: (index: number) => Promise<Pixels>): Pick<Source, 'frames' | 'length' | 'picture'> {
-  return { frames: { length, read }, length, picture: read };
-}
-
-type Readable = Extract<ClipFrames, { read: unknown }>;
-
-function listed(frames: FrameSource[]): Readable {
-  return { length: frames.length, read: (index) => frames[index] as FrameSource };
-}
-
-/** A frame that comes once, kept to be shown again: lossy, since nothing is computed from it. */
-function pictureOf({ data, width, height }: Pixels): Promise<Blob> {
-  const canvas = new OffscreenCanvas(width, height);
-  canvas.getContext('2d')?.putImageData(new ImageData(new Uint8ClampedArray(data), width, height), 0, 0);
-  return canvas.convertToBlob({ type: 'image/webp', quality: 0.9 });
 }

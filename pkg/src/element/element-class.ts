@@ -1,10 +1,10 @@
 // <veronese-segmenter>: two frames or a clip in, masks over the frames out, as a custom element and a control of forms. Importing this
 // file registers nothing.
 
-import type { ClipFrames, ElementPrompt, FrameSource, VeroneseSegmenterEvents, VeroneseSegmenterMessages } from '../../types/element-class.js';
-import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, Pixels, Progress, Segmentation, WasmSource, WorkerLike } from '../../types/index.js';
+import type { ClipFrames, FrameSource, VeroneseSegmenterEvents, VeroneseSegmenterMessages } from '../../types/element-class.js';
+import type { Clip, ClipTracks, Pixels, Segmentation, WasmSource, WorkerLike } from '../../types/index.js';
 import { groupLabels, maskOf } from '../calls/labels.js';
-import { isObject, UNLABELLED } from '../common/checks.js';
+import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { SegmenterPool } from '../entries/web.js';
 import type { ElementClip, ShownFrame } from './clip.js';
@@ -37,12 +37,17 @@ export class VeroneseSegmenterElement extends Base {
   /** The labels of the clip's frame that is shown. */
   #shown: Uint8Array | undefined;
   #failure: VeroneseError | undefined;
-  /** Objects of the clip that no correction changes. */
-  #locked: readonly number[] | undefined;
-  /** Frames of the clip that are right. */
-  #accepted: readonly number[] | undefined;
-  /** Settled when the corrections so far have spread. */
-  #corrected: Promise<unknown> = Promise.resolve();
+  readonly #listeners: ConstructorParameters<typeof ElementClip>[3] = {
+    show: (frame) => this.#paintFrame(frame),
+    frame: (frame) => this.#tell('frame', frame),
+    masks: () => this.#carry(),
+    tracks: (tracks) => this.#end('tracks', tracks),
+    progress: (progress) => this.#tell('progress', progress),
+    change: () => this.#validate(),
+    fail: (thrown) => this.#fail(veroneseError(thrown)),
+  };
+  /** What a form gets. */
+  #files: File[] = [];
   #carries = 0;
   #planned = false;
   #messages: Partial<VeroneseSegmenterMessages> = {};
@@ -83,6 +88,7 @@ export class VeroneseSegmenterElement extends Base {
   /** A clip, instead of what attributes name; it is segmented at once, or when the element is connected. */
   set frames(frames: ClipFrames | undefined | null) {
     this.abort();
+    this.#leaveClip();
     this.#given = frames === undefined || frames === null ? {} : { frames };
     this.#plan();
   }
@@ -129,9 +135,14 @@ export class VeroneseSegmenterElement extends Base {
     this.#view.selected = object;
   }
 
+  /** The clip that is open, to annotate and to read; it is undefined for two frames and for a stream. */
+  get clip(): Clip | undefined {
+    return this.#clip?.clip;
+  }
+
   /** The objects of the frames that are done. */
   tracks(): ClipTracks | undefined {
-    return this.#clip?.tracks();
+    return this.#clip?.tracks;
   }
 
   /**
@@ -142,37 +153,19 @@ export class VeroneseSegmenterElement extends Base {
     return this.#run<Segmentation | ClipTracks>((signal) => (this.#isClip() ? this.#segmentClip(signal) : this.#segmentPair(signal)));
   }
 
-  /**
-   * Corrects a frame of a clip whose frames are all done, when earlier corrections have spread; returns the indices of the frames that
-   * change.
-   */
-  async correct(frame: number, said: Uint8Array | ElementPrompt, { propagate, object }: Pick<ClipCorrection, 'propagate' | 'object'> = {}): Promise<number[]> {
-    const own = said instanceof Uint8Array || !isObject(said) ? { labels: said instanceof Uint8Array ? said.slice() : said, object } : structuredClone(said);
-    const correction: ClipCorrection | ClipPrompt = { ...own, frame, propagate };
-    if (!this.#tell('veronese-correction', correction, true)) return [];
-    const turn = this.#corrected.then(() => this.#correct(correction));
-    this.#corrected = turn.catch(() => undefined);
-    return turn;
-  }
-
-  /** No later correction changes these objects of the clip. */
-  lock(objects: readonly number[]): void {
-    this.#locked = [...objects];
-  }
-
-  /** Later corrections of other frames change nothing in these frames of the clip. */
-  accept(frames: readonly number[]): void {
-    this.#accepted = [...frames];
-  }
-
-  /** Stops at once; the last result stays, as do the frames of a clip that are done. */
+  /** Cancels all that has not taken effect; the last result stays, as do the frames of a clip that are done. */
   abort(): void {
+    this.#stop();
+    this.#clip?.clip?.cancel();
+  }
+
+  #stop(): void {
     const request = this.#request;
     this.#request = undefined;
     if (request === undefined) return;
     request.abort();
     this.#validate();
-    void this.#carry();
+    this.#carryLater();
   }
 
   /** One number per pixel of what is shown: labels, or groups where the element is `grouped` or shows the main subject; 255 is unlabelled. */
@@ -251,6 +244,7 @@ export class VeroneseSegmenterElement extends Base {
 
   disconnectedCallback(): void {
     this.abort();
+    this.#leaveClip();
     this.#segmenter?.close();
     this.#segmenter = undefined;
   }
@@ -260,11 +254,11 @@ export class VeroneseSegmenterElement extends Base {
     if (name === 'first' || name === 'second') delete this.#given[name];
     if (name === 'src') this.#given = {};
     if (name === 'required') this.#validate();
-    else if (name === 'name') void this.#carry();
-    else if (name !== 'grouped') this.#plan();
-    else if (this.#result && !this.#clip) {
-      this.#paintPair(this.#result);
-      void this.#carry();
+    else if (name !== 'name' && name !== 'grouped') this.#plan();
+    else {
+      if (name === 'name') this.#submit();
+      else if (this.#result) this.#paintPair(this.#result);
+      this.#carryLater();
     }
   }
 
@@ -277,7 +271,7 @@ export class VeroneseSegmenterElement extends Base {
   /** By the attribute, or by a fieldset around the element. */
   formDisabledCallback(disabled: boolean): void {
     this.#view.disabled = disabled;
-    if (this.#clip) this.#clip.disabled = disabled;
+    if (this.#clip) this.#clip.timeline.disabled = disabled;
   }
 
   /** Several attributes that change together are one request. */
@@ -307,19 +301,22 @@ export class VeroneseSegmenterElement extends Base {
   /** Makes one request at a time, and tells how it ended. */
   async #run<T>(work: (signal: AbortSignal) => Promise<T>): Promise<T> {
     this.#planned = false;
-    this.abort();
+    this.#stop();
     const request = new AbortController();
     const { signal } = request;
     this.#request = request;
     this.#failure = undefined;
     this.#validate();
+    const aborted = new Promise<never>((_, reject) => signal.addEventListener('abort', reject));
     try {
-      return await work(signal);
+      return await Promise.race([work(signal), aborted]);
     } catch (thrown) {
       const error = signal.aborted ? new VeroneseError('cancelled', 'the call was cancelled') : veroneseError(thrown);
       if (this.#request === request) {
         this.#request = undefined;
-        this.#fail(error);
+        // A caller can cancel the step of a clip, too.
+        if (error.code === 'cancelled') this.#validate();
+        else this.#fail(error);
       }
       throw error;
     }
@@ -334,85 +331,48 @@ export class VeroneseSegmenterElement extends Base {
     signal.throwIfAborted();
     this.#leaveClip();
     this.#view.draw(first);
-    const result = await segmenter.segmentPair(first, second, this.#options(signal));
+    const result = await segmenter.segmentPair(first, second, { ...this.#options(signal), onProgress: (progress) => this.#tell('progress', progress) });
     signal.throwIfAborted();
     this.#result = result;
     this.#paintPair(result);
     await this.#carry();
     signal.throwIfAborted();
-    this.#end(result);
-    this.#tell('result', result);
+    this.#request = undefined;
+    this.#end('result', result);
     return result;
   }
 
+  /** The same frames stay the same clip, with its annotations and steps. */
   async #segmentClip(signal: AbortSignal): Promise<ClipTracks> {
-    const segmenter = this.#worker();
+    const pool = this.#worker();
+    const given = this.#given.frames ?? this.src;
     const { ElementClip } = await import('./later.js');
     signal.throwIfAborted();
-    this.#leaveClip();
-    this.#result = undefined;
-    const clip = new ElementClip(() => this.#texts, { show: (frame) => this.#paintFrame(frame), fail: (thrown) => this.#fail(veroneseError(thrown)) });
-    this.#clip = clip;
+    const opened = this.#clip?.given === given && this.#clip.clip ? this.#clip : undefined;
+    const clip = opened ?? new ElementClip(given, this.ownerDocument.baseURI, () => this.#texts, this.#listeners);
+    if (!opened) this.#showClip(clip);
     this.#view.stage.append(clip.progress);
-    this.#view.stage.after(clip.timeline, clip.controls);
-    clip.disabled = this.matches(':disabled');
     try {
-      await clip.open(this.#given.frames ?? this.src, this.#place(signal));
-      const poster = await clip.poster();
+      if (!opened) await clip.open(pool);
       signal.throwIfAborted();
-      if (poster) this.#view.draw(poster);
-      for await (const frame of clip.segment((frames) => segmenter.segmentClip(frames, this.#options(signal)))) {
-        this.#tell('frame', frame);
-        // Frames that come once are followed, unless a person looks at an earlier one.
-        if (frame.index === 0 || (clip.streams && clip.current === frame.index - 1)) clip.show(frame.index);
-      }
-      await clip.shown();
-      await this.#carry();
+      const tracks = await clip.segment(pool, this.#options(signal));
       signal.throwIfAborted();
-      const tracks = clip.tracks();
-      this.#end(tracks);
-      this.#tell('tracks', tracks);
+      this.#request = undefined;
+      this.#end('tracks', tracks);
       return tracks;
-    } finally {
-      clip.progress.remove();
+    } catch (thrown) {
+      // Another attempt begins anew, unless something would be lost.
+      if (!signal.aborted && this.#clip === clip && clip.length === 0) this.#leaveClip();
+      throw thrown;
     }
   }
 
-  async #correct(correction: ClipCorrection | ClipPrompt): Promise<number[]> {
-    const clip = this.#clip;
-    if (!clip?.takesCorrections || this.#request !== undefined) {
-      throw new VeroneseError('invalid-input', 'corrections are for clips whose frames are all done and can be read again');
-    }
-    const request = new AbortController();
-    const { signal } = request;
-    this.#request = request;
-    this.#validate();
-    const changed: number[] = [];
-    try {
-      const options = { ...this.#options(signal), corrections: [correction], locked: this.#locked, accepted: this.#accepted, changesOnly: true };
-      const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => {
-        if (index === clip.current) await clip.preview(await segmented());
-      };
-      for await (const frame of clip.correct((frames, state) => this.#worker().segmentClip(frames, { ...options, state, onChange }))) {
-        changed.push(frame.index);
-        this.#tell('frame', frame);
-      }
-      clip.show(clip.current);
-      await clip.shown();
-      await this.#carry();
-      signal.throwIfAborted();
-      const tracks = clip.tracks();
-      this.#end(tracks);
-      this.#tell('tracks', tracks);
-      return changed;
-    } catch (thrown) {
-      if (this.#clip === clip) clip.show(clip.current);
-      if (this.#request === request) {
-        this.#request = undefined;
-        this.#validate();
-      }
-      throw signal.aborted ? new VeroneseError('cancelled', 'the call was cancelled') : veroneseError(thrown);
-    }
+  #showClip(clip: ElementClip): void {
+    this.#leaveClip();
+    this.#result = undefined;
+    this.#clip = clip;
+    this.#view.stage.after(...clip.timeline.parts);
+    clip.timeline.disabled = this.matches(':disabled');
   }
 
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
@@ -428,11 +388,7 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   #options(signal: AbortSignal) {
-    const onProgress = (progress: Progress | ClipProgress) => {
-      if ('frame' in progress) this.#clip?.report(progress);
-      this.#tell('progress', progress);
-    };
-    return { ...optionsOf((name) => this.getAttribute(name)), signal, onProgress };
+    return { ...optionsOf((name) => this.getAttribute(name)), signal };
   }
 
   async #pixels(slot: 'first' | 'second', signal: AbortSignal): Promise<Pixels> {
@@ -442,11 +398,12 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   #leaveClip(): void {
-    this.#clip?.close();
+    if (this.#clip === undefined) return;
+    this.#clip.close();
     this.#clip = undefined;
-    this.#locked = undefined;
-    this.#accepted = undefined;
     this.#shown = undefined;
+    this.#validate();
+    this.#carryLater();
   }
 
   #paintPair(result: Segmentation): void {
@@ -457,9 +414,10 @@ export class VeroneseSegmenterElement extends Base {
 
   #paintFrame({ index, of, picture, labels }: ShownFrame): void {
     const { width, height } = picture;
-    const objects = new Set(labels.filter((label) => label !== 0 && label !== UNLABELLED)).size;
     this.#shown = labels;
     this.#view.draw(picture);
+    if (!labels) return;
+    const objects = new Set(labels.filter((label) => label !== 0 && label !== UNLABELLED)).size;
     this.#view.paint(this, labels, width, height, this.#texts.frame(index + 1, of, objects));
     this.#tell('show', { index, width, height, labels });
   }
@@ -467,22 +425,35 @@ export class VeroneseSegmenterElement extends Base {
   /** Hands the masks to the form, as files. */
   async #carry(): Promise<void> {
     const turn = ++this.#carries;
-    const { name } = this;
-    const clip = this.#clip;
-    const labels = this.labels();
-    const value = new FormData();
-    if (name !== '' && clip) for (const file of clip.files()) value.append(name, file);
-    if (name !== '' && !clip && labels && this.#result) {
-      const { fileOf, packed } = await import('./later.js');
-      const { width, height } = this.#result;
-      value.append(name, fileOf(await packed(labels, width, height), 'labels.png'));
-    }
+    const files = this.name === '' ? [] : await this.#masks();
     // A later call knows better.
-    if (turn === this.#carries) this.#internals.setFormValue(value);
+    if (turn !== this.#carries) return;
+    this.#files = files;
+    this.#submit();
+  }
+
+  /** Where nobody waits: labels that cannot be had have an event of their own. */
+  #carryLater(): void {
+    this.#carry().catch(() => undefined);
+  }
+
+  async #masks(): Promise<File[]> {
+    if (this.#clip) return this.#clip.files();
+    const [result, labels] = [this.#result, this.labels()];
+    if (!result || !labels) return [];
+    const { fileOf, packed } = await import('./later.js');
+    return [fileOf(await packed(labels, result.width, result.height), 'labels.png')];
+  }
+
+  #submit(): void {
+    const value = new FormData();
+    if (this.name !== '') for (const file of this.#files) value.append(this.name, file);
+    this.#internals.setFormValue(value);
   }
 
   #validate(): void {
-    const busy = this.#request !== undefined;
+    const busy = this.#request !== undefined || this.#clip?.isBusy === true;
+    if (!busy) this.#clip?.progress.remove();
     const missing = this.required && this.labels() === undefined;
     const failure = this.#failure && this.#texts.error(this.#failure);
     const sentence = busy ? this.#texts.busy : (failure ?? (missing ? this.#texts.missing : ''));
@@ -491,23 +462,22 @@ export class VeroneseSegmenterElement extends Base {
     this.#internals.setValidity(flags, sentence, this.#view.objects);
   }
 
-  /** A request has ended well: the validity changes before the event. */
-  #end({ notes = [] }: Segmentation | ClipTracks): void {
-    this.#request = undefined;
-    this.#view.status.textContent = notes.map(({ message }) => message).join('; ');
+  /** A request or a step has ended well: the validity changes before the event. */
+  #end(type: 'result' | 'tracks', result: Segmentation | ClipTracks): void {
+    this.#view.status.textContent = (result.notes ?? []).map(({ message }) => message).join('; ');
     this.#validate();
+    this.#tell(type, result);
   }
 
   #fail(error: VeroneseError): void {
     this.#failure = error;
     this.#view.status.textContent = this.#texts.error(error);
     this.#validate();
-    void this.#carry();
+    this.#carryLater();
     this.#tell('error', error);
   }
 
-  /** Returns whether it goes on: a listener can prevent what is `cancelable`. */
-  #tell(type: keyof VeroneseSegmenterEvents, detail: unknown, cancelable = false): boolean {
-    return this.dispatchEvent(new CustomEvent(type, { detail, cancelable }));
+  #tell(type: keyof VeroneseSegmenterEvents, detail: unknown): void {
+    this.dispatchEvent(new CustomEvent(type, { detail }));
   }
 }

@@ -17,7 +17,6 @@ const EVENTS = {
   onResult: 'result',
   onFrame: 'frame',
   onTracks: 'tracks',
-  onCorrection: 'veronese-correction',
   onShow: 'show',
   onSelect: 'select',
   onError: 'error',

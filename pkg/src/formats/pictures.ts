@@ -22,7 +22,7 @@ export function davis({ one, clip }: Settings): Encoder {
 }
 
 export function davisPng(labels: Uint8Array, width: number, height: number): Uint8Array<ArrayBuffer> {
-  return png(width, height, labels, { palette: colourBytes(davisPalette(), 3) });
+  return png(width, height, labels, { palette: colourBytes(davisPalette()) });
 }
 
 /** 255 where the label is. */

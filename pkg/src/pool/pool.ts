@@ -26,6 +26,7 @@ export interface Pin<Task, Result> {
 interface Pinning {
   /** Why its worker has ended. */
   lost?: VeroneseError;
+  onLost?: ((reason: VeroneseError) => void) | undefined;
 }
 
 interface Job<Task, Result> {
@@ -90,10 +91,10 @@ export class WorkerPool<Task, Result> {
   }
 
   /** Chooses the worker that keeps the state of the fewest. Other tasks run in between. */
-  pin(): Pin<Task, Result> & { beside: (task: Task, options?: CallOptions) => Promise<Result> } {
+  pin(onLost?: (reason: VeroneseError) => void): Pin<Task, Result> & { beside: (task: Task, options?: CallOptions) => Promise<Result> } {
     const order = (lane: Lane<Task, Result>) => [lane.pins.size, Number(isBusy(lane)), Number(!lane.thread)];
     const [lane] = [...this.#lanes].sort((one, other) => compared(order(one), order(other))) as [Lane<Task, Result>];
-    const pin: Pinning = {};
+    const pin: Pinning = { onLost };
     lane.pins.add(pin);
     return {
       perform: (task, options) => this.#run(task, options, { pin }),
@@ -159,6 +160,8 @@ export class WorkerPool<Task, Result> {
     lane.pins = new Set();
     if (!reason) return;
     for (const pin of pins) pin.lost = reason;
+    // Once everything here is as it will be.
+    queueMicrotask(() => pins.forEach(({ onLost }) => onLost?.(reason)));
     for (const job of this.#waiting.filter(({ pin }) => pin && pins.has(pin))) {
       this.#waiting.splice(this.#waiting.indexOf(job), 1);
       this.#settle(job, () => job.reject(reason));

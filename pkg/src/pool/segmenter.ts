@@ -28,7 +28,7 @@ import { inOrder } from '../calls/ordered.js';
 import type { PairCall } from '../calls/places.js';
 import { segmentedClip } from '../calls/segmented/clip.js';
 import type { ClipOptions, ClipSource, SegmentedClip } from '../calls/segmented/types.js';
-import type { Home } from '../calls/session/clip.js';
+import type { House } from '../calls/session/clip.js';
 import { type ClipHost, openedClip } from '../calls/session/open.js';
 import { streamOf } from '../calls/stream.js';
 import { fitCall, parted, segmentCall, solveCall, start } from '../calls/tasks.js';
@@ -59,8 +59,8 @@ export function segmenters(host: Host) {
     readonly #perform = (task: CallTask, options: CallOptions) => this.#pool.run(task, options);
 
     /** A worker for a clip or a stream. */
-    readonly #house = (): Home => {
-      const { perform, beside, release } = this.#pool.pin();
+    readonly #house: House = (onLost) => {
+      const { perform, beside, release } = this.#pool.pin(onLost);
       return { perform, beside, release, anywhere: this.#perform, size: this.#pool.size, endIdle: () => this.#pool.endIdle() };
     };
 

@@ -49,6 +49,7 @@ async function cvat(t) {
   return {
     run,
     log: () => ask('GET', '/test/log'),
+    breakOff: () => ask('POST', '/test/break'),
     tracks: async () => (await ask('GET', '/api/tasks/42/annotations')).tracks,
     save: (action, tracks) => ask('PATCH', `/api/tasks/42/annotations?action=${action}`, { tracks }),
     done: async (...args) => {
@@ -82,8 +83,11 @@ const PART = square(30, 24, 18);
 const areaOf = ({ points }) => Math.abs(points.reduce((sum, x, k) => (k % 2 ? sum : sum + x * points[(k + 3) % points.length] - points[(k + 2) % points.length] * points[k + 1]), 0)) / 2;
 
 test('a clip in CVAT becomes tracks; polygons that a person redraws, draws or deletes go on, and the rest stays as it is', { skip, timeout: 300_000 }, async (t) => {
-  const { run, done, log, save, tracks } = await cvat(t);
+  const { run, done, log, breakOff, save, tracks } = await cvat(t);
   assert.match((await run('annotate', '--label', 'frame')).stderr, /^cvat-clip: error: no-label: /);
+  await breakOff();
+  assert.match((await run('annotate', '--label', 'thing')).stderr, /^cvat-clip: error: cvat-unreachable: /);
+  // CVAT has the tracks, and nobody was told: another run sends them no second time.
   assert.deepEqual(await done('annotate', '--label', 'thing'), { task: 42, frames: LENGTH, objects: 2 });
   const before = await tracks();
   assert.deepEqual(before.map(({ group, label_id: label, source, shapes }) => [group, label, source, shapes.length]), [RIGHT, LEFT].map((group) => [group, 7, 'auto', LENGTH]));

@@ -4,7 +4,8 @@ cvat_server.py FRAMES prints its port. Requests and answers are checked with the
 CVAT's interface (cvat/schema.yml of that version), and requests more strictly than CVAT does: what its page cannot open is refused. As in CVAT
 (cvat/apps/dataset_manager/task.py), what is updated is deleted and created again, with other ids, which the answer has.
 
-Beside it, for the test: GET /test/log gives the actions that changed tracks, and the groups of those.
+Beside it, for the test: GET /test/log gives the actions that changed tracks, and the groups of those;
+after POST /test/break the next change is made and not answered.
 """
 
 import itertools
@@ -31,6 +32,11 @@ USER_MODEL = {"url": "http://localhost/api/users/1", "id": 1, "username": "annot
 ids = itertools.count(1)
 tracks = {}
 log = []
+breaks = []
+
+
+class Broken(Exception):
+    """The connection breaks off."""
 
 
 class Refused(Exception):
@@ -127,7 +133,10 @@ def patch(action, data):
             if tracks.pop(track.get("id"), None) is None:
                 raise Refused(400, f"there is no track {track.get('id')}")
     log.append({"action": action, "groups": [track.get("group") for track in wanted]})
-    return labelled(wanted if action == "delete" else [created(track) for track in wanted])
+    answer = labelled(wanted if action == "delete" else [created(track) for track in wanted])
+    if breaks:
+        raise breaks.pop()
+    return answer
 
 
 def created(track):
@@ -152,14 +161,19 @@ class Handler(BaseHTTPRequestHandler):
             self.send(200, content)
         except Refused as refused:
             self.send(refused.status, {"detail": str(refused)})
+        except Broken:
+            self.close_connection = True
 
-    do_GET = do_PATCH = answer
+    do_GET = do_PATCH = do_POST = answer
 
     def found(self, route, query, body):
         if route == "GET /api/server/about":
             return agreed(models.About, {"name": "CVAT", "description": "", "version": "2.80.0", "logo_url": "", "subtitle": ""})
         if route == "GET /test/log":
             return log
+        if route == "POST /test/break":
+            breaks.append(Broken())
+            return {}
         if self.headers.get("Authorization") != f"Bearer {TOKEN}":
             raise Refused(401, "Authentication credentials were not provided.")
         if route == "GET /api/users/self":

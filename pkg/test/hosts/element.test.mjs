@@ -15,7 +15,8 @@ async function page(t, name, script) {
   writeFileSync(source, `import { first, second } from './frames.js';\n${script}
     const element = document.createElement('veronese-segmenter');
     element.setAttribute('quality', 'fast');
-    element.addEventListener('result', ({ detail }) => (globalThis.outcome = { width: detail.width }));
+    element.addEventListener('result', () => (element.frames = [first, second]));
+    element.addEventListener('tracks', ({ detail }) => (globalThis.outcome = { width: element.clip.width, objects: detail.objects.length }));
     element.addEventListener('error', ({ detail: { code, message } }) => (globalThis.outcome = { error: code + ': ' + message }));
     document.body.append(element);
     element.setFrames(first, second).catch(() => undefined);`);
@@ -30,7 +31,7 @@ async function page(t, name, script) {
 
 test('veronese/element/inline is one script with everything inside', async (t) => {
   const { outcome, missing } = await page(t, 'inline', "import 'veronese/element/inline';");
-  assert.deepEqual([outcome, missing], [{ width: 64 }, []]);
+  assert.deepEqual([outcome, missing], [{ width: 64, objects: 1 }, []]);
 });
 
 test('the page names the worker and the module', async (t) => {
@@ -38,7 +39,7 @@ test('the page names the worker and the module', async (t) => {
     VeroneseSegmenterElement.worker = () => new Worker('/worker.js', { type: 'module' });
     VeroneseSegmenterElement.source = '/core.wasm';`;
   const { outcome, missing } = await page(t, 'named', script);
-  assert.deepEqual([outcome, missing], [{ width: 64 }, []]);
+  assert.deepEqual([outcome, missing], [{ width: 64, objects: 1 }, []]);
 });
 
 test('an error of loading names the address, the status and the remedy', async (t) => {

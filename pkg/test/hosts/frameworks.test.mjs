@@ -5,7 +5,7 @@ import { cpSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from 'nod
 import { dirname, join } from 'node:path';
 import { describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { segmentClip, segmentPair } from 'veronese';
+import { openClip, segmentPair } from 'veronese';
 import { frame, pair, png } from '../support/frames.mjs';
 import { outcomeOf, serve } from '../packed/browser.mjs';
 import { app, browser } from '../packed/installed.mjs';
@@ -73,12 +73,13 @@ const RUNNING = {
 
 /** The outcome of each of these applications. */
 async function expectedClip() {
-  const frames = pair();
-  const whole = segmentClip({ length: 2, read: (index) => frames[index] }, { quality: 'fast', motions: 3 });
-  const first = await whole.next();
-  for await (const _ of whole);
+  const whole = await openClip(pair());
+  await whole.segment({ quality: 'fast', motions: 3 });
+  const { labels } = await whole.labels(0);
+  const { objects } = await whole.tracks();
+  await whole.close();
   const attributes = { motions: '3', quality: 'fast', grouped: true };
-  return { objects: whole.tracks().objects.length, labels: Array.from(first.value.labels).join(''), attributes };
+  return { objects: objects.length, labels: Array.from(labels).join(''), attributes };
 }
 
 describe('JSX', () => {
@@ -159,13 +160,15 @@ describe('examples', () => {
       await tab.getByLabel('Frames of a clip').setInputFiles(clip.map((pixels, k) => ({ name: `${k}.png`, mimeType: 'image/png', buffer: Buffer.from(png(pixels)) })));
       await tab.locator('li').first().waitFor({ timeout: 60_000 });
 
-      const expected = [];
-      const whole = segmentClip({ length: clip.length, read: (index) => clip[index] }, { quality: 'fast' });
-      for await (const { labels } of whole) expected.push(labels);
-      const lines = whole.tracks().objects.map(({ id, first, last }) => `Object ${id}: frames ${first} to ${last}`);
+      const whole = await openClip(clip);
+      await whole.segment({ quality: 'fast' });
+      const expected = await whole.labels(0);
+      const { objects } = await whole.tracks();
+      await whole.close();
+      const lines = objects.map(({ id, first, last }) => `Object ${id}: frames ${first} to ${last}`);
       assert.deepEqual(await tab.locator('li').allTextContents(), lines);
       const labels = await tab.evaluate(() => Array.from(document.querySelector('veronese-segmenter').labels()));
-      assert.deepEqual(labels, Array.from(expected[0]));
+      assert.deepEqual(labels, Array.from(expected.labels));
       const { count } = await segmentPair(clip[0], clip[1], { quality: 'fast' });
       await tab.getByText(`Motions between the first two frames: ${count}`).waitFor();
       assert.deepEqual([complaints, missing], [[], []]);

@@ -1,78 +1,111 @@
 // examples/scale-out, where there is a Redis or Valkey server.
 
 import assert from 'node:assert/strict';
-import { existsSync, mkdirSync, readdirSync, readFileSync, truncateSync } from 'node:fs';
+import { spawn } from 'node:child_process';
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:net';
+import { join } from 'node:path';
 import { test } from 'node:test';
-import { SegmenterPool } from 'veronese';
-import { blockJobOf, missingBlocks, performBlock } from '../../../examples/scale-out/block.mjs';
-import { clipJobOf, clipPlaceOf, clipResultOf, framesOf, hashesOf, performClip } from '../../../examples/scale-out/clip.mjs';
+import { setTimeout as sleep } from 'node:timers/promises';
+import { segmentPair } from 'veronese';
+import { SCALE_OUT } from '../../../scripts/lib/npm-packages.mjs';
+import { root, which } from '../../../scripts/lib/project.mjs';
 import { frame, png } from '../support/frames.mjs';
 import { temporaryFolder } from '../support/program.mjs';
-import { prove, proveClip, redisServer } from '../support/scale-out.mjs';
 
-const program = redisServer();
+const program = which('redis-server') ?? which('valkey-server');
+const skip = !program && 'there is no redis-server and no valkey-server';
+const PAIRS = 24;
+/** Pairs in a block of the clip. */
+const BLOCK = 4;
+/** Lifetime of a worker's lock, milliseconds: how long the jobs of a killed worker wait. */
+const LOCK = '3000';
 
-test('every pair exactly once, though a worker is killed and the Redis server restarted', { skip: !program && 'there is no redis-server and no valkey-server' }, async () => {
-  await prove(program, { pairs: 60, size: { width: 48, height: 36 } });
-});
-
-test('a clip in blocks is to the bit what one run writes, though a worker is killed inside a block', { skip: !program && 'there is no redis-server and no valkey-server' }, async () => {
-  const { did } = await proveClip(program, { blocks: 3, size: { width: 96, height: 72 } });
-  assert.ok(did.length >= 4);
-});
-
-test('a clip whose worker is lost goes on after the last pair that was solved, to the same files', async (t) => {
-  const folder = temporaryFolder(t);
-  const { frames, options, job } = await clipOf(folder, 8);
-  const [out, straight] = [folder.path('out'), folder.path('straight')];
-  const task = { job, folder: frames, options };
-
-  const lost = new SegmenterPool({ jobs: 1 });
-  const running = performClip(lost, { ...task, out });
-  const solved = () => (existsSync(`${clipPlaceOf(out, job)}/pairs`) ? readdirSync(`${clipPlaceOf(out, job)}/pairs`).length : 0);
-  while (solved() < 3) await new Promise((resume) => setTimeout(resume, 5));
-  lost.close();
-  await assert.rejects(running);
-  assert.equal(await clipResultOf(out, job), undefined);
-
-  const pool = new SegmenterPool({ jobs: 1 });
-  t.after(() => pool.close());
-  const { did, known } = await performClip(pool, { ...task, out });
-  assert.ok(did && known >= 3, `${known} known`);
-  assert.deepEqual(await performClip(pool, { ...task, out: straight }), { did: true, known: 0, solved: 7 });
-  const found = files(clipPlaceOf(out, job));
-  assert.deepEqual(found, files(clipPlaceOf(straight, job)));
-  assert.deepEqual(found.map(([name]) => name), [...Array.from({ length: 8 }, (_, k) => `0${k}.png.png`), 'clip.json']);
-  assert.deepEqual(await performClip(pool, { ...task, out }), { did: false, known: 0, solved: 0 });
-});
-
-test('blocks of a clip are solved once each, and a damaged pair by the clip', async (t) => {
-  const folder = temporaryFolder(t);
-  const { frames, options, job, hashes } = await clipOf(folder, 8);
-  const [out, straight] = [folder.path('out'), folder.path('straight')];
-  const task = { folder: frames, options };
-  const pool = new SegmenterPool({ jobs: 2 });
-  t.after(() => pool.close());
-  const blocks = await missingBlocks(out, job, hashes.length, 3);
-  assert.deepEqual(blocks, [{ from: 0, to: 3 }, { from: 3, to: 6 }, { from: 6, to: 7 }]);
-  const tasks = blocks.map(({ from, to }) => ({ ...task, out, from, to, clip: job, job: blockJobOf(job, hashes.slice(from, to + 1)) }));
-  assert.deepEqual(await Promise.all(tasks.map((block) => performBlock(pool, block))), [3, 3, 1].map(() => ({ did: true, known: 0 })));
-  assert.deepEqual(await performBlock(pool, tasks[0]), { did: false, known: 3 });
-  assert.deepEqual(await missingBlocks(out, job, hashes.length, 3), []);
-  truncateSync(`${clipPlaceOf(out, job)}/pairs/2`, 100);
-  assert.deepEqual(await performClip(pool, { ...task, job, out }), { did: true, known: 7, solved: 0 });
-  await performClip(pool, { ...task, job, out: straight });
-  assert.deepEqual(files(clipPlaceOf(out, job)), files(clipPlaceOf(straight, job)));
-});
-
-async function clipOf(folder, count) {
-  const frames = folder.path('frames');
-  mkdirSync(frames);
-  for (let k = 0; k < count; k++) folder.file(`frames/${String(k).padStart(2, '0')}.png`, Buffer.from(png(frame(k, { width: 64, height: 48 }))));
-  const [options, hashes] = [{ quality: 'fast' }, await hashesOf(frames, await framesOf(frames))];
-  return { frames, options, hashes, job: clipJobOf(hashes, options) };
+/** What starts programs of the example beside a server of its own; the test ends those that still run. */
+async function example(t, folder) {
+  const port = await freePort();
+  const start = (command, args) => {
+    const child = spawn(command, args, { cwd: join(root, SCALE_OUT), env: { ...process.env, REDIS_URL: `redis://127.0.0.1:${port}` } });
+    t.after(() => child.kill('SIGKILL'));
+    const state = { child, text: '', errors: '' };
+    child.stdout.on('data', (piece) => (state.text += piece));
+    child.stderr.on('data', (piece) => (state.errors += piece));
+    state.ended = new Promise((resolve) => child.once('close', (code, signal) => resolve({ code, signal })));
+    return state;
+  };
+  start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '']);
+  return {
+    worker: () => start(process.execPath, ['work.mjs', '--jobs', '1', '--lock', LOCK]),
+    /** What a program printed at its end. */
+    run: async (...args) => {
+      const state = start(process.execPath, args);
+      assert.deepEqual(await state.ended, { code: 0, signal: null }, state.errors);
+      return state.text;
+    },
+  };
 }
 
-function files(place) {
-  return readdirSync(place).toSorted().map((name) => [name, readFileSync(`${place}/${name}`, 'base64')]);
+function freePort() {
+  return new Promise((resolve) => {
+    const server = createServer().listen(0, '127.0.0.1', () => {
+      const { port } = server.address();
+      server.close(() => resolve(port));
+    });
+  });
 }
+
+/** The jobs that a worker has reported as finished. */
+function doneBy({ text }) {
+  return text.split('\n').slice(0, -1).map((line) => JSON.parse(line));
+}
+
+async function eventually(holds, workers) {
+  while (!holds()) {
+    assert.ok(workers.some(({ child }) => child.exitCode === null && child.signalCode === null), workers.map(({ errors }) => errors).join('\n'));
+    await sleep(5);
+  }
+}
+
+test('pairs and a clip in blocks are to the bit what direct calls give, though a worker is killed', { skip, timeout: 300_000 }, async (t) => {
+  const folder = temporaryFolder(t);
+  const [place, out, straight] = ['frames', 'out', 'straight'].map((name) => folder.path(name));
+  // Each another, or they would be the same job.
+  const frames = Array.from({ length: PAIRS + 1 }, (_, k) => frame(k / 4, { width: 64, height: 48, background: [1, 0.5] }));
+  mkdirSync(place);
+  frames.forEach((picture, k) => writeFileSync(join(place, `f${String(k).padStart(4, '0')}.png`), png(picture)));
+  const { run, worker } = await example(t, folder.path('.'));
+  const producePairs = async () => JSON.parse(await run('produce.mjs', place, '--out', out, '--quality', 'fast'));
+  const produceClip = async () => JSON.parse(await run('produce-clips.mjs', place, '--out', out, '--quality', 'fast', '--block', String(BLOCK)));
+  assert.deepEqual(await producePairs(), { pairs: PAIRS, added: PAIRS, done: 0 });
+  assert.deepEqual(await produceClip(), { clips: 1, done: 0, queued: 0, added: 1, blocks: PAIRS / BLOCK });
+
+  const workers = [worker(), worker()];
+  await eventually(() => doneBy(workers[0]).length >= PAIRS / 4, workers);
+  workers[0].child.kill('SIGKILL');
+  workers.push(worker());
+  const clipJobs = () => workers.flatMap(doneBy).filter(({ clip, block }) => clip === 0 && block === undefined);
+  const isWhole = () => readdirSync(out, { recursive: true }).filter((name) => name.endsWith('.json')).length === PAIRS + 1;
+  await eventually(() => clipJobs().length > 0 && isWhole(), workers);
+  assert.equal(clipJobs()[0].solved, 0, 'blocks have solved all pairs');
+
+  assert.deepEqual(JSON.parse(await run('status.mjs', '--out', out, '--collect')), { pairs: PAIRS, done: PAIRS, failed: 0, missing: 0 });
+  const lines = readFileSync(join(out, 'results.jsonl'), 'utf8').trimEnd().split('\n').map((line) => JSON.parse(line));
+  assert.deepEqual(lines.map(({ index }) => index), Array.from({ length: PAIRS }, (_, index) => index), 'every pair once, in order');
+  for (const index of [0, PAIRS - 1]) {
+    const { motions } = await segmentPair(frames[index], frames[index + 1], { quality: 'fast' });
+    assert.deepEqual(lines[index].motions, JSON.parse(JSON.stringify(motions)), `pair ${index}`);
+  }
+
+  await run(join(root, 'pkg/bin/veronese.js'), 'clip', place, '--out', straight, '--quality', 'fast');
+  const { job } = JSON.parse(readFileSync(join(out, 'clips.jsonl'), 'utf8'));
+  const labels = readdirSync(join(straight, 'labels')).filter((name) => name.endsWith('.png'));
+  assert.equal(labels.length, PAIRS + 1);
+  for (const name of labels) assert.deepEqual(readFileSync(join(out, job.slice(5, 7), job, `${name}.png`)), readFileSync(join(straight, 'labels', name)), name);
+
+  // A second run changes nothing.
+  assert.deepEqual(await producePairs(), { pairs: PAIRS, added: 0, done: PAIRS });
+  assert.deepEqual(await produceClip(), { clips: 1, done: 1, queued: 0, added: 0, blocks: 0 });
+  // As a person would end them.
+  for (const { child } of workers.slice(1)) child.kill('SIGTERM');
+  for (const { ended } of workers.slice(1)) assert.deepEqual(await ended, { code: 0, signal: null });
+});

@@ -26,6 +26,11 @@ export function tree(folder) {
   return files;
 }
 
+/** The same without what is kept for another run, which has its history. */
+export function results(folder) {
+  return Object.fromEntries(Object.entries(tree(folder)).filter(([path]) => !/^\.clip[\\/]/.test(path)));
+}
+
 /** Printed lines of JSON. */
 export const lines = (text) => text.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line));
 

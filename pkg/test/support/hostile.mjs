@@ -148,18 +148,12 @@ export async function all(outcomes) {
 const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
 const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
 
-/** Labels of a frame that are all unlabelled. */
-const NOTHING = new Uint8Array(256).fill(255);
-
-/** The arguments of a clip, as those of the other calls. */
-export const CLIPS = {
+/** The arguments of a stream, as those of the other calls. */
+export const STREAMS = {
   frames: [(v) => [iterated(v)], []],
   'a frame': [(v) => [[first, awaited(v)]], []],
   data: [(v) => [[first, { ...second, data: v }]], []],
   width: [(v) => [[first, { ...second, width: v }]], []],
-  read: [(v) => [{ length: 2, read: v }], []],
-  length: [(v) => [{ length: v, read: (index) => [first, second][index] }], []],
-  'what is read': [(v) => [{ length: 2, read: (index) => (index === 0 ? first : awaited(v)) }], []],
   options: [(v) => [[first, second], v], OPTIONS],
   motions: [(v) => [[first, second], { motions: v }], ['undefined', 'one']],
   quality: [(v) => [[first, second], { quality: v }], ['undefined']],
@@ -169,35 +163,69 @@ export const CLIPS = {
   transfer: [(v) => [[structuredClone(first), structuredClone(second)], { transfer: v }], ['undefined', 'true', 'false']],
   subject: [(v) => [[first, second], { subject: v }], ['undefined', 'true', 'false']],
   markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined', 'true', 'false']],
-  corrections: [(v) => [[first, second], { corrections: v }], ['undefined', 'empty list']],
-  'a correction': [(v) => [[first, second], { corrections: [v] }], []],
-  'its frame': [(v) => [[first, second], { corrections: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
-  'its labels': [(v) => [[first, second], { corrections: [{ frame: 0, labels: v }] }], []],
-  prompts: [(v) => [[first, second], { prompts: v }], ['undefined', 'empty list']],
-  'accepted frames': [(v) => [[first, second], { accepted: v }], ['undefined', 'empty list']],
-  'where it spreads': [(v) => [[first, second], { corrections: [{ frame: 0, labels: NOTHING, propagate: v }] }], ['undefined']],
-  masks: [(v) => [[first, second], { masks: v }], ['undefined', 'empty list']],
-  'a mask': [(v) => [[first, second], { masks: [v] }], []],
-  'the frame of a mask': [(v) => [[first, second], { masks: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
-  'the labels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: v }] }], []],
-  'the pixels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: { ...first, data: v } }] }], []],
-  'the file of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, png: v }] }], ['undefined']],
-  'the object of a mask': [(v) => [[first, second], { masks: [{ frame: 0, id: v, rle: { size: [16, 16], counts: [256] } }] }], ['one']],
-  'the run lengths of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, rle: v }] }], ['undefined']],
-  'their size': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: v, counts: [256] } }] }], []],
-  'their counts': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: [16, 16], counts: v } }] }], []],
-  locked: [(v) => [[first, second], { locked: v }], ['undefined', 'empty list']],
-  'a locked object': [(v) => [[first, second], { locked: [v] }], ['one']],
-  onChange: [(v) => [[first, second], { onChange: v }], ['undefined', 'function']],
-  edits: [(v) => [[first, second], { edits: v }], OPTIONS],
-  merge: [(v) => [[first, second], { edits: { merge: v } }], ['undefined', 'empty list']],
-  'what is merged': [(v) => [[first, second], { edits: { merge: [[1, v]] } }], ['one']],
-  names: [(v) => [[first, second], { edits: { names: v } }], OPTIONS],
-  'a name': [(v) => [[first, second], { edits: { names: { 1: v } } }], ['undefined', 'text']],
-  state: [(v) => [[first, second], { state: v }], ['undefined']],
-  changesOnly: [(v) => [[first, second], { changesOnly: v }], ['undefined', 'true', 'false']],
-  onPairs: [(v) => [[first, second], { onPairs: v }], ['undefined', 'function']],
-  knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined']],
-  onPreview: [(v) => [[first, second], { onPreview: v }], ['undefined', 'function']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
+};
+
+/** The arguments of openClip; the clip is closed again. */
+export const OPENINGS = {
+  frames: [(v) => [v], ['empty list', 'list of null', 'sparse list']],
+  length: [(v) => [{ length: v, read: () => first }], ['zero', 'one', '300']],
+  read: [(v) => [{ length: 2, read: v }], ['function']],
+  options: [(v) => [[first, second], v], OPTIONS],
+  journal: [(v) => [[first, second], { journal: v === 'text' ? undefined : v }], ['undefined', 'text']],
+  saved: [(v) => [[first, second], { saved: v }], ['undefined']],
+  markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined', 'true', 'false']],
+  maxSize: [(v) => [[first, second], { maxSize: v }], ['undefined', '300']],
+  'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
+};
+
+/** Labels of a frame that are all left open. */
+const OPEN = new Uint8Array(256).fill(255);
+
+/** The arguments of what an open clip does. */
+export const COMMANDS = {
+  'segment: options': ['segment', (v) => [v], OPTIONS],
+  'segment: first': ['segment', (v) => [{ first: v }], ['undefined', 'zero']],
+  'segment: last': ['segment', (v) => [{ last: v }], ['undefined', 'one']],
+  'segment: motions': ['segment', (v) => [{ motions: v }], ['undefined', 'one']],
+  'segment: quality': ['segment', (v) => [{ quality: v }], ['undefined']],
+  'segment: subject': ['segment', (v) => [{ subject: v }], ['undefined', 'true', 'false']],
+  'segment: signal': ['segment', (v) => [{ signal: v }], ['undefined']],
+  'segment: drafts': ['segment', (v) => [{ drafts: v }], ['undefined', 'true', 'false']],
+  annotate: ['annotate', (v) => [v], []],
+  'annotate: frame': ['annotate', (v) => [{ frame: v, labels: OPEN }], ['zero', 'one']],
+  'annotate: propagate': ['annotate', (v) => [{ frame: 0, labels: OPEN, propagate: v }], ['undefined']],
+  'annotate: labels': ['annotate', (v) => [{ frame: 0, labels: v }], []],
+  'annotate: own': ['annotate', (v) => [{ frame: 0, labels: OPEN, own: v }], ['undefined', 'true', 'false']],
+  'annotate: object': ['annotate', (v) => [{ frame: 0, object: v, strokes: OPEN }], ['one']],
+  'annotate: strokes': ['annotate', (v) => [{ frame: 0, object: 1, strokes: v }], []],
+  'annotate: mask': ['annotate', (v) => [{ frame: 0, object: 1, mask: v }], []],
+  'annotate: clicks': ['annotate', (v) => [{ frame: 0, object: 1, clicks: v }], ['empty list']],
+  'annotate: box': ['annotate', (v) => [{ frame: 0, object: 1, box: v }], []],
+  clear: ['clear', (v) => [v], []],
+  'clear: frame': ['clear', (v) => [{ frame: v }], ['zero', 'one']],
+  'clear: object': ['clear', (v) => [{ frame: 0, object: v }], ['undefined', 'one']],
+  accept: ['accept', (v) => [v], ['empty list']],
+  'accept: on': ['accept', (v) => [[0], v], ['undefined', 'true', 'false']],
+  lock: ['lock', (v) => [v, false], ['empty list']],
+  'lock: on': ['lock', (v) => [[], v], ['undefined', 'true', 'false']],
+  'describe: object': ['describe', (v) => [v, {}], ['one']],
+  describe: ['describe', (v) => [1, v], EMPTY],
+  'describe: name': ['describe', (v) => [1, { name: v }], ['undefined', 'empty text', 'text']],
+  'describe: class': ['describe', (v) => [1, { class: v }], ['undefined', 'empty text', 'text']],
+  'describe: colour': ['describe', (v) => [1, { colour: v }], ['undefined']],
+  'describe: options': ['describe', (v) => [1, {}, v], OPTIONS],
+  merge: ['merge', (v) => [1, v], []],
+  delete: ['delete', (v) => [v], ['one']],
+  'split: object': ['split', (v) => [v, 0], []],
+  'split: frame': ['split', (v) => [1, v], []],
+  replaceAnnotations: ['replaceAnnotations', (v) => [v], EMPTY],
+  'replaceAnnotations: annotations': ['replaceAnnotations', (v) => [{ annotations: v }], ['undefined', 'empty list']],
+  'replaceAnnotations: locked': ['replaceAnnotations', (v) => [{ locked: v }], ['undefined', 'empty list']],
+  'replaceAnnotations: descriptions': ['replaceAnnotations', (v) => [{ descriptions: v }], OPTIONS],
+  'replaceAnnotations: merged': ['replaceAnnotations', (v) => [{ merged: v }], ['undefined', 'empty list']],
+  'replaceAnnotations: accepted': ['replaceAnnotations', (v) => [{ accepted: v }], ['undefined', 'empty list']],
+  labels: ['labels', (v) => [v], ['zero', 'one']],
+  'labels: options': ['labels', (v) => [0, v], OPTIONS],
+  subscribe: ['subscribe', (v) => [v], ['function']],
 };

@@ -38,7 +38,7 @@ export async function pictures(bitmap: ImageBitmap, frame: VideoFrame, file: Fil
   await segmentPair(bitmap, frame);
   await new Segmenter().segmentPair(file, canvas);
   for await (const { labels } of segmentStream([image, file, canvas, bitmap, frame])) console.log(labels);
-  (await openClip([image, file, canvas])).close();
+  await (await openClip([image, file, canvas])).close();
   await solvePair(bitmap, file);
   for await (const { error } of segmentPairs([{ first: bitmap, second: file }])) console.log(error);
   // @ts-expect-error no picture
@@ -106,8 +106,8 @@ export async function clip(read: (index: number) => Promise<Pixels>, saved: Uint
   const segmenter = new Segmenter();
   const journal: ClipJournal = { read: async () => undefined, append: async () => undefined, replace: async () => undefined };
   const clip: Clip = await segmenter.openClip({ length: 32, read }, { journal, markUnknown: true, maxSize: 960 });
-  (await openClip([new ImageData(64, 48)], { saved })).close();
-  (await new SegmenterPool().openClip(['0.png', '1.png'], { journal: 'clip.journal' })).close();
+  await (await openClip([new ImageData(64, 48)], { saved })).close();
+  await (await new SegmenterPool().openClip(['0.png', '1.png'], { journal: 'clip.journal' })).close();
   const unsubscribe: () => void = clip.subscribe((event: ClipEvent) => {
     if (event.type === 'progress') console.log(event.stage, event.done, event.of);
     else if (event.type === 'draft') console.log(event.frame.labels);

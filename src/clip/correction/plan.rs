@@ -73,14 +73,14 @@ pub(super) fn groups(changing: &ObjectSet, anchors: &[Vec<Anchor>]) -> Vec<Membe
 /// Frames to learn from come first; then anchors that no propagation reaches; then the forward pass from the first anchor of any object,
 /// and the backward pass from the last one. Frames of both passes become final in the backward pass.
 pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn Fn(u8) -> Vec<usize>) -> Vec<Visit> {
-    let objects = || groups.iter().flat_map(|group| &group.anchors);
-    let begins = |direction: Direction| objects().filter_map(move |(_, anchors)| direction.first(anchors));
+    let objects: Vec<&(u8, Vec<Anchor>)> = groups.iter().flat_map(|group| &group.anchors).collect();
+    let begins = |direction: Direction| objects.iter().filter_map(move |(_, anchors)| direction.first(anchors));
     let (forward, backward) = (begins(Direction::Forward).min(), begins(Direction::Backward).max());
-    let tracked = (1..UNLABELLED).filter(|object| objects().any(|(of, _)| of == object));
+    let tracked = (1..UNLABELLED).filter(|object| objects.iter().any(|(of, _)| of == object));
     let samples: Vec<(u8, Vec<usize>)> = tracked.map(|object| (object, sample(&found(object)))).collect();
     let spreads_to_all = |frame: usize| {
         let anchor = Anchor { frame, spread: Spread::Both, is_whole: false };
-        objects().any(|(_, anchors)| anchors.contains(&anchor))
+        objects.iter().any(|(_, anchors)| anchors.contains(&anchor))
     };
     let mut visits = Vec::new();
     for frame in first..=last {
@@ -92,7 +92,8 @@ pub(super) fn visits([first, last]: [usize; 2], groups: &[Members], found: &dyn 
     }
     let is_reached =
         |frame: usize| forward.is_some_and(|from| frame >= from) || backward.is_some_and(|from| frame <= from);
-    let is_anchor = |frame: usize| objects().any(|(_, anchors)| anchors.iter().any(|anchor| anchor.frame == frame));
+    let is_anchor =
+        |frame: usize| objects.iter().any(|(_, anchors)| anchors.iter().any(|anchor| anchor.frame == frame));
     let alone = (first..=last).filter(|&frame| is_anchor(frame) && !is_reached(frame));
     visits.extend(alone.map(|frame| Visit { frame, task: Task::Anchor }));
     if let Some(from) = forward {

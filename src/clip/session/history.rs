@@ -145,7 +145,7 @@ impl State {
 }
 
 /// How a state differs from another one: the parts that it does not share with it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Difference {
     size: [usize; 2],
     objects: Option<Arc<Objects>>,
@@ -155,7 +155,7 @@ pub(super) struct Difference {
 saved!(Difference { size, objects, frames });
 
 /// The parts of a frame that differ; a part may be gone.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 struct FrameDifference {
     found: Option<Option<Arc<Found>>>,
     renumbered: Option<Option<Arc<Runs>>>,
@@ -166,6 +166,18 @@ struct FrameDifference {
 }
 
 saved!(FrameDifference { found, renumbered, annotation, layer, exact, accepted });
+
+impl FrameDifference {
+    fn is_empty(&self) -> bool {
+        let FrameDifference { found, renumbered, annotation, layer, exact, accepted } = self;
+        found.is_none()
+            && renumbered.is_none()
+            && annotation.is_none()
+            && layer.is_none()
+            && exact.is_none()
+            && accepted.is_none()
+    }
+}
 
 impl Difference {
     /// The difference of a state from one before. Equal parts become shared.
@@ -181,7 +193,7 @@ impl Difference {
                 exact: part(&before.exact, &mut now.exact),
                 accepted: (before.accepted != now.accepted).then_some(now.accepted),
             };
-            if difference != FrameDifference::default() {
+            if !difference.is_empty() {
                 frames.push((index, difference));
             }
         }

@@ -75,7 +75,7 @@ impl Log {
         Log { records: Vec::new(), last: reader.last, length: reader.used, compacted, replaces: false }
     }
 
-    pub(super) fn append(&mut self, kind: Kind, content: &impl Saved) {
+    pub(super) fn append(&mut self, kind: Kind, content: &dyn Saved) {
         let start = self.records.len();
         self.records.push(kind as u8);
         [0u8; BEFORE - 1].write(&mut self.records);

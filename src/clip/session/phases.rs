@@ -130,10 +130,10 @@ fn reopened(clip: &SegmentedClip, annotated: &[usize]) -> Option<Vec<Accepted>> 
 
 /// A locked object that was drawn exactly in a frame, among all or only the given one.
 fn locked_above(clip: &SegmentedClip, frame: usize, object: Option<u8>) -> Option<u8> {
-    let mut labels = clip.frames[frame].exact.as_ref()?.each().map(|(label, _)| label);
-    let is_locked = |label: &u8| clip.objects.locked[usize::from(*label)];
-    let number = |label: u8| clip.objects.number(label);
-    labels.find(|label| is_locked(label) && object.is_none_or(|object| object == number(*label))).map(number)
+    let labels = clip.frames[frame].exact.as_ref()?.values();
+    let is_locked = |label: u8| clip.objects.locked[usize::from(label)];
+    let mut numbers = labels.into_iter().filter(|&label| is_locked(label)).map(|label| clip.objects.number(label));
+    numbers.find(|number| object.is_none_or(|object| object == *number))
 }
 
 /// The phases of annotations.
@@ -155,29 +155,45 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     let before = std::mem::replace(&mut clip.objects, Arc::new(objects));
     let mut seen: Vec<Option<Vec<u8>>> = vec![None; clip.len()];
     for (index, frame) in clip.frames.iter_mut().enumerate() {
-        let FrameState { layer, accepted: was_accepted, .. } = &*frame;
+        let FrameState { layer, exact, accepted: was_accepted, .. } = &*frame;
         if let Some(layer) = layer.as_ref().filter(|_| *was_accepted && accepted.contains(&index)) {
-            seen[index] = Some(layer.labels.map(|label| before.number(label)).values());
+            let labels = layer.labels.values();
+            let labels = match exact {
+                Some(exact) => over(Some(labels), exact.values()),
+                None => labels,
+            };
+            seen[index] = Some(labels.into_iter().map(|label| before.number(label)).collect());
         }
         *frame = FrameState { found: frame.found.take(), ..FrameState::default() };
     }
     let Combined { masks, painted, prompts, draws, .. } = Combined::new(clip, annotations)?;
-    let edited = groups.iter().chain([&gone, &locked]).flatten().chain(described.iter().map(|(object, _)| object));
-    edited.into_iter().try_for_each(|&object| clip.objects.current(object).map(drop))?;
-    if let Some(object) = groups.iter().flatten().find(|object| gone.contains(object)) {
+    let grouped = groups.concat();
+    for &object in grouped.iter().chain(&gone).chain(&locked) {
+        clip.objects.current(object)?;
+    }
+    for (object, _) in &described {
+        clip.objects.current(*object)?;
+    }
+    if let Some(object) = grouped.iter().find(|object| gone.contains(object)) {
         return invalid("deleted", format!("object {object} cannot be merged and deleted"));
     }
     for (object, description) in described {
+        let is_named = !description.name.is_empty();
         describe(clip, object, description);
+        // What this command merges into the object is named with it.
+        for &part in groups.iter().filter(|group| group.first() == Some(&object)).flatten() {
+            clip.objects_mut().named[usize::from(part)] |= is_named;
+        }
     }
-    let mut numbers: Vec<[u8; 2]> = groups.iter().flat_map(|group| merged(group)).collect();
-    numbers.extend(deleted(&gone));
+    let mut numbers = Vec::new();
+    groups.iter().for_each(|group| numbers.append(&mut merged(group)));
+    numbers.append(&mut deleted(&gone));
     let accepted = accepted.into_iter().map(|frame| {
-        let given = masks.iter().find(|mask| mask.frame == frame).map(|mask| mask.labels.clone());
-        let labels = seen[frame].take().map(|seen| match given {
-            Some(given) => over(Some(seen), given),
-            None => seen,
-        });
+        let mask = masks.iter().find(|mask| mask.frame == frame);
+        let labels = match (seen[frame].take(), mask) {
+            (Some(seen), Some(mask)) => Some(under_mask(seen, &mask.labels)),
+            (seen, _) => seen,
+        };
         Accepted { frame, labels }
     });
     let accepted = Some(accepted.collect());
@@ -195,6 +211,14 @@ fn replace(clip: &mut SegmentedClip, all: Declaration) -> Result<VecDeque<Phase>
     phases.extend(draws);
     phases.push_back(Phase::Lock(locked));
     Ok(phases)
+}
+
+/// Accepted labels under a given mask, which is about the objects that it names: its zeros take away no others.
+fn under_mask(seen: Vec<u8>, mask: &[u8]) -> Vec<u8> {
+    let mut is_named = [false; 256];
+    mask.iter().for_each(|&label| is_named[usize::from(label)] = true);
+    let is_about = |seen: u8, label: u8| label != UNLABELLED && (label > 0 || is_named[usize::from(seen)]);
+    seen.into_iter().zip(mask).map(|(seen, &label)| if is_about(seen, label) { label } else { seen }).collect()
 }
 
 /// The annotations that make a new object of all pieces of an object but the largest.

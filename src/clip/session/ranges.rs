@@ -160,7 +160,7 @@ impl RangeJob {
             let reason = format!("a range needs two frames, there are {}", end - start);
             return Err(Error::InvalidOption { name: "frames", reason });
         }
-        let [from_before, to_after] = [0, 1].map(|side| self.solved(before, side).cloned());
+        let is_solved = [0, 1].map(|side| self.solved(before, side).is_some());
         let size = self.segmenter.size().unwrap_or(before.size);
         // The frames outside may have got masks of another size meanwhile.
         self.check_size(before, size)?;
@@ -170,17 +170,18 @@ impl RangeJob {
         let numbers = numbers_of(&run, before, start, &mut clip);
         let [first, last] = [start, end - 1].map(|t| before.scene(t));
         for (frame, now) in run.frames.into_iter().zip(&mut clip.frames[start..end]) {
-            let found = frame.found.as_deref().cloned().map(|mut found| {
+            let mut found = frame.found;
+            if let Some(found) = found.as_mut().map(Arc::make_mut) {
                 found.layer.labels = found.layer.labels.map(|label| numbers[usize::from(label)]);
-                Arc::new(found)
-            });
+            }
             *now = FrameState { found, exact: now.exact.take(), ..FrameState::default() };
         }
+        let pairs = |side: usize| self.beside[side].as_ref().filter(|_| is_solved[side]).map(|(_, pairs)| pairs);
         if start > 0 {
-            clip.join(start, from_before, before);
+            clip.join(start, pairs(0), before);
         }
         if end < clip.len() {
-            clip.join(end, to_after, before);
+            clip.join(end, pairs(1), before);
         }
         let [now_first, now_last] = [start, end - 1].map(|t| clip.scene(t));
         Ok((clip, [first[0].min(now_first[0]), last[1].max(now_last[1])]))
@@ -190,8 +191,8 @@ impl RangeJob {
 impl SegmentedClip {
     /// Sets the motions between a frame and the previous one. Without solved pairs they stay as they were before, if the working size is the
     /// same.
-    fn join(&mut self, index: usize, pairs: Option<Pairs>, before: &SegmentedClip) {
-        let kept = |pair: Option<(_, _)>| pair.map(|(_, motion)| KeptLayeredMotion::of(&motion));
+    fn join(&mut self, index: usize, pairs: Option<&Pairs>, before: &SegmentedClip) {
+        let kept = |pair: &Option<(_, _)>| pair.as_ref().map(|(_, motion)| KeptLayeredMotion::of(motion));
         let halvings = |clip: &SegmentedClip| {
             let found = |t: usize| clip.frames[t].found.as_ref().map(|found| found.halvings);
             [found(index - 1), found(index)]

@@ -66,12 +66,11 @@ impl SegmentedClip {
         frame.layer.write(&mut bytes);
         frame.exact.write(&mut bytes);
         let mut is_there: ObjectSet = [false; 256];
-        frame.labels().for_each(|(label, _)| is_there[usize::from(label)] = true);
+        frame.mark(&mut is_there);
         let users = self.user_objects_in(index);
         // What is known of each object decides only where masks of some object were given.
         let layer = frame.layer.as_ref();
-        let is_given =
-            layer.is_some_and(|layer| layer.labels.each().any(|(label, _)| self.objects.given[usize::from(label)]));
+        let is_given = layer.is_some_and(|layer| layer.labels.any(&|label| self.objects.given[usize::from(label)]));
         let protected = if is_given { self.protected() } else { [false; 256] };
         for k in (1..usize::from(UNLABELLED)).filter(|&k| is_there[k]) {
             let number = self.objects.numbers[k];

@@ -116,15 +116,13 @@ impl Clip {
 
     /// The lowest number that no object has had, and that no command gives which has not taken effect; `None` if none is left.
     pub fn next_object(&self) -> Option<u8> {
-        let coming: Vec<u8> = self
-            .given
-            .iter()
-            .filter(|(_, kind, _)| *kind == Kind::Command)
-            .filter_map(|(step, ..)| self.command(*step))
-            .flat_map(|command| command.new_objects())
-            .collect();
-        let used = &self.state().clip.objects.used;
-        (1..UNLABELLED).find(|&k| !used[usize::from(k)] && !coming.contains(&k))
+        let mut used = self.state().clip.objects.used;
+        for (step, ..) in self.given.iter().filter(|(_, kind, _)| *kind == Kind::Command) {
+            if let Some(command) = self.command(*step) {
+                command.add_objects(&mut used);
+            }
+        }
+        (1..UNLABELLED).find(|&k| !used[usize::from(k)])
     }
 
     /// Number of objects for which no number was left; they count as background.

@@ -8,10 +8,7 @@ import { isObjectNumber, RANGE } from './edits.js';
 import type { ClipPropagation } from './types.js';
 
 /** Labels painted in a frame. */
-export interface LabelledFrame extends Painted {
-  /** Of masks that have a width of their own. */
-  width?: number | undefined;
-}
+export type LabelledFrame = Painted;
 
 /** Clicks and a box that point to an object in a frame. */
 export interface Prompt extends Pointed {
@@ -36,10 +33,9 @@ export function checkedAnnotations({ corrections: painting = [], prompts: pointi
   const form = '{ frame, object, clicks, box }';
   const prompts: Prompt[] = [];
   const read = (option: Prompt['option']) => (entry: Record<string, unknown>, wrong: Wrong) => {
-    const isPrompt = entry['labels'] === undefined && ['box', 'click', 'clicks'].some((name) => entry[name] !== undefined);
+    const isPrompt = entry['labels'] === undefined && ['box', 'clicks'].some((name) => entry[name] !== undefined);
     if (option === 'corrections' && !isPrompt) return painted(entry, wrong);
-    const isShort = option === 'corrections' && entry['object'] === undefined;
-    const { frame, object, ...prompt } = promptOf(isShort ? inFull(entry, wrong) : entry, wrong);
+    const { frame, object, ...prompt } = promptOf(entry, wrong);
     if (prompts.some((other) => frame === other.frame && object === other.object)) throw wrong(`points to object ${object} in frame ${frame}, as one before does`);
     prompts.push({ frame, object, ...prompt, option });
     return undefined;
@@ -59,7 +55,7 @@ function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omi
 
 /** Of an entry whose frame and propagation are checked. Without clicks and box it takes back. */
 export function promptOf(entry: Record<string, unknown>, wrong: Wrong): Pointed {
-  const { frame, propagate, object, clicks = [], box } = entry['label'] === undefined && entry['click'] === undefined ? entry : inFull(entry, wrong);
+  const { frame, propagate, object, clicks = [], box } = entry;
   if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}`);
   if (!isListOf(clicks, isClick)) throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
   if (box !== undefined && !isBox(box)) throw wrong('must have a box, the whole numbers [x, y, width, height]');
@@ -69,15 +65,6 @@ export function promptOf(entry: Record<string, unknown>, wrong: Wrong): Pointed 
   const stray = box && inside.find(([x, y]) => x < left || x >= left + columns || y < top || y >= top + rows);
   if (stray) throw wrong(`has a click at ${stray[0]}, ${stray[1]} that belongs to object ${object} and is not in its box`);
   return { frame: frame as number, object, clicks: clicks.flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]), box: [...(box ?? [])], propagate: propagate as ClipPropagation | undefined };
-}
-
-/** The prompt of a label with a box or a click. */
-function inFull({ label, box, click, ...rest }: Record<string, unknown>, wrong: Wrong): Record<string, unknown> {
-  if (!isObjectNumber(label)) throw wrong(`must have a label, ${RANGE}`);
-  if (box !== undefined && click !== undefined) throw wrong('must have a box or a click, not both');
-  if (box !== undefined) return { ...rest, object: label, box };
-  if (!isPlaces(click) || click.length !== 2) throw wrong('must have a click, the whole numbers [x, y]');
-  return { ...rest, object: label, clicks: [[...click, 1]] };
 }
 
 function isPlaces(value: unknown): value is number[] {
@@ -119,13 +106,13 @@ export function checkUnlocked(locked: Uint8Array | undefined, numbers: ReadonlyM
   if (object !== undefined) throw new VeroneseError('object-locked', `object ${object} is locked: unlock it to change it`);
 }
 
-/** `read` reads the labels of an entry, unless they are kept elsewhere; `before` is an earlier entry of the same frame. */
+/** `read` reads the labels of an entry, unless they are kept elsewhere. */
 export function checkedList(
   option: string,
   form: string,
   list: unknown,
   length: number,
-  read: (entry: Record<string, unknown>, wrong: Wrong, before: LabelledFrame | undefined) => Omit<LabelledFrame, 'frame'> | undefined,
+  read: (entry: Record<string, unknown>, wrong: Wrong) => Omit<LabelledFrame, 'frame'> | undefined,
 ): LabelledFrame[] {
   if (!isListOf(list, isObject)) throw invalidOption(option, `a list of ${form}`, list);
   const all = new Map<string, LabelledFrame>();
@@ -136,10 +123,10 @@ export function checkedList(
     const key = option === 'corrections' && typeof object === 'number' ? `${frame} ${object}` : `${frame}`;
     const before = all.get(key);
     if (propagate !== undefined && !isPropagation(propagate)) throw wrong(`must propagate ${SPREADS}`);
-    const own = read(entry, wrong, before);
+    const own = read(entry, wrong);
     if (own === undefined) continue;
-    if (before && !(option === 'masks' && entry['rle'] !== undefined)) throw wrong(`is of ${own.object === undefined ? '' : `object ${own.object} in `}frame ${frame}, as one before is`);
-    all.set(key, { frame, ...own, propagate: propagate ?? before?.propagate });
+    if (before) throw wrong(`is of ${own.object === undefined ? '' : `object ${own.object} in `}frame ${frame}, as one before is`);
+    all.set(key, { frame, ...own, propagate });
   }
   return [...all.values()];
 }

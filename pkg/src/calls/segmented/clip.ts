@@ -7,10 +7,7 @@ import { Frames } from '../clip/frames.js';
 import { Tracks } from '../clip/tracks.js';
 import type { Places } from '../places.js';
 import type { Home } from '../session/clip.js';
-import { checkedOptions } from './options.js';
-import { PlacedClip } from './place.js';
 import type { ClipOptions, ClipSource, SegmentedClip } from './types.js';
-import { segmentedTwice } from './whole.js';
 
 /** The results of a clip besides its frames. */
 export interface ClipResults {
@@ -34,6 +31,7 @@ async function* segmented(
   places: Places | undefined,
   results: ClipResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
+  const [{ checkedOptions }, { PlacedClip }, { segmentedTwice }] = await Promise.all([import('./options.js'), import('./place.js'), import('./whole.js')]);
   const task = reading(() => checkedOptions(frames, options));
   const { signal, source, settings } = task;
   if (signal?.aborted) throw cancelled(signal);

@@ -10,7 +10,7 @@ import { type Edits, editsOf, isObjectNumber, RANGE, withMerged } from './edits.
 import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './annotations.js';
 
 const OF_ALL = ['motions', 'quality', 'markUnknown', 'subject', 'lookAhead', 'maxSize'];
-const OF_WHOLE = ['masks', 'corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
+const OF_WHOLE = ['corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
 
 /** Frames that can be read again. */
 export interface Whole {
@@ -24,8 +24,6 @@ export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'sig
   transfer: boolean;
   maxSize: number | undefined;
   settings: Settings;
-  /** Not looked at yet, but the call's own. */
-  masks: unknown;
   edits: Edits;
   /** Undefined if not given. */
   locked: Uint8Array | undefined;
@@ -35,7 +33,7 @@ export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'sig
 
 export function checkedOptions(frames: unknown, options: unknown): CheckedOptions {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
-  const { masks, corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
+  const { corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
   const { call, transfer, maxSize, settings } = parted(rest, OF_ALL);
   const source = sourceOf(frames);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
@@ -54,7 +52,6 @@ export function checkedOptions(frames: unknown, options: unknown): CheckedOption
     transfer,
     maxSize,
     settings: { lookAhead: 'all', ...settings },
-    masks: structuredClone(masks),
     ...annotations,
     edits: known,
     locked: all,

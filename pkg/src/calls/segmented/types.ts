@@ -1,6 +1,6 @@
 // Types of a call of the page's, which keeps the states of a clip itself. They are no part of the package.
 
-import type { ClipChange, ClipClick, ClipFrame, ClipTracks, FrameInput, Pixels, SegmentOptions } from '../../../types/index.js';
+import type { ClipChange, ClipClick, ClipFrame, ClipTracks, FrameInput, SegmentOptions } from '../../../types/index.js';
 
 /**
  * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: the next frame is asked for while one is worked
@@ -71,52 +71,10 @@ export type ClipPrompt = {
       /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
       box?: readonly [x: number, y: number, width: number, height: number] | undefined;
     }
-  // in short
-  | {
-      /** The number of the object. */
-      label: number;
-      box: readonly [x: number, y: number, width: number, height: number];
-    }
-  | {
-      /** The number of the object. */
-      label: number;
-      /** Column and row of a pixel of the object. */
-      click: readonly [x: number, y: number];
-    }
 );
 
 /** A frame that a person finds right: its index, or with all its labels as the person saw them, one per pixel, row by row. */
 export type ClipAccepted = number | { frame: number; labels?: Uint8Array | undefined };
-
-/**
- * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
- * may have several of single objects; a later one covers an earlier one, and what is in none of them is background.
- */
-export type ClipMask = {
-  /** Index of the frame, from 0. */
-  frame: number;
-  /** Default: `'both'`; the last one of a frame counts. */
-  propagate?: ClipPropagation | undefined;
-} & (
-  | {
-      /**
-       * One label per pixel, row by row: 0 for the background, 1 to 254 for an object, 255 where it is unlabelled. Or a picture, such as
-       * `ImageData`: if all its pixels are grey, the grey level is the label; otherwise all colours must be of the DAVIS palette
-       * ({@link davisPalette}), and their index is the label, the lower one where there are two. Fully transparent pixels are unlabelled.
-       */
-      labels: Uint8Array | Pixels;
-    }
-  | {
-      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. */
-      png: Uint8Array;
-    }
-  | {
-      /** Number of the object, 1 to 254. */
-      id: number;
-      /** Its run lengths as COCO has them: `size` is height and width, `counts` are compressed or a list. */
-      rle: { size: readonly [height: number, width: number]; counts: string | readonly number[] };
-    }
-);
 
 /**
  * Changes of whole objects. Numbers that no object has change nothing, and are in a note (`object-missing`); a list that begins with one merges
@@ -148,12 +106,6 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    * below is given: they need a whole clip.
    */
   lookAhead?: number | 'all' | undefined;
-  /**
-   * Masks of objects in some frames, with numbers of your own: they hold there to the pixel, and the objects keep their numbers and are
-   * followed through the clip. They take over what was found of them; what was found under one of their numbers gets the lowest free one.
-   * `corrections`, `edits` and `locked` have the numbers that result.
-   */
-  masks?: readonly ClipMask[] | undefined;
   /**
    * Labels painted in some frames, with the numbers of an earlier run. It holds there to the pixel, and the objects that it is about are
    * followed from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it

@@ -6,21 +6,17 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Annotating, Annotations, ClipSummary, LabelledFrame as Found } from '../messages.js';
 import { Ahead } from '../session/ahead.js';
 import { taken } from '../taking.js';
-import type { CheckedOptions, Whole } from './options.js';
+import type { CheckedOptions } from './options.js';
 import { checkCount, type Frames, reads, upTo } from '../clip/frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Prompt, type LabelledFrame } from './annotations.js';
 import { sized } from '../clip/tracks.js';
 import type { ClipResults } from './clip.js';
 
-/** The options, with masks that are checked as well. */
-type Task = Omit<CheckedOptions, 'masks'> & { masks: readonly LabelledFrame[] };
-
 /** If the source fails, the frames before come first. */
-export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: CheckedOptions, results: ClipResults): AsyncGenerator<ClipFrame, void, undefined> {
-  const { transfer, onProgress } = asked;
-  const task = { ...asked, masks: asked.masks === undefined ? [] : await masksOf(asked) };
-  const { read, length: of } = task.source as Whole;
+export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: CheckedOptions, results: ClipResults): AsyncGenerator<ClipFrame, void, undefined> {
+  const { transfer, onProgress } = task;
+  const { read, length: of } = task.source;
   // A state may be of the frames before one that failed.
   if (!task.state) checkCount(of);
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
@@ -43,16 +39,11 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: C
   if (failed) throw failed.thrown;
 }
 
-async function masksOf({ masks, source }: CheckedOptions): Promise<LabelledFrame[]> {
-  const { checkedMasks } = await import('./given-masks.js');
-  return checkedMasks(masks, source.length as number);
-}
-
 /** Solves the pairs that are not known. Without a look-ahead, who solves them does not matter. */
-async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<ClipSummary> {
+async function solved(clip: PlacedClip, frames: Frames, task: CheckedOptions): Promise<ClipSummary> {
   const { settings } = task;
-  const { read, length } = task.source as Whole;
-  const { size = 1, anywhere } = clip.place;
+  const { read, length } = task.source;
+  const { size, anywhere } = clip.place;
   const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
   const known = new Map<number, Uint8Array>();
   for (const index of task.knownPairs ? upTo(length) : []) {
@@ -89,7 +80,7 @@ function copyOf({ data, ...size }: Pixels): Pixels {
   return { ...size, data: data.slice() };
 }
 
-async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uint8Array): Promise<ClipSummary> {
+async function restored(clip: PlacedClip, frames: Frames, task: CheckedOptions, state: Uint8Array): Promise<ClipSummary> {
   const summary = await clip.step<ClipSummary>({ call: 'restoreClip', state, markUnknown: task.settings['markUnknown'] === true });
   const { length } = task.source;
   if (summary.length !== length) {
@@ -103,9 +94,9 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
 }
 
 /** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
-async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
+async function annotated(clip: PlacedClip, frames: Frames, task: CheckedOptions, length: number): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
   const { source, onProgress, onChange } = task;
-  const { read } = source as Whole;
+  const { read } = source;
   const changed = new Set<number>();
   let step = await clip.step<Annotating>({ call: 'annotateClip', annotations: annotationsOf(task, length) });
   for (;;) {
@@ -129,13 +120,13 @@ async function annotated(clip: PlacedClip, frames: Frames, task: Task, length: n
 }
 
 /** The source may have failed before it came to an annotated frame. */
-function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }: Task, length: number): Annotations {
+function annotationsOf({ corrections, prompts, accepted, locked, edits }: CheckedOptions, length: number): Annotations {
   const isThere = ({ frame }: { frame: number }) => frame < length;
-  const maps = [...masks, ...corrections].filter(({ object, propagate }) => object === undefined && propagate !== undefined);
+  const maps = corrections.filter(({ object, propagate }) => object === undefined && propagate !== undefined);
   const ways = new Map(maps.map(({ frame, propagate }) => [frame, propagate]));
-  const spread = <T extends LabelledFrame | Prompt>(said: readonly T[]) => said.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
+  const spread = <T extends LabelledFrame | Prompt>(annotations: readonly T[]) => annotations.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
   return {
-    masks: spread(masks),
+    masks: [],
     corrections: spread(corrections),
     prompts: spread(prompts),
     accepted: accepted?.filter(isThere),
@@ -145,10 +136,10 @@ function annotationsOf({ masks, corrections, prompts, accepted, locked, edits }:
   };
 }
 
-function checkSizes({ masks, corrections, prompts, accepted = [] }: Task, size: { width: number; height: number }): void {
-  for (const [option, said] of Object.entries({ masks, corrections, accepted }) as [string, readonly Partial<LabelledFrame>[]][]) {
-    for (const { frame, labels, width = size.width } of said) {
-      if (labels === undefined || (labels.length === size.width * size.height && width === size.width)) continue;
+function checkSizes({ corrections, prompts, accepted = [] }: CheckedOptions, size: { width: number; height: number }): void {
+  for (const [option, list] of Object.entries({ corrections, accepted }) as [string, readonly Partial<LabelledFrame>[]][]) {
+    for (const { frame, labels } of list) {
+      if (labels === undefined || labels.length === size.width * size.height) continue;
       const sentence = `that of frame ${frame} has ${labels.length} labels, a frame has ${size.width}×${size.height} pixels`;
       throw new VeroneseError('invalid-option', `option '${option}': ${sentence}`);
     }

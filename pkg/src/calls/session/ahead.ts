@@ -28,7 +28,7 @@ export class Ahead {
     this.#last = last;
   }
 
-  /** A frame, with its pairs unless `isSolved` says that they are known. Those before it are not asked for again. */
+  /** A frame of the range, with its pairs unless `isSolved` says that they are known. Those before it are not asked for again. */
   at(index: number, isSolved: (index: number) => boolean): Promise<Solved> {
     for (const frames of [this.#reading, this.#solving]) for (const each of frames.keys()) if (each < index - 1) frames.delete(each);
     for (let next = index; next <= Math.min(index + this.#room, this.#last); next++) {

@@ -12,7 +12,7 @@ import { Ahead, type Solve, type Solved } from './ahead.js';
 import * as commands from './commands.js';
 import type { ClipFrames } from './frames.js';
 import type { JournalWriter } from './journal.js';
-import { Step, type StepClip, type StepRange, type StepSubject } from './step.js';
+import { Step, type StepClip, type StepRange } from './step.js';
 
 /** The worker in which a clip lives, or this thread. */
 export interface Home {
@@ -27,12 +27,15 @@ export interface Home {
   release: () => void;
 }
 
+/** Finds a home; `onLost` is called when its worker has ended. */
+export type House = (onLost?: (reason: VeroneseError) => void) => Home;
+
 export interface ClipParts {
   frames: ClipFrames;
   journal: ClipJournal;
   writer: JournalWriter;
   markUnknown: boolean;
-  house: () => Home;
+  house: House;
 }
 
 /** Somebody who waits for the labels of a frame. */
@@ -47,6 +50,8 @@ interface Request {
 const HAS_MASKS = 1;
 const ACCEPTED = 2;
 const ANNOTATED = 4;
+/** Bytes of frames that are read ahead. */
+const MOST_AHEAD = 256 << 20;
 const NOTHING: ClipStatus = { flags: new Uint8Array(), revisions: new Float64Array(), objects: [], nextObject: 1, width: 0, height: 0, dropped: 0, solved: [] };
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
@@ -67,15 +72,23 @@ export class OpenedClip implements Clip, StepClip {
   readonly #pending = new Map<number, Step>();
   #requests: Request[] = [];
   /** The frames of the range that is being segmented. */
-  #ahead: { step: Step; frames: Ahead } | undefined;
+  #ahead: { step: Step; frames: Ahead; ending: AbortController } | undefined;
+  /** The frame that is being read for anything else. */
+  #reading: { index: number; frame: Promise<Pixels> } | undefined;
+  /** Size of the frame that was read last. */
+  #size = { width: 0, height: 0 };
+  /** Whether a frame that an annotation needs could not be read: the next command tries again. */
+  #isPaused = false;
   /** Tells the loop that something has come. */
-  #poke = () => {};
+  #wake = () => {};
   /** What tracks need of the labels of each frame. */
   readonly #seen = new Map<number, Seen>();
   /** Whether one motion was asked for: then nobody asks why there is no object. */
   #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
+  #closing: VeroneseError | undefined;
   #closed: VeroneseError | undefined;
+  #journalClosed: Promise<void> = Promise.resolve();
   isDamaged = false;
 
   constructor(parts: ClipParts) {
@@ -85,10 +98,13 @@ export class OpenedClip implements Clip, StepClip {
   /** Makes the clip in a home, from what was saved if there is something. */
   async open(saved: Uint8Array | undefined): Promise<ClipAnswer> {
     const { house, frames, markUnknown } = this.#parts;
-    const place = { home: house(), clip: clips++ };
+    // The pool outlives a clip that nobody has any more.
+    const own = new WeakRef(this);
+    const place = { home: house((reason) => own.deref()?.homeLost(reason)), clip: clips++ };
     this.#place = place;
-    homes.register(this, place, this);
-    const task: ClipTask = { call: 'openClip', clip: place.clip, frames: frames.length, markUnknown, saved: saved?.slice() };
+    const { journal, writer } = this.#parts;
+    homes.register(this, { ...place, journal, writer }, this);
+    const task: ClipTask = { call: 'openClip', clip: place.clip, frames: frames.length, markUnknown, saved: saved && new Uint8Array(saved) };
     const answer = (await place.home.perform(task, {}).catch((thrown) => {
       this.#leave();
       throw thrown;
@@ -100,7 +116,7 @@ export class OpenedClip implements Clip, StepClip {
 
   /** Begins with what {@link open} has answered, and goes on with annotations that are still to be applied. */
   begin(answer: ClipAnswer): void {
-    this.#answered(answer);
+    void this.#answered(answer);
     void this.#run();
   }
 
@@ -161,9 +177,12 @@ export class OpenedClip implements Clip, StepClip {
     const { range, signal } = asked;
     const { first, last, options: settings } = range;
     this.#isOneMotion = settings['motions'] === 1;
-    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), { range });
+    const step = this.#apply(() => ({ type: 'segment', first, last, options: settings }), range);
     if (signal) {
-      const cancel = () => step.cancel();
+      const cancel = () => {
+        step.reason = cancelled(signal);
+        step.cancel();
+      };
       signal.addEventListener('abort', cancel);
       const release = () => signal.removeEventListener('abort', cancel);
       void step.then(release, release);
@@ -172,12 +191,11 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   annotate(...annotations: Parameters<Clip['annotate']>): ClipStep {
-    const frame = annotations.length === 0 ? undefined : (Object(annotations[0]) as { frame: number }).frame;
-    return this.#apply(() => commands.annotateCommand(this, annotations), { frame });
+    return this.#apply(() => commands.annotateCommand(this, annotations));
   }
 
   clear(annotations: Parameters<Clip['clear']>[0]): ClipStep {
-    return this.#apply(() => commands.clearCommand(this, annotations), { frame: (Object(annotations) as { frame: number }).frame });
+    return this.#apply(() => commands.clearCommand(this, annotations));
   }
 
   accept(frames: Parameters<Clip['accept']>[0], on = true): ClipStep {
@@ -202,7 +220,7 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   split(object: number, frame: number): ClipStep {
-    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject), { frame });
+    return this.#apply(() => commands.splitCommand(this, object, frame, this.nextObject));
   }
 
   replaceAnnotations(declaration: Parameters<Clip['replaceAnnotations']>[0]): ClipStep {
@@ -226,14 +244,17 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   finish(): void {
-    for (const step of this.#pending.values()) if (step.range) this.#end(step, 'finish');
+    const step = [...this.#given].find(({ range, isFinished }) => range && !isFinished);
+    if (!step) return;
+    step.isFinished = true;
+    this.#end(step, 'finish');
   }
 
   labels(index: number, options?: Parameters<Clip['labels']>[1]): Promise<ClipFrame> {
     return new Promise((resolve, reject) => {
       const { signal } = reading(() => parted(entriesOf(options, ['signal']), [])).call;
-      if (this.#closed) throw this.#closed;
-      if (!isWhole(index, 0, this.length - 1)) throw new VeroneseError('invalid-option', `option 'frame': there is no frame ${String(index)} in a clip of ${this.length} frames`);
+      this.#checkOpen();
+      commands.frameOf(this, 'frame', index);
       if (signal?.aborted) throw cancelled(signal);
       const leave = () => {
         this.#requests = this.#requests.filter((other) => other !== request);
@@ -249,7 +270,7 @@ export class OpenedClip implements Clip, StepClip {
       const request: Request = { index, isParked: false, resolve: settling(resolve), reject: settling(reject) };
       signal?.addEventListener('abort', abort);
       this.#requests.push(request);
-      this.#poke();
+      this.#wake();
       void this.#run();
     });
   }
@@ -266,8 +287,8 @@ export class OpenedClip implements Clip, StepClip {
     const tracks = new Tracks();
     for (const [index, { hasMasks }] of frames.entries()) {
       if (!hasMasks) continue;
-      const seen = this.#seen.get(index) ?? seenIn(await this.labels(index));
-      tracks.addSeen(seen);
+      const seen = this.#seen.get(index) ?? (await this.#seenOf(index));
+      if (seen) tracks.addSeen(seen);
     }
     tracks.dropped = dropped;
     tracks.names = new Map(objects.flatMap(({ number, name }) => (name === '' ? [] : [[number, name]])));
@@ -291,35 +312,61 @@ export class OpenedClip implements Clip, StepClip {
     return () => this.#listeners.delete(listener);
   }
 
-  close(): void {
-    this.#close(new VeroneseError('clip-closed', 'the clip is closed'));
+  async close(): Promise<void> {
+    const reason = new VeroneseError('clip-closed', 'the clip is closed');
+    if (!this.#closing) {
+      this.#closing = reason;
+      this.#wake();
+      // What was given is in the journal.
+      await this.#turn;
+    }
+    await this.#close(reason);
   }
 
   [Symbol.dispose](): void {
-    this.close();
+    void this.close();
   }
 
-  #close(reason: VeroneseError): void {
-    if (this.#closed) return;
+  #checkOpen(): void {
+    const reason = this.#closed ?? this.#closing;
+    if (reason) throw reason;
+  }
+
+  #close(reason: VeroneseError): Promise<void> {
+    if (this.#closed) return this.#journalClosed;
+    this.#closing ??= reason;
     this.#closed = reason;
-    this.#poke();
+    this.#steps = { ...this.#steps, waiting: 0 };
+    this.#wake();
     this.#leave();
     for (const step of this.#given) step.reject(reason);
     this.#given.clear();
     this.#pending.clear();
-    for (const { reject } of [...this.#requests]) reject(reason);
+    for (const { reject } of this.#requests) reject(reason);
     const { writer, journal } = this.#parts;
-    void writer.settled().then(() => journal.close?.()).catch(() => undefined);
+    this.#emit({ type: 'closed', reason });
+    this.#journalClosed = closeJournal(writer, journal);
+    return this.#journalClosed;
+  }
+
+  /** A segmenter that was closed closes its clips. */
+  homeLost(reason: VeroneseError): void {
+    if (reason.code === 'cancelled') void this.#close(reason);
   }
 
   /** Leaves the home, which may be lost. */
   #leave(): void {
     const place = this.#place;
     this.#place = undefined;
-    this.#ahead = undefined;
+    this.#leaveAhead();
     if (!place) return;
     homes.unregister(this);
     leave(place);
+  }
+
+  #leaveAhead(): void {
+    this.#ahead?.ending.abort();
+    this.#ahead = undefined;
   }
 
   #failed(thrown: unknown): Step {
@@ -329,16 +376,16 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   /** Gives the clip a command, which takes what it needs of the caller's at once. */
-  #apply(make: () => ClipCommand, about: StepSubject = {}): ClipStep {
+  #apply(make: () => ClipCommand, range?: StepRange): Step {
     let command: ClipCommand;
     try {
-      if (this.#closed) throw this.#closed;
+      this.#checkOpen();
       command = reading(make);
     } catch (thrown) {
       return this.#failed(thrown);
     }
-    const step = new Step(this, about);
-    this.#poke();
+    const step = new Step(this, { range, frame: commands.frameOfCommand(command) });
+    this.#wake();
     // A copy: it is given again if the home is lost.
     const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
     this.#given.add(step);
@@ -347,7 +394,9 @@ export class OpenedClip implements Clip, StepClip {
         step.number = answer.step as number;
         this.#pending.set(step.number, step);
         void this.#answered(answer, step);
+        this.#isPaused = false;
         if (step.isCancelled) this.#end(step, 'cancel');
+        else if (step.isFinished) this.#end(step, 'finish');
         void this.#run();
       },
       (thrown) => {
@@ -359,7 +408,8 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   async #move(what: 'undo' | 'redo'): Promise<boolean> {
-    this.#poke();
+    this.#checkOpen();
+    this.#wake();
     const answer = await this.#send<ClipAnswer>((clip) => ({ call: 'moveClip', clip, what, step: 0 }));
     await this.#answered(answer);
     void this.#run();
@@ -369,7 +419,7 @@ export class OpenedClip implements Clip, StepClip {
   /** Ends a step that has not taken effect. */
   #end(step: Step, what: 'cancel' | 'finish'): void {
     if (what === 'cancel') step.isCancelled = true;
-    this.#poke();
+    this.#wake();
     // One that is not given yet is ended when it is.
     if (step.number === 0 || !this.#pending.has(step.number)) return;
     this.#send<ClipAnswer>((clip) => ({ call: 'moveClip', clip, what, step: step.number })).then(
@@ -381,30 +431,42 @@ export class OpenedClip implements Clip, StepClip {
     );
   }
 
-  #segmentPair(first: Pixels, second: Pixels): Promise<Segmentation> {
-    const { home } = this.#place as { home: Home };
+  async #segmentPair(first: Pixels, second: Pixels): Promise<Segmentation> {
+    // A home that was lost is had again.
+    const home = await this.#send<Home>(() => undefined);
     return home.perform({ call: 'segmentPair', frames: [first, second], settings: { quality: 'fast' } }, {}) as Promise<Segmentation>;
   }
 
-  /** Makes a call when those before are answered. */
-  #send<Answer>(task: (clip: number) => ClipTask): Promise<Answer> {
+  /** What tracks need of a frame; undefined if it has lost its masks meanwhile. */
+  async #seenOf(index: number): Promise<Seen | undefined> {
+    try {
+      return seenIn(await this.labels(index));
+    } catch (thrown) {
+      if (isCode(thrown, 'invalid-option')) return undefined;
+      throw thrown;
+    }
+  }
+
+  /** Makes a call when those before are answered. Without a task it gives the home. */
+  #send<Answer>(task: (clip: number) => ClipTask | undefined): Promise<Answer> {
     const sent = this.#turn.then(() => this.#perform<Answer>(task));
     this.#turn = sent.catch(() => undefined);
     return sent;
   }
 
   /** Makes a call; if the home is lost, in another one. */
-  async #perform<Answer>(task: (clip: number) => ClipTask): Promise<Answer> {
+  async #perform<Answer>(task: (clip: number) => ClipTask | undefined): Promise<Answer> {
     for (let attempts = 1; ; attempts++) {
       if (this.#closed) throw this.#closed;
       try {
         const { home, clip } = this.#place ?? (await this.#revive());
-        const answer = await home.perform(task(clip), {});
+        const own = task(clip);
+        const answer = own ? await home.perform(own, {}) : home;
         if (answer === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
         return answer as Answer;
       } catch (thrown) {
         if (this.#closed) throw this.#closed;
-        if (isCode(thrown, 'cancelled')) this.#close(thrown);
+        if (isCode(thrown, 'cancelled')) void this.#close(thrown);
         if (!isCode(thrown, 'worker-failed', 'internal')) throw thrown;
         this.#leave();
         this.#lost = thrown;
@@ -418,14 +480,27 @@ export class OpenedClip implements Clip, StepClip {
 
   /** Opens the clip again, from its journal. Steps that had not taken effect go on. */
   async #revive(): Promise<{ home: Home; clip: number }> {
-    const answer = await this.open(await this.#parts.writer.content());
+    const { writer } = this.#parts;
+    const content = await writer.content();
+    const answer = await this.open(content);
+    const { used = 0, isDamaged = false, status } = answer;
+    if (content && used < content.length) {
+      await writer.cut(content, used, isDamaged).catch(() => undefined);
+      const lost = new VeroneseError('write-failed', 'the journal cannot be read any more: steps that had not taken effect are lost');
+      for (const step of this.#pending.values()) step.reject(lost);
+      for (const step of this.#pending.values()) this.#given.delete(step);
+      this.#pending.clear();
+    }
     this.#emit({ type: 'revived', reason: this.#lost as VeroneseError });
-    void this.#answered(answer);
+    // What a step has changed that had not taken effect is not there any more.
+    const frames = Array.from(status?.flags ?? [], (flag, index) => (flag & HAS_MASKS ? index : -1)).filter((index) => index >= 0);
+    void this.#answered({ ...answer, frames });
     return this.#place as { home: Home; clip: number };
   }
 
   /** Takes in what has happened. Steps are told as settled when the journal has them; resolves then. */
   async #answered(answer: ClipAnswer, step?: Step): Promise<void> {
+    if (this.#closed) return;
     const { frames, settled, status, labels, draft, records, wanted } = answer;
     const [undo, redo, waiting] = answer.steps;
     this.#steps = { undo, redo, waiting };
@@ -442,8 +517,8 @@ export class OpenedClip implements Clip, StepClip {
     if (status && JSON.stringify(status.objects) !== objects) this.#emit({ type: 'objects' });
     if (frames.length > 0) this.#emit({ type: 'frames', frames });
     if (draft) this.#emit({ type: 'draft', frame: sized(draft, this.#sizeOf(draft)) });
-    for (const own of dropped) own?.reject(own.failure ? own.failure.thrown : cancelled());
-    if (ends.length + frames.length === 0) return;
+    for (const own of dropped) own?.reject(own.failure ? own.failure.thrown : (own.reason ?? cancelled()));
+    if (!records && ends.length === 0) return;
     await kept;
     for (const { end, step } of ends) this.#settle(end, step);
   }
@@ -452,7 +527,7 @@ export class OpenedClip implements Clip, StepClip {
   #taken(number: number, frames: readonly number[]): Step | undefined {
     const step = this.#pending.get(number);
     this.#pending.delete(number);
-    if (this.#ahead?.step === step) this.#ahead = undefined;
+    if (this.#ahead?.step === step) this.#leaveAhead();
     if (!step) return undefined;
     this.#given.delete(step);
     const { range } = step;
@@ -473,7 +548,8 @@ export class OpenedClip implements Clip, StepClip {
 
   async #keep(records: Uint8Array, replaces: boolean): Promise<void> {
     try {
-      this.#emit({ type: 'kept', bytes: await this.#parts.writer.write(records, replaces) });
+      const bytes = await this.#parts.writer.write(records, replaces);
+      if (bytes > 0) this.#emit({ type: 'kept', bytes });
     } catch (thrown) {
       const error = thrown instanceof VeroneseError ? thrown : new VeroneseError('write-failed', `the journal cannot be written: ${(thrown as Error)?.message}`, { cause: thrown });
       this.#emit({ type: 'unkept', error });
@@ -481,14 +557,15 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   #label(found: LabelledFrame): void {
-    const frame = sized(found, this.#status);
+    const frame = sized(found, this.#sizeOf(found));
     this.#seen.set(frame.index, seenIn(frame));
-    for (const { index, resolve } of [...this.#requests]) if (index === frame.index) resolve({ ...frame, labels: frame.labels.slice(), objects: structuredClone(frame.objects) });
+    for (const { index, resolve } of this.#requests) if (index === frame.index) resolve(structuredClone(frame));
   }
 
+  /** The clip's size, or that of the frame which was read last while a range of another size is segmented. */
   #sizeOf({ labels }: LabelledFrame): { width: number; height: number } {
-    const { width, height } = this.#parts.frames.size ?? this.#status;
-    return width * height === labels.length ? { width, height } : this.#status;
+    const { width, height } = this.#status;
+    return width * height === labels.length ? { width, height } : this.#size;
   }
 
   /** Gives the clip what it wants, until it wants nothing. */
@@ -496,18 +573,18 @@ export class OpenedClip implements Clip, StepClip {
     if (this.#isRunning) return;
     this.#isRunning = true;
     try {
-      while (!this.#closed) {
+      while (!this.#closing) {
         // What was given meanwhile goes first.
         await this.#turn;
         const request = this.#requests.find(({ isParked }) => !isParked);
         const wanted = this.#wanted;
         if (request && !(wanted?.stage === 'labels' && wanted.frame === request.index)) await this.#ask(request);
-        else if (wanted) await this.#take(wanted);
+        else if (wanted && !this.#isPaused) await this.#take(wanted);
         else break;
       }
     } catch (thrown) {
       // A home that cannot be had, or a clip that was closed.
-      if (!this.#closed) this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
+      if (!this.#closed) void this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
     } finally {
       this.#isRunning = false;
     }
@@ -527,43 +604,58 @@ export class OpenedClip implements Clip, StepClip {
   async #take(wanted: WantedFrame): Promise<void> {
     const { frame: index, stage, step: number, isCached } = wanted;
     const step = this.#pending.get(number);
-    // A range that was begun before the clip was opened again: its solved pairs are kept.
-    if (stage === 'pairs' && !step) return this.#drop(number);
+    // A range that was begun before the clip was opened again, and for which no annotation waits: its solved pairs are kept.
+    if (stage === 'pairs' && !step && this.#steps.waiting === 1) return this.#drop(number);
+    const woken = new Promise<undefined>((resolve) => (this.#wake = () => resolve(undefined)));
     this.#report(wanted, step);
     let solved: Solved | undefined;
     try {
-      if (stage === 'pairs') solved = await this.#next(step as Step, wanted);
-      else if (!isCached) solved = { frame: await this.#parts.frames.read(index), pairs: undefined };
+      if (!isCached || stage === 'pairs') solved = await Promise.race([this.#next(wanted, step), woken]);
     } catch (thrown) {
+      this.#reading = undefined;
       return this.#unreadable(wanted, step, thrown);
     }
-    if ((stage === 'pairs' && !solved) || !isSame(this.#wanted, wanted) || this.#closed) return;
-    const draft = step?.range?.drafts === true;
-    const frame = solved && { ...solved.frame, data: solved.frame.data as Uint8Array };
+    const isRead = solved !== undefined || (isCached && stage !== 'pairs');
+    if (!isRead || !isSame(this.#wanted, wanted) || this.#closing) return;
+    const { width, height } = solved?.frame ?? this.#size;
+    this.#size = { width, height };
     try {
       // A copy: pairs may still be solved with it, or it is given again.
-      const task = (clip: number): ClipTask => ({ call: 'takeClip', clip, index, frame: frame && { ...frame, data: frame.data.slice() }, solved: solved?.pairs?.slice(), draft });
+      const copy = () => solved && { width, height, data: solved.frame.data.slice() };
+      const draft = step?.range?.drafts === true;
+      const task = (clip: number): ClipTask => ({ call: 'takeClip', clip, index, frame: copy(), solved: solved?.pairs?.slice(), draft });
       const answer = await this.#send<ClipAnswer | undefined>(task);
+      this.#reading = undefined;
       if (answer) void this.#answered(answer, step);
       else this.#wanted = { ...wanted, isCached: false };
     } catch (thrown) {
       if (this.#closed) throw thrown;
-      if (isCode(thrown, 'worker-failed', 'internal')) return this.#refused(wanted, step, thrown);
-      return this.#unreadable(wanted, step, thrown);
+      if (isCode(thrown, 'worker-failed', 'internal')) return this.#giveUp(wanted, step, thrown);
+      const isOfSize = isCode(thrown, 'frame-size-mismatch');
+      return this.#unreadable(wanted, step, isOfSize ? new VeroneseError(thrown.code, `frame ${index}: ${thrown.message}`, { cause: thrown }) : thrown);
     }
   }
 
-  /** A frame of the range with its pairs; undefined if something else came first. */
-  async #next(step: Step, { frame: index }: WantedFrame): Promise<Solved | undefined> {
-    const range = step.range as StepRange;
-    if (this.#ahead?.step !== step) this.#ahead = { step, frames: this.#aheadOf(range) };
-    const solved = new Set(this.#status.solved);
-    const frame = this.#ahead.frames.at(index, (index) => solved.has(index));
-    const poked = new Promise<undefined>((resolve) => (this.#poke = () => resolve(undefined)));
-    return Promise.race([frame, poked]);
+  /** A frame that is wanted; one of a range with its pairs, some frames ahead. */
+  #next({ frame: index, stage }: WantedFrame, step: Step | undefined): Promise<Solved> {
+    const { range } = step ?? {};
+    // The frames beside a range are wanted for it as well.
+    if (stage === 'pairs' && step && range && index >= range.first && index <= range.last) {
+      if (this.#ahead?.step !== step) {
+        const ending = new AbortController();
+        this.#ahead = { step, ending, frames: this.#aheadOf(range, ending.signal) };
+      }
+      const solved = new Set(this.#status.solved);
+      return this.#ahead.frames.at(index, (index) => solved.has(index));
+    }
+    if (this.#reading?.index !== index) this.#reading = { index, frame: this.#parts.frames.read(index) };
+    const { frame } = this.#reading;
+    // Whoever wants it hears of it.
+    frame.catch(() => undefined);
+    return frame.then((frame) => ({ frame, pairs: undefined }));
   }
 
-  #aheadOf({ options: settings, last, pairs: given }: StepRange): Ahead {
+  #aheadOf({ options: settings, last, pairs: given }: StepRange, signal: AbortSignal): Ahead {
     const { beside, anywhere, size = 1 } = this.#place?.home ?? {};
     // Where there are masks to correct, their home is left free.
     const perform = this.#status.flags.some((flag) => flag & HAS_MASKS) ? beside : anywhere;
@@ -573,9 +665,15 @@ export class OpenedClip implements Clip, StepClip {
       const known = await given?.(index);
       if (known !== undefined) return checkedBytes(`the pairs of frame ${index}`, known).slice();
       if (!isShared) return undefined;
-      return perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, {}) as Promise<Uint8Array>;
+      return perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, { signal }) as Promise<Uint8Array>;
     };
-    return new Ahead((index) => this.#parts.frames.read(index), isShared || given ? solve : undefined, isShared ? size : 1, last);
+    return new Ahead((index) => this.#parts.frames.read(index), isShared || given ? solve : undefined, isShared ? this.#room(size) : 1, last);
+  }
+
+  /** How many frames there is room for, of as many as there are workers. */
+  #room(workers: number): number {
+    const { width, height } = this.#size;
+    return Math.max(1, Math.min(workers, Math.floor(MOST_AHEAD / Math.max(1, 4 * width * height))));
   }
 
   async #drop(number: number): Promise<void> {
@@ -585,21 +683,27 @@ export class OpenedClip implements Clip, StepClip {
   /** A frame cannot be read, or is another one than before: the labels are not known, the step is taken back, the range ends before it. */
   async #unreadable({ frame: index, stage, step: number }: WantedFrame, step: Step | undefined, thrown: unknown): Promise<void> {
     if (stage === 'labels') {
-      for (const { index: own, reject } of [...this.#requests]) if (own === index) reject(thrown);
+      for (const { index: own, reject } of this.#requests) if (own === index) reject(thrown);
       void this.#answered(await this.#send<ClipAnswer>((clip) => ({ call: 'lookAtClip', clip, index: undefined })));
       return;
     }
-    const failures = step ? ++step.failures : 0;
-    if (step) step.failure ??= { thrown };
-    this.#ahead = undefined;
+    // What was given before the clip was opened again is not lost for that.
+    if (!step) {
+      this.#isPaused = true;
+      this.#emit({ type: 'paused', frame: index, error: thrown instanceof VeroneseError ? thrown : new VeroneseError('unreadable-file', `frame ${index}: ${(thrown as Error)?.message}`, { cause: thrown }) });
+      return;
+    }
+    const failures = ++step.failures;
+    step.failure ??= { thrown };
+    this.#leaveAhead();
     // The frame before a range can be done without; then the frames end.
     const what = stage === 'pairs' && failures <= 2 ? 'finish' : 'cancel';
     void this.#answered(await this.#send<ClipAnswer>((clip) => ({ call: 'moveClip', clip, what, step: number })));
   }
 
-  /** Two homes were lost over the same frame: what wanted it is given up. */
-  async #refused({ frame: index, stage, step: number }: WantedFrame, step: Step | undefined, thrown: VeroneseError): Promise<void> {
-    if (stage === 'labels') for (const { index: own, reject } of [...this.#requests]) if (own === index) reject(thrown);
+  /** Two homes were lost with the same frame: what wanted it is given up. */
+  async #giveUp({ frame: index, stage, step: number }: WantedFrame, step: Step | undefined, thrown: VeroneseError): Promise<void> {
+    if (stage === 'labels') for (const { index: own, reject } of this.#requests) if (own === index) reject(thrown);
     if (stage === 'labels') return;
     if (step) step.failure ??= { thrown };
     return this.#drop(number);
@@ -607,8 +711,10 @@ export class OpenedClip implements Clip, StepClip {
 
   #report({ frame, stage }: WantedFrame, step: Step | undefined): void {
     const { range } = step ?? {};
-    if (stage === 'pairs' && range) this.#emit({ type: 'progress', stage, frame, done: Math.max(0, frame - range.first), of: range.last - range.first + 1 });
-    else if (stage === 'annotations') this.#emit({ type: 'progress', stage, frame, done: step ? step.visits++ : 0, of: undefined });
+    if (stage === 'annotations') this.#emit({ type: 'progress', stage, frame, done: step ? step.visits++ : 0, of: undefined });
+    else if (stage === 'pairs' && range && frame >= range.first && frame <= range.last) {
+      this.#emit({ type: 'progress', stage, frame, done: frame - range.first, of: range.last - range.first + 1 });
+    }
   }
 
   #emit(event: ClipEvent): void {
@@ -623,11 +729,20 @@ export class OpenedClip implements Clip, StepClip {
   }
 }
 
-/** Frees the homes of clips that nobody has any more. */
-const homes = new FinalizationRegistry<{ home: Home; clip: number }>(leave);
+/** Frees the homes and journals of clips that nobody has any more. */
+const homes = new FinalizationRegistry<{ home: Home; clip: number; journal: ClipJournal; writer: JournalWriter }>(({ journal, writer, ...place }) => {
+  leave(place);
+  void closeJournal(writer, journal);
+});
 
 function leave({ home, clip }: { home: Home; clip: number }): void {
   home.perform({ call: 'closeClip', clip }, {}).then(home.release, home.release);
+}
+
+/** Tries once more to write what could not be written. What cannot be closed is left to its end. */
+async function closeJournal(writer: JournalWriter, journal: ClipJournal): Promise<void> {
+  await writer.flush().catch(() => undefined);
+  await Promise.resolve(journal.close?.()).catch(() => undefined);
 }
 
 function isSame(one: WantedFrame | undefined, other: WantedFrame): boolean {

@@ -77,7 +77,7 @@ function annotationOf(clip: CommandTarget, given: Record<string, unknown>, wrong
   if (!isWhole(frame, 0, clip.length - 1)) throw wrong(`'frame' must be a whole number from 0 to ${clip.length - 1}`);
   if (propagate !== undefined && !PROPAGATIONS.includes(propagate as string)) throw wrong(`'propagate' must be one of ${PROPAGATIONS.map((word) => `'${word}'`).join(', ')}`);
   const about = { frame, propagate: propagate as string | undefined };
-  const forms = [strokes, mask, labels, clicks ?? box].filter((form) => form !== undefined);
+  const forms = [strokes, mask, labels, clicks === undefined ? box : clicks].filter((form) => form !== undefined);
   if (forms.length !== 1) throw wrong(FORMS);
   if (labels !== undefined) {
     if (object !== undefined) throw wrong("'labels' name their objects themselves: a mask of one object is 'mask'");
@@ -86,7 +86,7 @@ function annotationOf(clip: CommandTarget, given: Record<string, unknown>, wrong
   }
   if (!isObjectNumber(object)) throw wrong(`'object' must be ${OBJECTS}`);
   const name = strokes === undefined ? 'mask' : 'strokes';
-  const painted = strokes ?? mask;
+  const painted = strokes === undefined ? mask : strokes;
   if (painted === undefined) return { ...about, content: 'prompt', object, ...promptOf(clip, clicks, box, wrong) };
   const image = labelImage(clip, name, painted, wrong);
   if (image.some((label) => label !== 0 && label !== 1 && label !== UNLABELLED)) throw wrong(`'${name}' must be 1 where the object is, 0 where it is not, and ${UNLABELLED} where that is open`);
@@ -127,7 +127,13 @@ function named(option: string, given: unknown, known: readonly string[]): Record
   return { ...optionsObject(given) };
 }
 
-function frameOf({ length }: CommandTarget, option: string, frame: unknown): number {
+/** The frame that a command is about; undefined if it is about more, or about objects. */
+export function frameOfCommand(command: ClipCommand): number | undefined {
+  if (command.type === 'annotate') return command.annotations[0]?.frame;
+  return command.type === 'clear' || command.type === 'split' ? command.frame : undefined;
+}
+
+export function frameOf({ length }: Pick<CommandTarget, 'length'>, option: string, frame: unknown): number {
   if (isWhole(frame, 0, length - 1)) return frame;
   const found = isNumber(frame) ? frame : `a value of type ${typeof frame}`;
   throw new VeroneseError('invalid-option', `option '${option}': there is no frame ${found} in a clip of ${length} frames`);

@@ -33,7 +33,7 @@ export class FrameCache {
   }
 
   forget(clip: number): void {
-    for (const key of [...this.#frames.keys()]) if (key.startsWith(`${clip} `)) this.#remove(key);
+    for (const key of this.#frames.keys()) if (key.startsWith(`${clip} `)) this.#remove(key);
   }
 
   #remove(key: string): void {

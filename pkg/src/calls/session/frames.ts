@@ -2,8 +2,7 @@
 
 import type { Pixels } from '../../../types/index.js';
 import { invalidInput, isWhole, reading } from '../../common/checks.js';
-import { VeroneseError } from '../../common/errors.js';
-import { scaled, scaledSize } from '../../common/scaling.js';
+import { scaled } from '../../common/scaling.js';
 import type { Places } from '../places.js';
 import { taken } from '../taking.js';
 import { checkedPixels } from '../tasks.js';
@@ -13,8 +12,6 @@ export class ClipFrames {
   readonly #read: (index: number) => unknown;
   readonly #places: Places | undefined;
   readonly #maxSize: number | undefined;
-  /** Of all frames, once one has been read. */
-  size: Pick<Pixels, 'width' | 'height'> | undefined;
 
   /** A list, or `{ length, read(index) }`. */
   constructor(frames: unknown, places: Places | undefined, maxSize: number | undefined) {
@@ -38,12 +35,6 @@ export class ClipFrames {
 
   #checked(frame: unknown, index: number): Pixels {
     const given = checkedPixels(`frame ${index}`, frame, this.#maxSize);
-    const { width, height } = scaledSize(given, this.#maxSize);
-    this.size ??= { width, height };
-    if (width !== this.size.width || height !== this.size.height) {
-      const sizes = `${width}×${height} pixels, the others have ${this.size.width}×${this.size.height}`;
-      throw new VeroneseError('frame-size-mismatch', `frame ${index} has ${sizes}`);
-    }
     return scaled({ ...given, data: taken([given.data], false)[0] as Uint8Array }, this.#maxSize);
   }
 }

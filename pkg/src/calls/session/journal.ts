@@ -54,6 +54,17 @@ export class JournalWriter {
     return writing;
   }
 
+  /** Tries once more to write what could not be written. */
+  flush(): Promise<number> {
+    return this.write(new Uint8Array(), false);
+  }
+
+  /** Cuts off what could not be read of the content. If that is damaged, the journal may keep all of it elsewhere. */
+  async cut(content: Uint8Array, used: number, isDamaged: boolean): Promise<void> {
+    if (isDamaged) await this.#journal.keepDamaged?.(content);
+    await this.write(content.subarray(0, used), true);
+  }
+
   /** Waits until all that was given is written, or could not be. */
   settled(): Promise<void> {
     return this.#written;
@@ -62,7 +73,7 @@ export class JournalWriter {
   async #write(): Promise<number> {
     const records = this.#unwritten;
     const replaces = this.#replaces;
-    if (records.length === 0) return 0;
+    if (!records.some(({ length }) => length > 0) && !replaces) return 0;
     [this.#unwritten, this.#replaces] = [[], false];
     const bytes = joined(records);
     try {

@@ -1,4 +1,4 @@
-// Opens clips: checks what they are made of, and reads their journals.
+// Opens clips: checks what they are made of, and reads their journals. What clips do is loaded with the first one.
 
 import type { Clip, ClipJournal } from '../../../types/index.js';
 import { checkedBytes, entriesOf, invalidOption, isObject, reading } from '../../common/checks.js';
@@ -6,9 +6,8 @@ import { VeroneseError } from '../../common/errors.js';
 import type { Places } from '../places.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
-import { type Home, OpenedClip } from './clip.js';
+import type { House, OpenedClip } from './clip.js';
 import { ClipFrames } from './frames.js';
-import { JournalWriter, MemoryJournal } from './journal.js';
 
 /** What the place where the package runs gives to clips. */
 export interface ClipHost {
@@ -19,8 +18,9 @@ export interface ClipHost {
 }
 
 /** `house` finds a home for the clip, now and when that is lost. */
-export async function openedClip(given: unknown, options: unknown, house: () => Home, { places, journal: named }: ClipHost): Promise<Clip> {
+export async function openedClip(given: unknown, options: unknown, house: House, { places, journal: named }: ClipHost): Promise<Clip> {
   const { frames, journal, saved, markUnknown } = reading(() => checked(given, options, places));
+  const [{ OpenedClip }, { JournalWriter, MemoryJournal }] = await Promise.all([import('./clip.js'), import('./journal.js')]);
   const opened: ClipJournal = typeof journal === 'string' ? await named(journal) : (journal ?? new MemoryJournal());
   const writer = new JournalWriter(opened);
   let clip: OpenedClip | undefined;
@@ -32,16 +32,13 @@ export async function openedClip(given: unknown, options: unknown, house: () => 
     const answer = await clip.open(from);
     const { used = 0, isDamaged = false } = answer;
     if (saved && used < saved.length) throw new VeroneseError('invalid-option', "option 'saved': it is damaged or cut off");
-    if (content && used < content.length) {
-      if (isDamaged) await opened.keepDamaged?.(content);
-      await writer.write(content.slice(0, used), true);
-    }
+    if (content && used < content.length) await writer.cut(content, used, isDamaged);
     if (saved) await writer.write(saved, true);
     clip.isDamaged = isDamaged;
     clip.begin(answer);
     return clip;
   } catch (thrown) {
-    if (clip) clip.close();
+    if (clip) await clip.close();
     else await opened.close?.();
     throw thrown;
   }

@@ -1,6 +1,7 @@
 // A step of a clip: a command that was given, until it has taken effect.
 
 import type { ClipChange, ClipFrame, ClipStep } from '../../../types/index.js';
+import type { VeroneseError } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
 
 /** What a step asks of its clip. */
@@ -34,6 +35,10 @@ export class Step implements ClipStep {
   frames: readonly number[] = [];
   /** A frame that could not be read, or another reason to take it back. */
   failure: { thrown: unknown } | undefined;
+  /** Why it is cancelled, if the caller has said so. */
+  reason: VeroneseError | undefined;
+  /** Whether its range is ended after the frames that are in. */
+  isFinished = false;
   /** How many frames could not be read. */
   failures = 0;
   /** How many frames it has taken, if it annotates. */
@@ -67,6 +72,7 @@ export class Step implements ClipStep {
     return (this.#shown ??= this.#clip.shownOf(this));
   }
 
+  // oxlint-disable-next-line unicorn/no-thenable -- a step is awaited
   then<Value = readonly ClipChange[], Reason = never>(
     onSettled?: ((changes: readonly ClipChange[]) => Value | PromiseLike<Value>) | null,
     onFailed?: ((reason: unknown) => Reason | PromiseLike<Reason>) | null,

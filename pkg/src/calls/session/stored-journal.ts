@@ -13,7 +13,7 @@ export async function openStored(name: string): Promise<ClipJournal> {
   try {
     return new StoredJournal(name, await opened(), unlock);
   } catch (cause) {
-    unlock();
+    await unlock();
     throw failed(name, cause);
   }
 }
@@ -21,9 +21,11 @@ export async function openStored(name: string): Promise<ClipJournal> {
 class StoredJournal implements ClipJournal {
   readonly #name: string;
   readonly #database: IDBDatabase;
-  readonly #unlock: () => void;
+  readonly #unlock: () => Promise<void>;
+  /** The number of the next row. */
+  #next: number | undefined;
 
-  constructor(name: string, database: IDBDatabase, unlock: () => void) {
+  constructor(name: string, database: IDBDatabase, unlock: () => Promise<void>) {
     this.#name = name;
     this.#database = database;
     this.#unlock = unlock;
@@ -35,9 +37,13 @@ class StoredJournal implements ClipJournal {
   }
 
   async append(records: Uint8Array): Promise<void> {
-    const last = await this.#run('readonly', (store) => store.getAllKeys(rangeOf(this.#name)));
-    const at = ((last.at(-1) as [string, number] | undefined)?.[1] ?? -1) + 1;
+    if (this.#next === undefined) {
+      const keys = await this.#run('readonly', (store) => store.getAllKeys(rangeOf(this.#name)));
+      this.#next = ((keys.at(-1) as [string, number] | undefined)?.[1] ?? -1) + 1;
+    }
+    const at = this.#next;
     await this.#run('readwrite', (store) => store.put(records, [this.#name, at]));
+    this.#next = at + 1;
   }
 
   async replace(saved: Uint8Array): Promise<void> {
@@ -45,6 +51,7 @@ class StoredJournal implements ClipJournal {
       store.delete(rangeOf(this.#name));
       return store.put(saved, [this.#name, 0]);
     });
+    this.#next = 1;
   }
 
   /** Under a name of its own. */
@@ -52,9 +59,9 @@ class StoredJournal implements ClipJournal {
     await this.#run('readwrite', (store) => store.put(content, [`${this.#name}.damaged`, 0]));
   }
 
-  close(): void {
+  close(): Promise<void> {
     this.#database.close();
-    this.#unlock();
+    return this.#unlock();
   }
 
   #run<T>(mode: 'readonly' | 'readwrite', work: (store: IDBObjectStore) => IDBRequest<T>): Promise<T> {
@@ -62,7 +69,9 @@ class StoredJournal implements ClipJournal {
       const transaction = this.#database.transaction(ROWS, mode, { durability: 'strict' });
       const request = work(transaction.objectStore(ROWS));
       transaction.oncomplete = () => resolve(request.result);
-      transaction.onabort = () => reject(failed(this.#name, transaction.error));
+      transaction.onabort = () => reject(transaction.error);
+    }).catch((cause: unknown) => {
+      throw failed(this.#name, cause);
     });
   }
 }
@@ -76,19 +85,28 @@ function opened(): Promise<IDBDatabase> {
   return new Promise((resolve, reject) => {
     const request = indexedDB.open(DATABASE, 1);
     request.onupgradeneeded = () => request.result.createObjectStore(ROWS);
-    request.onsuccess = () => resolve(request.result);
-    request.onerror = () => reject(request.error as DOMException);
+    request.onsuccess = () => {
+      // Whoever deletes the database need not wait for this page.
+      request.result.onversionchange = () => request.result.close();
+      resolve(request.result);
+    };
+    request.onerror = () => reject(request.error);
   });
 }
 
 /** Holds the lock of a journal until the returned function is called, or the page is closed. */
-async function lock(name: string): Promise<() => void> {
+async function lock(name: string): Promise<() => Promise<void>> {
   const { locks } = globalThis.navigator ?? {};
   if (!locks || !globalThis.indexedDB) throw new VeroneseError('invalid-option', "option 'journal': there is no storage for names here: give an object with read, append and replace");
   return new Promise((resolve, reject) => {
     const held = locks.request(`veronese journal ${name}`, { ifAvailable: true }, (lock) => {
       if (!lock) throw new VeroneseError('invalid-option', `option 'journal': another clip has '${name}' open: close it first`);
-      return new Promise<void>((release) => resolve(release));
+      return new Promise<void>((release) => {
+        resolve(() => {
+          release();
+          return held;
+        });
+      });
     });
     held.catch(reject);
   });

@@ -16,7 +16,7 @@ export function Pair({ first, second }: { first: string; second: File }) {
 }
 
 export function Clip({ files }: { files: File[] }) {
-  return <VeroneseSegmenter name="masks" required quality="fast" frames={files} onTracks={({ detail }) => detail.objects} onCorrection={(event) => event.preventDefault()} aria-label="Masks" />;
+  return <VeroneseSegmenter name="masks" required quality="fast" frames={files} onTracks={({ detail }) => detail.objects} onFrame={({ detail }) => detail.labels} aria-label="Masks" />;
 }
 
 export const mistakes = [
