@@ -28,7 +28,8 @@ const VIEW = { width: 1440, height: 900 };
 await command(async (args) => {
   const options = parse(args);
   if (options === null) return console.log(USAGE);
-  for (const clip of options.only) if (!existsSync(join(options.data, clip, 'masks'))) throw new Stop(`${join(options.data, clip)} has no frames and masks.`);
+  for (const clip of options.only)
+    if (!existsSync(join(options.data, clip, 'masks'))) throw new Stop(`${join(options.data, clip)} has no frames and masks.`);
   const { chromium } = await prepare({ browser: true });
   await buildPage();
   const { decodeImage } = await import('../pkg/dist/codecs.js');
@@ -38,12 +39,20 @@ await command(async (args) => {
     for (const clip of options.only) {
       // Without work that is kept of another run.
       const page = await browser.newPage({ viewport: VIEW });
-      rows.push({ clip, ...(await annotated(await annotatedPage(page, address, 'quality=best'), join(options.data, clip), options.actions, decodeImage)) });
+      rows.push({
+        clip,
+        ...(await annotated(await annotatedPage(page, address, 'quality=best'), join(options.data, clip), options.actions, decodeImage)),
+      });
       console.log(JSON.stringify(rows.at(-1)));
       await page.context().close();
     }
     const figures = rows.map(({ log: _, ...figures }) => figures);
-    present('annotator-page', { command: 'npm run annotator -- --page', data: DATA, chromium: browser.version() }, { rows: figures }, options.writeDocs);
+    present(
+      'annotator-page',
+      { command: 'npm run annotator -- --page', data: DATA, chromium: browser.version() },
+      { rows: figures },
+      options.writeDocs,
+    );
   } finally {
     await close();
   }
@@ -67,7 +76,10 @@ function parse(args) {
 
 /** Has a clip annotated, and reads what was saved. */
 async function annotated(page, folder, most, decodeImage) {
-  const filesIn = (name) => readdirSync(join(folder, name)).sort().map((file) => join(folder, name, file));
+  const filesIn = (name) =>
+    readdirSync(join(folder, name))
+      .sort()
+      .map((file) => join(folder, name, file));
   const truths = [];
   let size = null;
   for (const file of filesIn('masks')) {

@@ -11,7 +11,8 @@ import { root } from './lib/project.mjs';
 import { command, run } from './lib/run.mjs';
 
 const DATA = {
-  chosenOn: 'the propagation on half of the real clips each, confirmed on the other; views on the generated clips; clips as such on the ten old ones first',
+  chosenOn:
+    'the propagation on half of the real clips each, confirmed on the other; views on the generated clips; clips as such on the ten old ones first',
   heldOut: 'nothing entirely',
 };
 
@@ -23,9 +24,18 @@ await command(async (args) => {
   const program = join(root, 'experiments', 'annotator', 'peers.py');
   await runPeers('annotator', rest, { out, old: ['baseline'], program, argumentsOf: (_, folder) => [folder, join(out, 'baseline')] });
   for (const step of ['measure', 'harm', 'points', 'objects']) await measured('annotator', [step, ...rest]);
-  const rows = (step) => readFileSync(join(out, `${step}.jsonl`), 'utf8').split('\n').filter(Boolean).map(JSON.parse);
+  const rows = (step) =>
+    readFileSync(join(out, `${step}.jsonl`), 'utf8')
+      .split('\n')
+      .filter(Boolean)
+      .map(JSON.parse);
   const [real, objects] = [rows('measure'), rows('objects')];
   const { quality } = [...real, ...objects][0];
-  present('annotator', { command: 'npm run annotator', data: DATA }, { quality, real, harm: rows('harm').flat(), points: rows('points').flat(), objects }, writeDocs);
+  present(
+    'annotator',
+    { command: 'npm run annotator', data: DATA },
+    { quality, real, harm: rows('harm').flat(), points: rows('points').flat(), objects },
+    writeDocs,
+  );
   return 0;
 });

@@ -37,14 +37,25 @@ function work(tarball) {
   mkdirSync(frames, { recursive: true });
   writeFileSync(join(project, 'package.json'), '{ "name": "a-project", "private": true }\n');
   for (const name of ['first.png', 'second.png']) cpSync(join(SAMPLES, 'intel-two-cars', name), join(project, name));
-  for (const name of readdirSync(join(SAMPLES, 'passing-cars', 'frames')).sort().slice(...FRAMES)) {
+  for (const name of readdirSync(join(SAMPLES, 'passing-cars', 'frames'))
+    .sort()
+    .slice(...FRAMES)) {
     cpSync(join(SAMPLES, 'passing-cars', 'frames', name), join(frames, name));
   }
   shell('npm', ['install', '--no-audit', '--no-fund', '--omit=dev', tarball], project);
   shell(join(project, 'node_modules', '.bin', 'veronese'), ['--version'], project);
   const veronese = (...args) => run(process.execPath, [join(project, 'node_modules', 'veronese', 'bin', 'veronese.js'), ...args], project);
   // Whole paths, which begin with a drive on Windows; a pattern; and paths from the current folder.
-  veronese('pair', join(project, 'first.png'), join(project, 'second.png'), '--quality', 'fast', '--overlay', '--out', join(results, 'pair'));
+  veronese(
+    'pair',
+    join(project, 'first.png'),
+    join(project, 'second.png'),
+    '--quality',
+    'fast',
+    '--overlay',
+    '--out',
+    join(results, 'pair'),
+  );
   veronese('clip', join(frames, '*.webp'), '--quality', 'fast', '--overlay', '--out', join('the results', 'clip'));
   veronese('convert', join('the results', 'pair'), '--to', 'coco,yolo', '--out', join(results, 'converted pair'));
   veronese('convert', join(results, 'clip'), '--to', 'cvat-video,mots,davis', '--out', join('the results', 'converted clip'));
@@ -54,7 +65,12 @@ function work(tarball) {
 /** A program that is a script of the shell on Windows; there nobody else puts quotes around what has spaces. */
 function shell(program, args, cwd) {
   if (!WINDOWS) return run(program, args, cwd);
-  return run(`"${program}"`, args.map((arg) => `"${arg}"`), cwd, { shell: true });
+  return run(
+    `"${program}"`,
+    args.map((arg) => `"${arg}"`),
+    cwd,
+    { shell: true },
+  );
 }
 
 function run(program, args, cwd, how = {}) {
@@ -69,7 +85,14 @@ function run(program, args, cwd, how = {}) {
 function hashesOf(folder) {
   const paths = readdirSync(folder, { recursive: true }).map((path) => String(path).replaceAll('\\', '/'));
   const files = paths.filter((path) => !/(^|\/)\./.test(path) && statSync(join(folder, path)).isFile()).sort();
-  return Object.fromEntries(files.map((path) => [path, createHash('sha256').update(lasting(path, readFileSync(join(folder, path)))).digest('hex')]));
+  return Object.fromEntries(
+    files.map((path) => [
+      path,
+      createHash('sha256')
+        .update(lasting(path, readFileSync(join(folder, path))))
+        .digest('hex'),
+    ]),
+  );
 }
 
 /** A file without what differs between two runs of the same version: times and versions are left out of JSON. */

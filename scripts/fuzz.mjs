@@ -11,7 +11,9 @@ import { root } from './lib/project.mjs';
 import { Stop, command, must, run } from './lib/run.mjs';
 
 const FUZZ = join(root, 'fuzz');
-const TARGETS = readdirSync(join(FUZZ, 'targets')).map((name) => name.replace(/\.rs$/, '')).sort();
+const TARGETS = readdirSync(join(FUZZ, 'targets'))
+  .map((name) => name.replace(/\.rs$/, ''))
+  .sort();
 /** Longest input: frames are small, and what is longer shows no more. */
 const LONGEST = 4096;
 /** One input may take this long, seconds (a busy machine leaves little to what is nice), and this much memory, MiB. A picture of 4096 × 4096 pixels takes 400 MiB. */
@@ -31,13 +33,20 @@ await command(async (args) => {
     const found = join(root, 'out', 'fuzz', target);
     for (const folder of [kept, found]) mkdirSync(folder, { recursive: true });
     console.log(`\n${target}, ${seconds} s …`);
-    const { code } = await run('nice', fuzz('run', target, found, kept, '--', ...LIMITS, `-max_total_time=${seconds}`, '-print_final_stats=1'));
+    const { code } = await run(
+      'nice',
+      fuzz('run', target, found, kept, '--', ...LIMITS, `-max_total_time=${seconds}`, '-print_final_stats=1'),
+    );
     if (code !== 0) failed.push(target);
     else if (keep) await minimise(target, kept, found);
   }
   const bytes = TARGETS.reduce((sum, target) => sum + sizeOf(join(FUZZ, 'corpus', target)), 0);
   if (keep && bytes > MOST_KEPT) throw new Stop(`fuzz/corpus has ${bytes} bytes, more than ${MOST_KEPT}: remove some inputs.`);
-  console.log(failed.length === 0 ? `\n${targets.length} targets, nothing failed.` : `\nFAILED: ${failed.join(', ')}. See above; the inputs are in fuzz/artifacts.`);
+  console.log(
+    failed.length === 0
+      ? `\n${targets.length} targets, nothing failed.`
+      : `\nFAILED: ${failed.join(', ')}. See above; the inputs are in fuzz/artifacts.`,
+  );
   return failed.length === 0 ? 0 : 1;
 });
 
@@ -76,7 +85,12 @@ async function minimise(target, kept, found) {
   const least = join(root, 'out', 'fuzz', `${target}-least`);
   rmSync(least, { recursive: true, force: true });
   mkdirSync(least, { recursive: true });
-  await must(`The inputs of ${target} could not be merged.`, 'nice', fuzz('run', target, least, kept, found, '--', '-set_cover_merge=1', '-use_counters=0', ...LIMITS), { output: 'collect' });
+  await must(
+    `The inputs of ${target} could not be merged.`,
+    'nice',
+    fuzz('run', target, least, kept, found, '--', '-set_cover_merge=1', '-use_counters=0', ...LIMITS),
+    { output: 'collect' },
+  );
   rmSync(kept, { recursive: true });
   cpSync(least, kept, { recursive: true });
 }

@@ -35,7 +35,9 @@ await command(async (args) => {
   if (problems.length > 0) throw new Stop(problems.join('\n'));
   await publishNowhere(tag);
   await buildSite();
-  console.log(`\n${tag ? `${tag} is ready` : `A release of ${version} would be ready`}: ${readdirSync(OUT).join(', ')}, the crate, and the site.`);
+  console.log(
+    `\n${tag ? `${tag} is ready` : `A release of ${version} would be ready`}: ${readdirSync(OUT).join(', ')}, the crate, and the site.`,
+  );
   return 0;
 });
 
@@ -43,7 +45,8 @@ function options(args) {
   try {
     const { values } = parseArgs({ args, options: { 'dry-run': { type: 'boolean' }, tag: { type: 'string' } } });
     if (values.tag && !/^v\d+\.\d+\.\d+$/.test(values.tag)) throw new Error(`A tag is called like v0.1.0, not '${values.tag}'.`);
-    if (Object.keys(values).length !== 1) throw new Error('Nothing is published from here: push a tag, and the workflow release.yml publishes.');
+    if (Object.keys(values).length !== 1)
+      throw new Error('Nothing is published from here: push a tag, and the workflow release.yml publishes.');
     return values;
   } catch (error) {
     throw new Stop(`${error.message}\n\n${USAGE}`);
@@ -60,7 +63,9 @@ async function publishNowhere(tag) {
   rmSync(OUT, { recursive: true, force: true });
   mkdirSync(OUT, { recursive: true });
   await buildPackage();
-  await must('The npm package could not be packed.', 'npm', ['pack', '--ignore-scripts', '--pack-destination', OUT], { cwd: join(root, 'pkg') });
+  await must('The npm package could not be packed.', 'npm', ['pack', '--ignore-scripts', '--pack-destination', OUT], {
+    cwd: join(root, 'pkg'),
+  });
   const archive = join(OUT, readdirSync(OUT)[0]);
   await must('npm would not publish the package.', 'npm', ['publish', '--dry-run', '--ignore-scripts', '--access', 'public', archive]);
   const dirty = tag ? [] : ['--allow-dirty'];

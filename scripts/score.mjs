@@ -4,7 +4,19 @@
 import { experiment, wantsHelp } from './lib/experiments.mjs';
 import { command, run } from './lib/run.mjs';
 
-const EXPECTATIONS = ['test', '--quiet', '--release', '--locked', '--features', 'codecs', '--test', 'all', 'expectations::', '--', '--include-ignored'];
+const EXPECTATIONS = [
+  'test',
+  '--quiet',
+  '--release',
+  '--locked',
+  '--features',
+  'codecs',
+  '--test',
+  'all',
+  'expectations::',
+  '--',
+  '--include-ignored',
+];
 
 await command(async (args) => {
   const score = await experiment('score', args);

@@ -23,9 +23,17 @@ await command(async (args) => {
 
 function options(args) {
   try {
-    const { values } = parseArgs({ args, options: { serve: { type: 'boolean', default: false }, port: { type: 'string', default: '4180' }, pages: { type: 'boolean', default: false } } });
+    const { values } = parseArgs({
+      args,
+      options: {
+        serve: { type: 'boolean', default: false },
+        port: { type: 'string', default: '4180' },
+        pages: { type: 'boolean', default: false },
+      },
+    });
     const port = Number(values.port);
-    if (!Number.isInteger(port) || port < 1 || port > 65535) throw new Stop(`--port must be a whole number from 1 to 65535, not ${values.port}.`);
+    if (!Number.isInteger(port) || port < 1 || port > 65535)
+      throw new Stop(`--port must be a whole number from 1 to 65535, not ${values.port}.`);
     return { serves: values.serve, port, onlyPages: values.pages };
   } catch (thrown) {
     throw thrown instanceof Stop ? thrown : new Stop(thrown.message);

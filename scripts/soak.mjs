@@ -17,7 +17,13 @@ import { inProject, projectText, root } from './lib/project.mjs';
 import { Stop, command, run } from './lib/run.mjs';
 
 /** Where these have changed, nothing is done yet. */
-const BUILT = ['pkg/wasm/veronese_bg.wasm', 'pkg/wasm/codecs/veronese_codecs_bg.wasm', 'pkg/dist/node.js', 'pkg/dist/calls.js', 'pkg/dist/web.js'];
+const BUILT = [
+  'pkg/wasm/veronese_bg.wasm',
+  'pkg/wasm/codecs/veronese_codecs_bg.wasm',
+  'pkg/dist/node.js',
+  'pkg/dist/calls.js',
+  'pkg/dist/web.js',
+];
 const STATE = 'out/soak/state.json';
 
 await command(async (args) => {
@@ -60,7 +66,9 @@ async function perform(part, setup) {
 function conclude(parts, { passed }) {
   console.log();
   for (const part of parts) {
-    const last = passed[part] ? `last passed ${passed[part].at.slice(0, 16).replace('T', ' ')} UTC, commit ${passed[part].commit}` : 'has not passed yet';
+    const last = passed[part]
+      ? `last passed ${passed[part].at.slice(0, 16).replace('T', ' ')} UTC, commit ${passed[part].commit}`
+      : 'has not passed yet';
     console.log(`${part.padEnd(12)} ${last}`);
   }
 }
@@ -73,7 +81,10 @@ function parse(args) {
   } catch (error) {
     throw new Stop(error.message);
   }
-  const { values: { minutes, again, list }, positionals } = found;
+  const {
+    values: { minutes, again, list },
+    positionals,
+  } = found;
   const unknown = positionals.filter((part) => !Object.hasOwn(RARE, part));
   if (unknown.length > 0) throw new Stop(`There is no part ${unknown.join(' and no ')}: name some of ${Object.keys(RARE).join(', ')}.`);
   if (!(Number(minutes) > 0 && Number(minutes) <= 600)) throw new Stop('--minutes must be a number of minutes up to 600.');
@@ -97,7 +108,12 @@ function resumed(parts, again) {
 
 async function commit() {
   if (!existsSync(join(root, '.git'))) return 'unknown';
-  const [head, changes] = await Promise.all([['rev-parse', '--short', 'HEAD'], ['status', '--porcelain', '--untracked-files=no']].map((args) => run('git', args, { output: 'collect' })));
+  const [head, changes] = await Promise.all(
+    [
+      ['rev-parse', '--short', 'HEAD'],
+      ['status', '--porcelain', '--untracked-files=no'],
+    ].map((args) => run('git', args, { output: 'collect' })),
+  );
   return `${head.stdout.trim()}${changes.stdout === '' ? '' : ' with changes'}`;
 }
 

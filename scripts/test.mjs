@@ -27,7 +27,12 @@ await command(async (args) => {
   const start = Date.now();
   const setup = await measured(SETUP, {}, async () => ({ ...NOTHING, setup: await prepare(needsOf(names.map((name) => DAILY[name]))) }));
   if (setup.failed > 0) throw new Stop(setup.note);
-  if (times !== undefined) return stress(names.map((name) => DAILY[name]), { ...setup.setup, word }, times);
+  if (times !== undefined)
+    return stress(
+      names.map((name) => DAILY[name]),
+      { ...setup.setup, word },
+      times,
+    );
   const results = [setup, ...(await runParts(names, { ...setup.setup, word, all, versions: await versionsOf(setup.setup) }))];
   const code = summarise(results, (Date.now() - start) / 1000);
   if (word === undefined || results.some(({ passed, failed }) => passed + failed > 0)) return code;
@@ -39,7 +44,11 @@ function options(args) {
   let found;
   try {
     const flag = { type: 'boolean', default: false };
-    found = parseArgs({ args, options: { part: { type: 'string' }, all: flag, stress: flag, times: { type: 'string' } }, allowPositionals: true });
+    found = parseArgs({
+      args,
+      options: { part: { type: 'string' }, all: flag, stress: flag, times: { type: 'string' } },
+      allowPositionals: true,
+    });
   } catch (error) {
     throw new Stop(error.message);
   }
@@ -50,14 +59,23 @@ function options(args) {
   const names = values.part?.split(',') ?? known;
   const unknown = names.find((name) => !known.includes(name));
   if (unknown !== undefined) throw new Stop(`There is no part '${unknown}'; there are ${known.join(', ')}. \`npm run soak\` has more.`);
-  if (values.times !== undefined && !(values.stress && /^[1-9]\d?$/.test(values.times))) throw new Stop('--times is a number from 1 to 99, with --stress.');
+  if (values.times !== undefined && !(values.stress && /^[1-9]\d?$/.test(values.times)))
+    throw new Stop('--times is a number from 1 to 99, with --stress.');
   // Who names parts or a word wants to see them run.
-  return { names, word, all: values.all || values.part !== undefined || word !== undefined, times: values.stress ? Number(values.times ?? TIMES) : undefined };
+  return {
+    names,
+    word,
+    all: values.all || values.part !== undefined || word !== undefined,
+    times: values.stress ? Number(values.times ?? TIMES) : undefined,
+  };
 }
 
 /** The versions of the programs that tests run with. */
 async function versionsOf({ chromium, ownPython }) {
-  const asked = [[chromium?.path, '--version'], [ownPython?.python, '--version']].filter(([program]) => program !== undefined);
+  const asked = [
+    [chromium?.path, '--version'],
+    [ownPython?.python, '--version'],
+  ].filter(([program]) => program !== undefined);
   const told = await Promise.all(asked.map(async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text));
   return [process.version, process.arch, await versionOfRust(), ...told];
 }
@@ -68,7 +86,7 @@ async function runParts(names, setup) {
   const next = (lane) => waiting.splice(waiting.findIndex((name) => DAILY[name].lane === lane) >>> 0, 1)[0];
   const results = {};
   const runLane = async (lane) => {
-    for (let name; (name = next(lane) ?? next('either')) !== undefined; ) {
+    for (let name; (name = next(lane) ?? next('either')) !== undefined;) {
       results[name] = names.length === 1 ? await runPart(name, setup) : await runBeside(name, setup, NICENESS[lane]);
     }
   };
@@ -123,9 +141,16 @@ async function measured({ title, budget }, options, main) {
 function summarise(results, whole) {
   console.log(`\n=== summary ===\n${row('part', 'tests', 'time', 'processor', 'budget')}`);
   for (const { title, passed, failed, skipped, unchanged, seconds, processor, budget, note, failures } of results) {
-    const counts = [passed > 0 || failed > 0 ? `${passed}` : '', failed > 0 ? `${failed} FAILED` : '', skipped > 0 ? `${skipped} skipped` : '', unchanged === undefined ? '' : `${unchanged} unchanged`];
+    const counts = [
+      passed > 0 || failed > 0 ? `${passed}` : '',
+      failed > 0 ? `${failed} FAILED` : '',
+      skipped > 0 ? `${skipped} skipped` : '',
+      unchanged === undefined ? '' : `${unchanged} unchanged`,
+    ];
     const over = processor > budget && unchanged === undefined ? ' (over)' : '';
-    console.log(row(title, counts.filter(Boolean).join(', ') || '–', inSeconds(seconds), inSeconds(processor), `${inSeconds(budget)}${over}`));
+    console.log(
+      row(title, counts.filter(Boolean).join(', ') || '–', inSeconds(seconds), inSeconds(processor), `${inSeconds(budget)}${over}`),
+    );
     if (note) console.log(`        ${note}`);
     for (const failure of failures.slice(0, 10)) console.log(`        failed: ${failure}`);
   }

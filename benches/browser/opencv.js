@@ -63,7 +63,12 @@ function sequentialAffine(flow, width, height) {
   const smallest = SMALLEST_SHARE * points.length;
   const motions = [];
   while (motions.length < MOST && points.length > Math.max(smallest, 3)) {
-    const from = cv.matFromArray(points.length, 1, cv.CV_32FC2, points.flatMap((p) => [p % width, Math.floor(p / width)]));
+    const from = cv.matFromArray(
+      points.length,
+      1,
+      cv.CV_32FC2,
+      points.flatMap((p) => [p % width, Math.floor(p / width)]),
+    );
     const moved = points.flatMap((p) => [(p % width) + flow[2 * p], Math.floor(p / width) + flow[2 * p + 1]]);
     const to = cv.matFromArray(points.length, 1, cv.CV_32FC2, moved);
     const inliers = new cv.Mat();

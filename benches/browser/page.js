@@ -31,8 +31,10 @@ globalThis.bench = {
     const bytes = async (what) => new Uint8Array(await (await fetch(`/out/bench/frames/${what}-${size}`)).arrayBuffer());
     const image = async (what) => new ImageData(new Uint8ClampedArray((await bytes(what)).buffer), width, height);
     const all = new Uint8ClampedArray((await bytes('clip')).buffer);
-    const clip = Array.from({ length: all.length / (4 * width * height) }, (_, t) =>
-      new ImageData(all.subarray(4 * width * height * t, 4 * width * height * (t + 1)), width, height));
+    const clip = Array.from(
+      { length: all.length / (4 * width * height) },
+      (_, t) => new ImageData(all.subarray(4 * width * height * t, 4 * width * height * (t + 1)), width, height),
+    );
     frames.set(size, { first: await image('first'), second: await image('second'), truth: await bytes('labels'), clip });
   },
 

@@ -52,7 +52,10 @@ motions.addEventListener('change', () => segmenter.setAttribute('motions', motio
 
 segmenter.addEventListener('progress', ({ detail }) => {
   cancel.hidden = false;
-  status.textContent = 'frame' in detail ? `Frame ${detail.frame + 1}${detail.of === undefined ? '' : ` of ${detail.of}`}…` : `Step ${detail.index + 1} of ${detail.of}…`;
+  status.textContent =
+    'frame' in detail
+      ? `Frame ${detail.frame + 1}${detail.of === undefined ? '' : ` of ${detail.of}`}…`
+      : `Step ${detail.index + 1} of ${detail.of}…`;
 });
 segmenter.addEventListener('error', ({ detail: { message } }) => end(`No masks: ${message}.`));
 segmenter.addEventListener('result', ({ detail: { motions } }) => {
@@ -113,7 +116,11 @@ saved.addEventListener('close', () => {
 function field(name: string, value: FormDataEntryValue): HTMLElement {
   const item = document.createElement('li');
   if (typeof value === 'string') item.append(`${name}: ${value}`);
-  else item.append(`${name}: `, Object.assign(document.createElement('a'), { href: URL.createObjectURL(value), download: value.name, textContent: value.name }));
+  else
+    item.append(
+      `${name}: `,
+      Object.assign(document.createElement('a'), { href: URL.createObjectURL(value), download: value.name, textContent: value.name }),
+    );
   return item;
 }
 

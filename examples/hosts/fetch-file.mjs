@@ -53,7 +53,8 @@ export function createFetch({ home, allow = [] } = {}) {
 
   /** The address, if it is one of a server that was named. */
   function checked(address, base) {
-    if (!URL.canParse(address, base)) throw refused(address, 'is no address; set LABEL_STUDIO_URL for files of Label Studio', 'invalid-input');
+    if (!URL.canParse(address, base))
+      throw refused(address, 'is no address; set LABEL_STUDIO_URL for files of Label Studio', 'invalid-input');
     const url = new URL(address, base);
     if (named.has(url.origin) && !url.username && !url.password) return url;
     throw refused(url.origin, `is not allowed: start the server with --allow ${url.origin}`, 'address-refused');
@@ -63,7 +64,13 @@ export function createFetch({ home, allow = [] } = {}) {
   async function authorization(token, signal) {
     if (!/^[^.]+\.[^.]+\.[^.]+$/.test(token)) return `Token ${token}`;
     const headers = { 'Content-Type': 'application/json' };
-    const response = await fetch(new URL('/api/token/refresh', home), { method: 'POST', headers, body: JSON.stringify({ refresh: token }), redirect: 'error', signal });
+    const response = await fetch(new URL('/api/token/refresh', home), {
+      method: 'POST',
+      headers,
+      body: JSON.stringify({ refresh: token }),
+      redirect: 'error',
+      signal,
+    });
     return `Bearer ${(await response.json()).access}`;
   }
 }

@@ -39,7 +39,8 @@ async function answer(routes, known, request, response) {
   // Every task of a request listens.
   setMaxListeners(0, gone.signal);
   response.once('close', () => gone.abort());
-  const send = (status, content, headers = {}) => response.writeHead(status, { 'Content-Type': 'application/json', ...headers }).end(JSON.stringify(content));
+  const send = (status, content, headers = {}) =>
+    response.writeHead(status, { 'Content-Type': 'application/json', ...headers }).end(JSON.stringify(content));
   try {
     checkHost(known, request);
     const route = routes[`${request.method} ${request.url.replace(/\?.*/, '').replace(/(?<=.)\/$/, '')}`];
@@ -56,7 +57,10 @@ async function answer(routes, known, request, response) {
 
 /** A page whose host name was made to point here (DNS rebinding) counts as of one origin with this server, but its browser sends that name. */
 function checkHost(known, { headers: { host = '' }, socket }) {
-  const name = host.replace(/:\d*$/, '').replace(/^\[|\]$/g, '').toLowerCase();
+  const name = host
+    .replace(/:\d*$/, '')
+    .replace(/^\[|\]$/g, '')
+    .toLowerCase();
   if (known.has(name) || name === socket.localAddress.replace('::ffff:', '')) return;
   throw new Refusal(403, 'unknown-host', `this server is not known as '${host}': start it with --known-as NAME`);
 }

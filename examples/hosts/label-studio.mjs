@@ -23,7 +23,13 @@ const MODEL = `veronese-${version}`;
  * server runs; `token` opens them, or else what the studio sends at set-up.
  */
 export async function startBackend({
-  port, host, knownAs, allow, jobs = JOBS, frames, seconds,
+  port,
+  host,
+  knownAs,
+  allow,
+  jobs = JOBS,
+  frames,
+  seconds,
   studio = process.env.LABEL_STUDIO_URL,
   token: configured = process.env.LABEL_STUDIO_API_KEY,
 } = {}) {
@@ -47,7 +53,8 @@ export async function startBackend({
     'POST /predict': async ({ tasks, label_config: config }, signal) => {
       if (!Array.isArray(tasks)) throw new Refusal(400, 'invalid-input', 'tasks must be a list');
       if (tasks.length > TASKS) throw new Refusal(413, 'too-many-tasks', `a request has at most ${TASKS} tasks`);
-      if (tasks.length > TASKS - queue.size - queue.pending) throw new Refusal(503, 'busy', 'others are waiting already', { 'Retry-After': '10' });
+      if (tasks.length > TASKS - queue.size - queue.pending)
+        throw new Refusal(503, 'busy', 'others are waiting already', { 'Retry-After': '10' });
       const wanted = readConfig(config);
       const predict = wanted.video === undefined ? masks : boxes;
       const results = await Promise.all(tasks.map((task) => queue.add(() => predict(Object(task).data, wanted, signal), { signal })));
@@ -90,8 +97,12 @@ function addressIn(data, key) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const [text, list] = [{ type: 'string' }, { type: 'string', multiple: true }];
-  const { values } = parseArgs({ options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text, frames: text, seconds: text } });
-  const numbers = Object.fromEntries(['port', 'jobs', 'frames', 'seconds'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])));
+  const { values } = parseArgs({
+    options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text, frames: text, seconds: text },
+  });
+  const numbers = Object.fromEntries(
+    ['port', 'jobs', 'frames', 'seconds'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])),
+  );
   const server = await startBackend({ ...values, ...numbers, knownAs: values['known-as'] });
   console.log(`ML backend at ${server.address}`);
   for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, server.close);

@@ -41,7 +41,12 @@ export async function follow(bytes, use, signal, { frames = FRAMES, seconds = SE
     return await use({ folder: out, tracks: JSON.parse(await readFile(join(out, 'tracks.json'), 'utf8')), frameRate });
   } catch (error) {
     signal.throwIfAborted();
-    if (limit.aborted) throw new Refusal(422, 'too-slow', `the video takes longer than ${seconds} s: import what 'veronese clip' and 'veronese convert' make of it`);
+    if (limit.aborted)
+      throw new Refusal(
+        422,
+        'too-slow',
+        `the video takes longer than ${seconds} s: import what 'veronese clip' and 'veronese convert' make of it`,
+      );
     const [, code, sentence] = /^veronese: error: ([a-z-]+): (.*)$/m.exec(error.stderr) ?? [];
     throw code === undefined ? error : new Refusal(422, code, sentence.replaceAll(`${folder}/`, ''));
   } finally {
@@ -54,7 +59,8 @@ async function probed(video, options) {
   const args = ['-v', 'error', '-protocol_whitelist', 'file', '-format_whitelist', CONTAINERS, '-select_streams', 'v:0', '-count_packets'];
   const wanted = ['-show_entries', 'stream=width,height,nb_read_packets,avg_frame_rate', '-of', 'json'];
   const { stdout } = await promisify(execFile)('ffprobe', [...args, ...wanted, `file:${video}`], options).catch((error) => {
-    if (error.code === 'ENOENT') throw new Refusal(500, 'ffmpeg-missing', 'videos are read by the program ffmpeg, which this server cannot start');
+    if (error.code === 'ENOENT')
+      throw new Refusal(500, 'ffmpeg-missing', 'videos are read by the program ffmpeg, which this server cannot start');
     throw new Refusal(422, 'unreadable-video', 'the file is no video of a format that this server takes');
   });
   const [stream] = JSON.parse(stdout).streams ?? [];
@@ -82,11 +88,14 @@ export function rateOf(text, data) {
  */
 export async function boxesOf({ folder, tracks: { frames, objects }, frameRate }, rate, { fromName, toName, labels, modelVersion }) {
   const length = Math.max(1, Math.round((frames.length / frameRate) * rate));
-  if (length > LONGEST) throw new Refusal(422, 'invalid-input', `at ${rate} per second the video has ${length} frames: at most ${LONGEST} are possible`);
+  if (length > LONGEST)
+    throw new Refusal(422, 'invalid-input', `at ${rate} per second the video has ${length} frames: at most ${LONGEST} are possible`);
   const names = Object.fromEntries(objects.map(({ id }, index) => [id, labels[Math.min(index, labels.length - 1)]]));
   const metadata = { clip: 'video', names, labels: objects.map(({ id }) => id), frameRate: rate, fromName, toName, modelVersion };
   const [{ content }] = await encode('label-studio-video', shown(), metadata);
-  const { predictions: [{ result }] } = JSON.parse(content);
+  const {
+    predictions: [{ result }],
+  } = JSON.parse(content);
   const sure = objects.flatMap((object) => object.frames.map(({ confidence }) => confidence));
   return { result, score: sure.reduce((sum, value) => sum + value, 0) / Math.max(1, sure.length) };
 

@@ -21,7 +21,8 @@ export async function missingBlocks(out, clip, frames, size) {
 export async function performBlock(segmenter, { job, clip, folder, from, to, out, options }) {
   if (await clipResultOf(out, clip)) return { did: false, known: to - from };
   const names = await framesOf(folder);
-  if (blockJobOf(clip, await hashesOf(folder, names.slice(from, to + 1))) !== job) throw new Error(`${folder} has changed since the job was made`);
+  if (blockJobOf(clip, await hashesOf(folder, names.slice(from, to + 1))) !== job)
+    throw new Error(`${folder} has changed since the job was made`);
   const solved = await solveMissing(segmenter, { job: clip, folder, names, out, options }, { from, to });
   return { did: solved > 0, known: to - from - solved };
 }

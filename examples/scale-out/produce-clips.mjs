@@ -19,7 +19,13 @@ import { QUEUE } from './job.mjs';
 const text = { type: 'string' };
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { out: text, list: text, quality: { ...text, default: 'best' }, block: { ...text, default: '16' }, ahead: { ...text, default: '10000' } },
+  options: {
+    out: text,
+    list: text,
+    quality: { ...text, default: 'best' },
+    block: { ...text, default: '16' },
+    ahead: { ...text, default: '10000' },
+  },
 });
 const size = Number(values.block);
 if ((positionals.length === 0) === !values.list || !values.out || !(size >= 1)) {
@@ -73,7 +79,12 @@ async function add(clip, hashes) {
     // The clip's job does not wait for a block that has failed for good, and solves its pairs. None is kept under a name that may come again:
     // a clip that is added later would wait for it.
     const gone = { removeOnComplete: true, removeOnFail: true, removeDependencyOnFailure: true };
-    return { name: 'block', queueName: QUEUE, data: { index, job, clip: clip.job, folder, from, to, out, options }, opts: { jobId: job, ...retried, ...gone } };
+    return {
+      name: 'block',
+      queueName: QUEUE,
+      data: { index, job, clip: clip.job, folder, from, to, out, options },
+      opts: { jobId: job, ...retried, ...gone },
+    };
   });
   // A single block would only make the clip wait.
   const blocks = children.length > 1 ? children : [];

@@ -44,7 +44,12 @@ for (const [position, name] of frames.entries()) {
     const pair = { index: position - 1, first: first.path, second: second.path, job };
     if (!manifest.write(`${JSON.stringify(pair)}\n`)) await new Promise((resume) => manifest.once('drain', resume));
     if (await resultOf(out, job)) done += 1;
-    else chunk.push({ name: 'pair', data: { ...pair, out, options }, opts: { jobId: job, attempts: 5, backoff: { type: 'exponential', delay: 1000 } } });
+    else
+      chunk.push({
+        name: 'pair',
+        data: { ...pair, out, options },
+        opts: { jobId: job, attempts: 5, backoff: { type: 'exponential', delay: 1000 } },
+      });
     if (chunk.length >= CHUNK) await flush();
   }
   first = second;

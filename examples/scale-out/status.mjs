@@ -25,7 +25,8 @@ for await (const pair of listed('pairs.jsonl')) {
   const result = await resultOf(out, pair.job);
   counts.pairs += 1;
   counts[stateOf(result)] += 1;
-  if (result && lines && !lines.write(`${JSON.stringify({ ...pair, ...result })}\n`)) await new Promise((resume) => lines.once('drain', resume));
+  if (result && lines && !lines.write(`${JSON.stringify({ ...pair, ...result })}\n`))
+    await new Promise((resume) => lines.once('drain', resume));
 }
 if (lines) {
   await new Promise((closed) => lines.end(closed));

@@ -7,7 +7,8 @@ import { fileURLToPath } from 'node:url';
 import { rolldown } from 'rolldown';
 
 const folder = (name) => fileURLToPath(new URL(`../${name}/`, import.meta.url));
-const sources = (names) => Object.fromEntries(Object.entries(names).map(([name, source]) => [name, resolve(folder('build'), `${source}.js`)]));
+const sources = (names) =>
+  Object.fromEntries(Object.entries(names).map(([name, source]) => [name, resolve(folder('build'), `${source}.js`)]));
 /** The entries of package.json, and the files that workers are started from: each with its source. */
 const ENTRIES = sources({
   web: 'entries/web',
@@ -36,7 +37,12 @@ const BOTH_WAYS = ['formats/file-names.js'];
 /** One mask in another form: also for the calls, which do not need the readers of files of annotation tools. */
 const ONE_MASK = ['formats/png-reader.js', 'formats/reading/(?:mask|smoothed|coco-rle).js'];
 /** Shared by all entries with calls, but for what they load with the first clip or picture. */
-const CALLS = ['module/', 'calls/(?!(?:clip/notes|segmented/(?!clip)[\\w-]+|session/(?!open|frames|frame-cache)[\\w-]+|nothing|pictures)\\.js)', 'pool/', 'entries/package.js'];
+const CALLS = [
+  'module/',
+  'calls/(?!(?:clip/notes|segmented/(?!clip)[\\w-]+|session/(?!open|frames|frame-cache)[\\w-]+|nothing|pictures)\\.js)',
+  'pool/',
+  'entries/package.js',
+];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const worker = await rolldown({ input: resolve(folder('build'), 'worker/worker.js'), platform: 'browser' });
@@ -102,4 +108,5 @@ await bundle.close();
 writeFileSync(resolve(folder('dist'), 'worker.js'), code);
 
 // The package has the project's licences.
-for (const name of ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES']) copyFileSync(`${folder('..')}${name}`, `${folder('.')}${name}`);
+for (const name of ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'])
+  copyFileSync(`${folder('..')}${name}`, `${folder('.')}${name}`);

@@ -4,16 +4,43 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
-const CLIP_CALLS = ['openClip', 'applyClip', 'moveClip', 'takeClip', 'lookAtClip', 'saveClip', 'closeClip', 'solvePair', 'beginStream', 'pushStream', 'finishStream'];
+const CLIP_CALLS = [
+  'openClip',
+  'applyClip',
+  'moveClip',
+  'takeClip',
+  'lookAtClip',
+  'saveClip',
+  'closeClip',
+  'solvePair',
+  'beginStream',
+  'pushStream',
+  'finishStream',
+];
 /** Of the page. */
-const SEGMENTED_CALLS = ['beginClip', 'pushClip', 'previewClip', 'concludeClip', 'restoreClip', 'saveSegmented', 'clipFrame', 'annotateClip', 'takeAnnotations', 'endClip'];
+const SEGMENTED_CALLS = [
+  'beginClip',
+  'pushClip',
+  'previewClip',
+  'concludeClip',
+  'restoreClip',
+  'saveSegmented',
+  'clipFrame',
+  'annotateClip',
+  'takeAnnotations',
+  'endClip',
+];
 const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, ...SEGMENTED_CALLS];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [
   { from: '../wasm/veronese.js', to: '../build/module/glue.js', calls: FRAME_CALLS },
   { from: '../wasm/points/veronese_points.js', to: '../build/module/glue-points.js', calls: POINT_CALLS },
-  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/entries/glue-codecs.js', calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS] },
+  {
+    from: '../wasm/codecs/veronese_codecs.js',
+    to: '../build/entries/glue-codecs.js',
+    calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS],
+  },
 ];
 
 // Nothing may find files that are no longer compiled.
@@ -31,7 +58,12 @@ writeFileSync(new URL('../build/entries/inline-module.js', import.meta.url), lin
 
 /** What wasm-bindgen wrote, and after it one object of the calls. The bundle has nothing of what this object does not use, such as its loader. */
 function adapted(glue, calls) {
-  const used = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;', ...calls.map((name) => `export function ${name}(`)];
+  const used = [
+    'function __wbg_finalize_init(instance, module)',
+    'function __wbg_get_imports()',
+    'wasmInstance, wasm;',
+    ...calls.map((name) => `export function ${name}(`),
+  ];
   const missing = used.filter((part) => !glue.includes(part));
   if (missing.length > 0) {
     console.error(`veronese: the glue of this wasm-bindgen looks different (${missing}): read pkg/scripts/glue.mjs`);

@@ -43,23 +43,31 @@ function declared(text, head) {
 }
 
 function worded(comment) {
-  return comment.replaceAll(/\n\s*\*/g, ' ').replaceAll(/\s+/g, ' ').replaceAll(/\{@link (\w+)\}/g, '`$1`').trim();
+  return comment
+    .replaceAll(/\n\s*\*/g, ' ')
+    .replaceAll(/\s+/g, ' ')
+    .replaceAll(/\{@link (\w+)\}/g, '`$1`')
+    .trim();
 }
 
 function member({ code, description }) {
   const [, method, parameters, result] = /^(\w+)\((.*)\): (.*)$/.exec(code) ?? [];
-  if (method) return { kind: 'method', name: method, parameters: [...parametersOf(parameters)], return: { type: { text: result } }, description };
+  if (method)
+    return { kind: 'method', name: method, parameters: [...parametersOf(parameters)], return: { type: { text: result } }, description };
   const [, readonly, name, type] = /^(readonly |get )?(\w+)(?:\(\))?: (.*)$/.exec(code);
   return { kind: 'field', name, type: { text: type }, description, ...(readonly === 'readonly ' && { readonly: true }) };
 }
 
 /** `a: A, b?: { c: C }` one by one. */
 function* parametersOf(list) {
-  for (const [, name, optional, type] of list.matchAll(/(\w+)(\??): ((?:\{.*?\}|[^,])+)/g)) yield { name, type: { text: type }, ...(optional && { optional: true }) };
+  for (const [, name, optional, type] of list.matchAll(/(\w+)(\??): ((?:\{.*?\}|[^,])+)/g))
+    yield { name, type: { text: type }, ...(optional && { optional: true }) };
 }
 
 const described = (list) => Object.entries(list).map(([name, description]) => ({ name, description }));
-const members = declared(element, 'export class').filter(({ code }) => !/^(static|set|addEventListener)\b/.test(code)).map(member);
+const members = declared(element, 'export class')
+  .filter(({ code }) => !/^(static|set|addEventListener)\b/.test(code))
+  .map(member);
 const attributes = declared(markup, 'interface VeroneseSegmenterAttributes').map(({ code, description }) => {
   const [, name, type] = /^(\w+)\?: (.*) \| undefined$/.exec(code);
   return { name, type: { text: type }, description, ...(members.some((one) => one.name === name) && { fieldName: name }) };
@@ -70,12 +78,26 @@ const events = declared(element, 'interface VeroneseSegmenterEvents ').map(({ co
 });
 const [, comment] = /\/\*\*((?:[^*]|\*(?!\/))*)\*\/\nexport class/.exec(element);
 const declaration = {
-  kind: 'class', name: CLASS.name, tagName: 'veronese-segmenter', customElement: true, description: worded(comment), superclass: { name: 'HTMLElement' },
-  attributes, members, events, cssProperties: described(CSS_PROPERTIES), cssParts: described(CSS_PARTS),
+  kind: 'class',
+  name: CLASS.name,
+  tagName: 'veronese-segmenter',
+  customElement: true,
+  description: worded(comment),
+  superclass: { name: 'HTMLElement' },
+  attributes,
+  members,
+  events,
+  cssProperties: described(CSS_PROPERTIES),
+  cssParts: described(CSS_PARTS),
 };
 const exported = { kind: 'js', name: CLASS.name, declaration: CLASS };
 const modules = [
   { kind: 'javascript-module', path: CLASS.module, declarations: [declaration], exports: [exported] },
-  { kind: 'javascript-module', path: 'dist/element.js', declarations: [], exports: [{ ...exported, kind: 'custom-element-definition', name: 'veronese-segmenter' }, exported] },
+  {
+    kind: 'javascript-module',
+    path: 'dist/element.js',
+    declarations: [],
+    exports: [{ ...exported, kind: 'custom-element-definition', name: 'veronese-segmenter' }, exported],
+  },
 ];
 writeFileSync(new URL('../custom-elements.json', import.meta.url), `${JSON.stringify({ schemaVersion: '2.1.0', modules }, null, 2)}\n`);

@@ -50,7 +50,15 @@ async function annotationOf(given) {
   return form ? { ...given, [form]: new Uint8Array(await readFile(given[form])) } : given;
 }
 
-async function segmented({ frames, stream, options: { markUnknown, ...options }, named = [], locked = [], accepted = [], annotations = [] }) {
+async function segmented({
+  frames,
+  stream,
+  options: { markUnknown, ...options },
+  named = [],
+  locked = [],
+  accepted = [],
+  annotations = [],
+}) {
   if (stream) {
     const found = segmentStream(frames.map(pixels), { markUnknown, ...options });
     const labels = [];
@@ -73,7 +81,10 @@ async function segmented({ frames, stream, options: { markUnknown, ...options },
 async function ofClip(given) {
   const { labels, tracks, changes } = await segmented(given);
   const { objects, background, dropped } = tracks;
-  see('Sighting', objects.flatMap((object) => object.frames));
+  see(
+    'Sighting',
+    objects.flatMap((object) => object.frames),
+  );
   see('BackgroundMotion', background);
   const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
   return {
@@ -88,7 +99,10 @@ async function ofClip(given) {
 }
 
 async function ofPoints({ positions, derivatives, options }) {
-  const { labels, motions, evidence, stages } = await fitMotions({ positions: Float64Array.from(positions), derivatives: Float64Array.from(derivatives) }, options);
+  const { labels, motions, evidence, stages } = await fitMotions(
+    { positions: Float64Array.from(positions), derivatives: Float64Array.from(derivatives) },
+    options,
+  );
   see('FittedMotion', motions);
   see('PaperStages', stages ? [stages] : []);
   see('Refinement', stages ? [stages.refinement] : []);
@@ -101,7 +115,8 @@ async function ofPoints({ positions, derivatives, options }) {
 
 const asked = await json(process.stdin);
 const results = { pairs: [], clips: [], points: [] };
-for (const { frames, options } of asked.pairs) results.pairs.push(ofPair(await segmentPair(await pixels(frames[0]), await pixels(frames[1]), options)));
+for (const { frames, options } of asked.pairs)
+  results.pairs.push(ofPair(await segmentPair(await pixels(frames[0]), await pixels(frames[1]), options)));
 for (const clip of asked.clips) results.clips.push(await ofClip(clip));
 for (const points of asked.points) results.points.push(await ofPoints(points));
 process.stdout.write(JSON.stringify({ ...results, entries }));

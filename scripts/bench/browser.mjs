@@ -85,7 +85,10 @@ function downloads() {
   const follow = (path) => {
     if (scripts.has(path)) return;
     scripts.add(path);
-    for (const [, name] of read(path).toString().matchAll(/^(?:import|export) .*?from "\.\/([^"]+)"/gm)) follow(`pkg/dist/${name}`);
+    for (const [, name] of read(path)
+      .toString()
+      .matchAll(/^(?:import|export) .*?from "\.\/([^"]+)"/gm))
+      follow(`pkg/dist/${name}`);
   };
   follow('pkg/dist/web.js');
   return {
@@ -124,7 +127,8 @@ async function freshPages(browser, address, sizes) {
           (ready[name] ??= []).push(await page.evaluate((name) => globalThis.bench.load(name), name));
           await page.evaluate((size) => globalThis.bench.prepare(size), size);
           firsts.push((await call(page, name, size)).milliseconds);
-          if (OURS.includes(name)) memory[size][name] = await page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [name, size]);
+          if (OURS.includes(name))
+            memory[size][name] = await page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [name, size]);
         });
       }
       first[size][name] = median(firsts);

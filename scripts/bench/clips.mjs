@@ -16,7 +16,12 @@ await command(async (args) => {
   const { writeDocs, rest } = withoutDocs(args, ['--quick', '--only', '--methods', '--speed']);
   const out = outOf(args, 'out/clips');
   if (args.includes('--ablation')) {
-    present('clips-ablation', { command: 'npm run bench -- clips --ablation', data: DATA }, await measuredApart('clips', 'ablation', rest, out), writeDocs);
+    present(
+      'clips-ablation',
+      { command: 'npm run bench -- clips --ablation', data: DATA },
+      await measuredApart('clips', 'ablation', rest, out),
+      writeDocs,
+    );
     return 0;
   }
   const program = join(root, 'experiments', 'clips', 'peers.py');

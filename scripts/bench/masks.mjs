@@ -23,13 +23,23 @@ await command(async (args) => {
   const out = outOf(args, 'out/masks');
   const apart = APART.find((step) => args.includes(`--${step}`));
   if (apart) {
-    present(`masks-${apart}`, { command: `npm run bench -- masks --${apart}`, data: DATA }, await measuredApart('masks', apart, rest, out), writeDocs);
+    present(
+      `masks-${apart}`,
+      { command: `npm run bench -- masks --${apart}`, data: DATA },
+      await measuredApart('masks', apart, rest, out),
+      writeDocs,
+    );
     return 0;
   }
   const program = join(resolve(root, valueOf(args, '--shared') ?? '../shared'), 'tools', 'baseline.py');
   if (existsSync(program)) {
     mkdirSync(join(out, 'baseline'), { recursive: true });
-    await runPeers('masks', rest, { out, old: ['frames'], program, argumentsOf: (name, frames) => [frames, '--out', join(out, 'baseline', name)] });
+    await runPeers('masks', rest, {
+      out,
+      old: ['frames'],
+      program,
+      argumentsOf: (name, frames) => [frames, '--out', join(out, 'baseline', name)],
+    });
   } else console.error(`Without a baseline to compare with: ${program} is not there.`);
   await measured('masks', ['measure', ...rest]);
   present('masks', { command: 'npm run bench -- masks', data: DATA }, JSON.parse(readFileSync(join(out, 'masks.json'), 'utf8')), writeDocs);

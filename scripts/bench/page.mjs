@@ -64,11 +64,20 @@ function options(args) {
   const text = { type: 'string' };
   let values;
   try {
-    ({ values } = parseArgs({ args, options: { frames: text, size: text, quality: text, workers: text, 'write-docs': { type: 'boolean', default: false } } }));
+    ({ values } = parseArgs({
+      args,
+      options: { frames: text, size: text, quality: text, workers: text, 'write-docs': { type: 'boolean', default: false } },
+    }));
   } catch (error) {
     throw new Stop(error.message);
   }
-  const { frames = '240', size = '1920x1080', quality = 'fast', workers = String(Math.min(cpus().length > 2 ? cpus().length - 1 : cpus().length, 8)), 'write-docs': writeDocs } = values;
+  const {
+    frames = '240',
+    size = '1920x1080',
+    quality = 'fast',
+    workers = String(Math.min(cpus().length > 2 ? cpus().length - 1 : cpus().length, 8)),
+    'write-docs': writeDocs,
+  } = values;
   if (!/^\d+$/.test(frames) || Number(frames) < 10) throw new Stop('--frames must be a whole number from 10.');
   if (!/^\d+x\d+$/.test(size)) throw new Stop('--size must look like 1920x1080.');
   if (!['fast', 'best'].includes(quality)) throw new Stop('--quality must be fast or best.');
@@ -124,7 +133,12 @@ async function segmented(browser, address, { quality, workers }) {
     await reached(page, '#run', 'done');
   }
   const tasks = { segmenting, stepping: await page.evaluate(tasksSince) };
-  const memory = { opened, 'at most while segmenting': most, segmented: done, 'after steps to 32 other frames': await browserMemory(session) };
+  const memory = {
+    opened,
+    'at most while segmenting': most,
+    segmented: done,
+    'after steps to 32 other frames': await browserMemory(session),
+  };
   return { seconds, memory, tasks };
 }
 
@@ -183,7 +197,16 @@ async function strokeTimes() {
   layers.setPointerCapture = () => undefined; // made pointers cannot be captured
   const { x, y, width, height } = layers.getBoundingClientRect();
   const send = (type, u, v) =>
-    layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, clientX: x + u * width, clientY: y + v * height }));
+    layers.dispatchEvent(
+      new PointerEvent(type, {
+        pointerId: 1,
+        isPrimary: true,
+        button: type === 'pointermove' ? -1 : 0,
+        bubbles: true,
+        clientX: x + u * width,
+        clientY: y + v * height,
+      }),
+    );
   const until = (isSo) =>
     new Promise((resolve) => {
       const look = () => (isSo() ? requestAnimationFrame(() => resolve(performance.now())) : undefined);

@@ -13,7 +13,12 @@ import { root } from '../lib/project.mjs';
 import { Stop, command, must } from '../lib/run.mjs';
 
 const CLIP = '../shared/data/clips/car-turn/frames';
-const SIZES = [[320, 240], [640, 480], [854, 480], [1920, 1080]];
+const SIZES = [
+  [320, 240],
+  [640, 480],
+  [854, 480],
+  [1920, 1080],
+];
 const QUALITIES = ['fast', 'best'];
 /** Frames that are segmented, of large ones fewer: no measurement is to take minutes. */
 const framesOf = ([width]) => (width > 1000 ? 9 : 13);
@@ -32,7 +37,9 @@ await command(async (args) => {
       const name = size.join(' × ');
       frames[name] = {};
       for (const quality of QUALITIES) {
-        const { stdout } = await must('The frames could not be measured.', process.execPath, [PROGRAM, place, quality], { output: 'collect' });
+        const { stdout } = await must('The frames could not be measured.', process.execPath, [PROGRAM, place, quality], {
+          output: 'collect',
+        });
         frames[name][quality] = JSON.parse(stdout);
         console.log(`${name}, ${quality}: ${stdout}`);
       }
@@ -48,7 +55,9 @@ async function scaled(clip, place, [width, height], count) {
   mkdirSync(place);
   const from = ['-pattern_type', 'glob', '-i', join(clip, `*.${readdirSync(clip)[0].split('.').at(-1)}`)];
   const to = ['-vf', `scale=${width}:${height}`, '-frames:v', String(count), '-q:v', '2', join(place, '%04d.jpg')];
-  await must('The frames could not be scaled; that takes the program ffmpeg.', 'ffmpeg', ['-v', 'error', ...from, ...to], { output: 'collect' });
+  await must('The frames could not be scaled; that takes the program ffmpeg.', 'ffmpeg', ['-v', 'error', ...from, ...to], {
+    output: 'collect',
+  });
   if (readdirSync(place).length < count) throw new Stop(`${clip} has fewer than ${count} frames.`);
   return place;
 }

@@ -16,12 +16,20 @@ const BROWSERS = [
   {
     name: 'Chromium',
     packages: ['chromium', 'chromium-driver'],
-    find: (chromium) => found({ 'Chromium or Chrome': chromium, chromedriver: which('chromedriver') }, ([program, driver]) => ({ driver: [driver], program })),
+    find: (chromium) =>
+      found({ 'Chromium or Chrome': chromium, chromedriver: which('chromedriver') }, ([program, driver]) => ({
+        driver: [driver],
+        program,
+      })),
   },
   {
     name: 'Firefox',
     packages: ['firefox-esr'],
-    find: () => found({ Firefox: firstOf('firefox-esr', 'firefox'), geckodriver: which('geckodriver') }, ([program, driver]) => ({ driver: [driver], program })),
+    find: () =>
+      found({ Firefox: firstOf('firefox-esr', 'firefox'), geckodriver: which('geckodriver') }, ([program, driver]) => ({
+        driver: [driver],
+        program,
+      })),
   },
   {
     name: 'WebKit',
@@ -47,13 +55,18 @@ export async function findBrowsers(chromium, { install = false } = {}) {
     const { missing, ...way } = find(chromium);
     if (!missing) return { name, ...way };
     const gecko = missing.includes('geckodriver') ? '; geckodriver: `cargo install geckodriver --locked`' : '';
-    return { name, problem: `${name} is not driven, because there is no ${missing.join(' and no ')} (Debian: \`apt-get install ${packages.join(' ')}\`${gecko}).` };
+    return {
+      name,
+      problem: `${name} is not driven, because there is no ${missing.join(' and no ')} (Debian: \`apt-get install ${packages.join(' ')}\`${gecko}).`,
+    };
   });
 }
 
 async function installMissing(chromium) {
   const lacking = BROWSERS.filter(({ find }) => find(chromium).missing);
-  const packages = lacking.filter(({ find }) => find(chromium).missing.some((program) => program !== 'geckodriver')).flatMap(({ packages }) => packages);
+  const packages = lacking
+    .filter(({ find }) => find(chromium).missing.some((program) => program !== 'geckodriver'))
+    .flatMap(({ packages }) => packages);
   if (packages.length > 0) await installDebianPackages(packages, 'browsers and their drivers');
   // Debian has no package of it.
   if (firstOf('firefox-esr', 'firefox') && !which('geckodriver')) {
@@ -89,6 +102,11 @@ export async function testInBrowsers(browsers) {
   const env = { VERONESE_BROWSERS: JSON.stringify(browsers) };
   await buildSite();
   const page = await tests(playwright, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);
-  const explainer = await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.browsers.config.mjs'], env);
+  const explainer = await tests(
+    playwright,
+    'npx',
+    ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.browsers.config.mjs'],
+    env,
+  );
   return added(page, explainer);
 }

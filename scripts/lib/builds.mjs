@@ -28,8 +28,12 @@ export const MODULES = [
 
 /** Shows the steps of the method one by one, for the site alone; no part of the package. */
 const STAGES = {
-  name: 'veronese_stages', folder: 'site/module', title: 'the module of the site',
-  crate: 'veronese-site', features: [], sources: ['site/stages', 'scenes/src', 'scenes/Cargo.toml'],
+  name: 'veronese_stages',
+  folder: 'site/module',
+  title: 'the module of the site',
+  crate: 'veronese-site',
+  features: [],
+  sources: ['site/stages', 'scenes/src', 'scenes/Cargo.toml'],
 };
 
 /** Compiles Rust to WebAssembly, one module after another. */
@@ -47,7 +51,9 @@ async function buildEach(modules) {
   for (const module of modules) {
     const { name, folder, title, sources = [] } = module;
     const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
-    await step(`${title} (a minute or two when everything is new)`, folder, outputs, [...RUST_SOURCES, ...sources], versions, () => buildModule(module));
+    await step(`${title} (a minute or two when everything is new)`, folder, outputs, [...RUST_SOURCES, ...sources], versions, () =>
+      buildModule(module),
+    );
   }
 }
 
@@ -65,8 +71,13 @@ export const buildPackage = once(async () => {
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, ...LICENCES, 'package-lock.json'];
-  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js', 'pkg/custom-elements.json', 'pkg/THIRD-PARTY-NOTICES'], inputs, [], () =>
-    must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
+  await step(
+    'the npm package',
+    'pkg/dist',
+    ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js', 'pkg/custom-elements.json', 'pkg/THIRD-PARTY-NOTICES'],
+    inputs,
+    [],
+    () => must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 });
 
@@ -82,7 +93,11 @@ export const buildPage = once(async () => {
 
 /** Builds the wheel of the Python package, with the maturin of an environment. Returns its path. Cargo knows what is up to date. */
 export function buildWheel(python) {
-  return makeWheel(python, ['--release'], { CARGO_PROFILE_RELEASE_LTO: 'fat', RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') });
+  return makeWheel(python, ['--release'], {
+    CARGO_PROFILE_RELEASE_LTO: 'fat',
+    RUSTFLAGS: undefined,
+    CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f'),
+  });
 }
 
 /** The same wheel compiled as tests are, so that the native tests and it share the crate. */
@@ -97,7 +112,18 @@ async function makeWheel(python, profile, env = {}) {
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked']);
   await writeNoticesOfWheel();
   for (const name of ['LICENSE-APACHE', 'LICENSE-MIT']) copyFileSync(join(root, name), join(root, 'python', name));
-  const args = ['-m', 'maturin', 'build', '--quiet', '--locked', ...profile, '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder];
+  const args = [
+    '-m',
+    'maturin',
+    'build',
+    '--quiet',
+    '--locked',
+    ...profile,
+    '--manifest-path',
+    join(root, 'python', 'Cargo.toml'),
+    '--out',
+    folder,
+  ];
   await must('The wheel could not be built.', python, args, { env });
   return join(folder, readdirSync(folder)[0]);
 }
@@ -120,12 +146,22 @@ async function step(title, folder, outputs, inputs, versions, build) {
 async function buildModule({ name, folder, crate = CALLS, features }) {
   await compile({ crate, features });
   rmSync(join(root, folder, `${name}_bg.wasm`), { force: true });
-  await must('The JavaScript of the module could not be written.', wasmTools, ['module', `target/${TARGET}/release/${crate.replace('-', '_')}.wasm`, folder, name]);
+  await must('The JavaScript of the module could not be written.', wasmTools, [
+    'module',
+    `target/${TARGET}/release/${crate.replace('-', '_')}.wasm`,
+    folder,
+    name,
+  ]);
   const module = `${folder}/${name}_bg.wasm`;
   // Set-up installs it.
   const { parse } = await import('smol-toml');
   const { metadata } = parse(projectText('wasm/Cargo.toml')).package;
-  await must('The module could not be made smaller.', 'wasm-opt', [module, '-o', module, ...metadata['wasm-pack'].profile.release['wasm-opt']]);
+  await must('The module could not be made smaller.', 'wasm-opt', [
+    module,
+    '-o',
+    module,
+    ...metadata['wasm-pack'].profile.release['wasm-opt'],
+  ]);
 }
 
 async function compile({ crate = CALLS, features }, options = {}) {
@@ -143,8 +179,27 @@ export function ofModule(features) {
 
 /** Cargo's arguments for a test of the modules' own crate, and the environment: with these, the libraries are those that the modules have. */
 export function testOfModules(name) {
-  const args = ['test', '--package', CALLS, '--test', name, '--release', '--target-dir', 'target', '--target', TARGET, ...ofModule(MODULES.at(-1).features)];
-  return { args, env: { ...ofProject(), CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `node ${join(root, 'scripts', 'lib', 'wasm-test-runner.mjs')}`, VERONESE_WASM_TOOLS: wasmTools } };
+  const args = [
+    'test',
+    '--package',
+    CALLS,
+    '--test',
+    name,
+    '--release',
+    '--target-dir',
+    'target',
+    '--target',
+    TARGET,
+    ...ofModule(MODULES.at(-1).features),
+  ];
+  return {
+    args,
+    env: {
+      ...ofProject(),
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `node ${join(root, 'scripts', 'lib', 'wasm-test-runner.mjs')}`,
+      VERONESE_WASM_TOOLS: wasmTools,
+    },
+  };
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */

@@ -15,13 +15,36 @@ const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
 /** Those that compile. */
 const LINTS = [
   // What the tests have compiled anyway, so the benchmarks and the modules of Python and WebAssembly are left to RARE.
-  ['clippy', 'cargo', ['clippy', '--locked', '--package', 'veronese', '--package', 'scenes', '--package', 'experiments', '--package', 'veronese-site', '--all-targets', '--features', 'codecs,ablation', ...DENY]],
+  [
+    'clippy',
+    'cargo',
+    [
+      'clippy',
+      '--locked',
+      '--package',
+      'veronese',
+      '--package',
+      'scenes',
+      '--package',
+      'experiments',
+      '--package',
+      'veronese-site',
+      '--all-targets',
+      '--features',
+      'codecs,ablation',
+      ...DENY,
+    ],
+  ],
 ];
 
 const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],
   // They are no members of the workspace.
-  ...['fuzz', 'scripts/wasm-tools'].map((folder) => [`formatting of ${folder}`, 'cargo', ['fmt', '--manifest-path', `${folder}/Cargo.toml`, '--check']]),
+  ...['fuzz', 'scripts/wasm-tools'].map((folder) => [
+    `formatting of ${folder}`,
+    'cargo',
+    ['fmt', '--manifest-path', `${folder}/Cargo.toml`, '--check'],
+  ]),
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
   // After the builds: it asks the types of the package too.
@@ -38,11 +61,17 @@ const only = (features) => ['--no-default-features', '--features', features];
 /** The crates as users and modules have them: features leave out parts. */
 const RARE = [
   // Natively, everything at once. The Python package needs no Python for it.
-  ['clippy of the workspace', 'cargo', ['clippy', '--locked', '--workspace', '--all-targets', '--features', 'codecs,ablation,plot', ...DENY]],
+  [
+    'clippy of the workspace',
+    'cargo',
+    ['clippy', '--locked', '--workspace', '--all-targets', '--features', 'codecs,ablation,plot', ...DENY],
+  ],
   ['clippy without features', 'cargo', ['clippy', '--locked', '--lib', '--package', 'veronese', ...DENY]],
   ['clippy for wasm', 'cargo', ['clippy', '--locked', '--all-targets', ...MODULES, ...OF_SITE, '--features', 'codecs', ...DENY]],
   ...['frames', 'points', 'frames,points'].map((features) => [
-    `clippy for a module of ${features}`, 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only(features), ...DENY],
+    `clippy for a module of ${features}`,
+    'cargo',
+    ['clippy', '--locked', '--lib', ...MODULES, ...only(features), ...DENY],
   ]),
   ['documentation of the workspace', 'cargo', ['doc', '--locked', '--no-deps', '--workspace', '--features', 'codecs'], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', ['doc', '--locked', '--no-deps', ...MODULES, ...OF_SITE, '--features', 'codecs'], DENY_IN_DOCS],

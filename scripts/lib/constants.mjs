@@ -23,7 +23,10 @@ export function constantsAreExplained() {
 
 function sources() {
   const inFolders = FOLDERS.flatMap((folder) =>
-    readdirSync(join(root, folder), { recursive: true }).filter((name) => name.endsWith('.rs') && !name.includes('tests')).map((name) => `${folder}/${name}`));
+    readdirSync(join(root, folder), { recursive: true })
+      .filter((name) => name.endsWith('.rs') && !name.includes('tests'))
+      .map((name) => `${folder}/${name}`),
+  );
   return [...FILES, ...inFolders];
 }
 
@@ -37,7 +40,8 @@ export function unexplained(file, text) {
     if (explained) continue;
     const numbers = (code.replaceAll(/"[^"]*"/g, '').match(LITERAL) ?? []).map((number) => Number(number.replaceAll('_', '')));
     const chosen = numbers.filter((number) => !PLAIN.has(number) && number > GUARD);
-    if (chosen.length > 0) problems.push(`${file}:${k + 1} has the number ${chosen.join(', ')}: a name in src/model.rs or a comment says where it comes from.`);
+    if (chosen.length > 0)
+      problems.push(`${file}:${k + 1} has the number ${chosen.join(', ')}: a name in src/model.rs or a comment says where it comes from.`);
   }
   return problems;
 }

@@ -64,4 +64,6 @@ const figures = {
   png: Math.round(png / n),
   memory: process.resourceUsage().maxRSS * 1024 - resident,
 };
-process.stdout.write(JSON.stringify(figures, (_, value) => (typeof value === 'number' && value < 100 ? Number(value.toPrecision(3)) : value)));
+process.stdout.write(
+  JSON.stringify(figures, (_, value) => (typeof value === 'number' && value < 100 ? Number(value.toPrecision(3)) : value)),
+);

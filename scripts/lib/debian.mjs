@@ -8,7 +8,10 @@ export async function installDebianPackages(packages, what) {
   if (process.platform !== 'linux' || process.getuid() !== 0 || !which('apt-get')) return false;
   console.log(`Installing ${what} with apt-get (${packages.join(', ')}; about a minute) …`);
   const env = { DEBIAN_FRONTEND: 'noninteractive' };
-  for (const args of [['update', '-q'], ['install', '-q', '-y', '--no-install-recommends', ...packages]]) {
+  for (const args of [
+    ['update', '-q'],
+    ['install', '-q', '-y', '--no-install-recommends', ...packages],
+  ]) {
     const { code, text } = await run('apt-get', args, { output: 'collect', env });
     if (code === 0) continue;
     process.stderr.write(text);

@@ -61,7 +61,10 @@ export async function runPeers(name, args, { out, old, program, argumentsOf }) {
   for (const folder of old) rmSync(join(out, folder), { recursive: true, force: true });
   const { code, text, stdout } = await start(name, ['frames', ...args], { output: 'collect' });
   if (code !== 0) throw new Stop(text.trim());
-  const cases = stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
+  const cases = stdout
+    .split('\n')
+    .filter(Boolean)
+    .map((line) => line.split('\t'));
   const python = cases.length > 0 && (await findOpenCv());
   if (python) await runOnAll(python, program, cases, argumentsOf);
 }

@@ -27,7 +27,14 @@ function watch() {
   const look = () => {
     const fill = document.querySelector('#fill');
     const isDrawn = seen.masks === null && document.querySelector('#run')?.dataset.phase === 'done' && fill.width > 0;
-    if (isDrawn && fill.getContext('2d').getImageData(0, 0, fill.width, fill.height).data.some((value) => value > 0)) seen.masks = performance.now();
+    if (
+      isDrawn &&
+      fill
+        .getContext('2d')
+        .getImageData(0, 0, fill.width, fill.height)
+        .data.some((value) => value > 0)
+    )
+      seen.masks = performance.now();
     if (document.querySelector('#clip-run')?.dataset.phase === 'done') seen.found = performance.now();
     else requestAnimationFrame(look);
   };

@@ -3,9 +3,7 @@
 import { run } from './run.mjs';
 
 /** Folders whose layout is checked. */
-export const FORMATTED = [
-  // 'benches', 'examples', 'pkg', 'python', 'scripts', 'site', 'www',
-];
+export const FORMATTED = ['benches', 'examples', 'pkg/bin', 'pkg/scripts', 'pkg/src', 'python', 'scripts'];
 
 const KINDS = '*.{ts,tsx,mjs,js,jsx}';
 

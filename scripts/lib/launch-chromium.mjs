@@ -13,7 +13,14 @@ const HOST = '127.0.0.1';
 export function launchChromium(executablePath) {
   // Playwright is a package of the page.
   const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
-  const args = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--no-pings'];
+  const args = [
+    '--no-sandbox',
+    '--disable-background-networking',
+    '--disable-component-update',
+    '--disable-sync',
+    '--no-first-run',
+    '--no-pings',
+  ];
   return chromium.launch({ executablePath, args });
 }
 

@@ -9,7 +9,9 @@ const REQUIRED = 'VERONESE_REQUIRE_CARGO_DENY';
 export async function licencesAllowed() {
   const { code } = await run('cargo', ['deny', '--version'], { output: 'collect' });
   if (code !== 0 && !process.env[REQUIRED]) {
-    return { skipped: 'Licences, bans and sources of crates were not checked: cargo-deny is not installed (`cargo install --locked cargo-deny`).' };
+    return {
+      skipped: 'Licences, bans and sources of crates were not checked: cargo-deny is not installed (`cargo install --locked cargo-deny`).',
+    };
   }
   const args = ['deny', '--all-features', 'check', 'licenses', 'bans', 'sources'];
   say(`\n— licences, bans and sources of crates: cargo ${args.join(' ')}`);

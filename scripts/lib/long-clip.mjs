@@ -12,7 +12,9 @@ const FRAMES_PER_SECOND = 30;
 
 /** Writes a WebM video of that many frames, encoded (VP8) by the browser of this page. */
 export async function writeLongClip(page, path, count, [width, height]) {
-  const { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Output, WebMOutputFormat } = createRequire(join(root, 'www/package.json'))('mediabunny');
+  const { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Output, WebMOutputFormat } = createRequire(join(root, 'www/package.json'))(
+    'mediabunny',
+  );
   const encoded = await page.evaluate(encodedRound, [ROUND, width, height]);
   const packets = encoded.map((base64) => new Uint8Array(Buffer.from(base64, 'base64')));
   const target = new BufferTarget();

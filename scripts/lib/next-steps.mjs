@@ -11,7 +11,8 @@ export function nextSteps(page, env = process.env) {
   const isHere = host === '127.0.0.1';
   const lines = [`The page is at http://${isHere ? 'localhost' : host}:${port}/ (Ctrl-C ends it)`];
   const [, , server] = env.SSH_CONNECTION?.split(' ') ?? [];
-  if (server && isHere) lines.push(`From where you sit: ssh -L ${port}:localhost:${port} ${env.USER ?? 'you'}@${server}, then the same address`);
+  if (server && isHere)
+    lines.push(`From where you sit: ssh -L ${port}:localhost:${port} ${env.USER ?? 'you'}@${server}, then the same address`);
   else if (server) lines.push(`From where you sit: http://${server.includes(':') ? `[${server}]` : server}:${port}/`);
   return `${lines.join('\n')}\n\n${OWN}`;
 }

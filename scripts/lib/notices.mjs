@@ -38,11 +38,23 @@ const standardLibrary = (crates) => ({
 });
 
 /** The targets of wheels. */
-const NATIVE = ['x86_64-unknown-linux-gnu', 'aarch64-unknown-linux-gnu', 'x86_64-apple-darwin', 'aarch64-apple-darwin', 'x86_64-pc-windows-msvc'];
+const NATIVE = [
+  'x86_64-unknown-linux-gnu',
+  'aarch64-unknown-linux-gnu',
+  'x86_64-apple-darwin',
+  'aarch64-apple-darwin',
+  'x86_64-pc-windows-msvc',
+];
 
 /** The letters of the page's name; README.md there says how they were made. */
 const WORDMARK = () =>
-  component('Cormorant Garamond', '4.001 (Bold, six letters)', 'OFL-1.1', 'https://github.com/CatharsisFonts/Cormorant', join(root, 'www/src/styles/wordmark'));
+  component(
+    'Cormorant Garamond',
+    '4.001 (Bold, six letters)',
+    'OFL-1.1',
+    'https://github.com/CatharsisFonts/Cormorant',
+    join(root, 'www/src/styles/wordmark'),
+  );
 
 async function partsOfProject() {
   const modules = await crates(['--manifest-path', 'wasm/Cargo.toml', '--features', 'codecs'], 'wasm32-unknown-unknown');
@@ -58,7 +70,9 @@ async function partsOfWheel() {
   for (const target of NATIVE) {
     for (const crate of await crates(['--manifest-path', 'python/Cargo.toml'], target)) all.set(`${crate.name} ${crate.version}`, crate);
   }
-  const std = standardLibrary('addr2line, adler2, cfg_if, compiler_builtins, gimli, hashbrown, libc, memchr, miniz_oxide, object and rustc_demangle');
+  const std = standardLibrary(
+    'addr2line, adler2, cfg_if, compiler_builtins, gimli, hashbrown, libc, memchr, miniz_oxide, object and rustc_demangle',
+  );
   return [['In the module', [std, ...[...all.values()].sort(byName)]]];
 }
 
@@ -123,8 +137,14 @@ function packages() {
 
 /** With the texts of the licences that it is used under: one of each choice, and its own notices. */
 function component(name, version, licence, source, folder) {
-  const files = readdirSync(folder).filter((file) => /^(licen[sc]e|copying|copyright|notice)/i.test(file)).sort();
-  const plain = (text) => text.replaceAll('\r\n', '\n').replace(/[ \t]+$/gm, '').replace(/^\n+|\n+$/g, '');
+  const files = readdirSync(folder)
+    .filter((file) => /^(licen[sc]e|copying|copyright|notice)/i.test(file))
+    .sort();
+  const plain = (text) =>
+    text
+      .replaceAll('\r\n', '\n')
+      .replace(/[ \t]+$/gm, '')
+      .replace(/^\n+|\n+$/g, '');
   const all = files.map((file) => ({ file, text: plain(readFileSync(join(folder, file), 'utf8')) }));
   const texts = licence.split(' AND ').map((choice) => {
     const taken = Object.keys(LICENCES).find((id) => choice.includes(id) && all.some(({ text }) => LICENCES[id].test(text)));

@@ -31,13 +31,39 @@ const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs', ..
 const SOAK = { VERONESE_SOAK: '1' };
 
 /** What nothing but their own checks depends on. */
-const NOTES = ['ARCHITECTURE.md', 'CODE_OF_CONDUCT.md', 'CONTRIBUTING.md', 'SECURITY.md', 'VERSIONING.md', '.github', 'cspell.json', 'deny.toml', 'fuzz', 'benches', 'docs/figures', 'docs/images'];
+const NOTES = [
+  'ARCHITECTURE.md',
+  'CODE_OF_CONDUCT.md',
+  'CONTRIBUTING.md',
+  'SECURITY.md',
+  'VERSIONING.md',
+  '.github',
+  'cspell.json',
+  'deny.toml',
+  'fuzz',
+  'benches',
+  'docs/figures',
+  'docs/images',
+];
 /** The sources of the modules: what depends on the modules depends on the built ones. */
-const CRATES_OF_MODULES = ['src', 'wasm', 'scenes', 'experiments', 'Cargo.toml', 'Cargo.lock', '.cargo', 'clippy.toml', 'rustfmt.toml', 'scripts/wasm-tools'];
+const CRATES_OF_MODULES = [
+  'src',
+  'wasm',
+  'scenes',
+  'experiments',
+  'Cargo.toml',
+  'Cargo.lock',
+  '.cargo',
+  'clippy.toml',
+  'rustfmt.toml',
+  'scripts/wasm-tools',
+];
 const BUILT = [...MODULES.map(({ folder, name }) => `${folder}/${name}_bg.wasm`), 'pkg/THIRD-PARTY-NOTICES'];
 const PAGE = ['www/src', 'www/tests', 'www/browsers', 'www/screens', 'www/index.html'];
 /** The site without its crate. */
-const SITE = ['client', 'data', 'layouts', 'pages', 'styles', 'tests', 'eleventy.config.mjs', 'package.json', 'package-lock.json'].map((name) => `site/${name}`);
+const SITE = ['client', 'data', 'layouts', 'pages', 'styles', 'tests', 'eleventy.config.mjs', 'package.json', 'package-lock.json'].map(
+  (name) => `site/${name}`,
+);
 const PACKAGE = ['pkg/src', 'pkg/test', 'pkg/types', 'pkg/scripts', 'pkg/bin', 'pkg/schemas'];
 
 /**
@@ -63,7 +89,10 @@ export const DAILY = {
     // The names of these tests begin with their files, as modules or paths.
     run: async ({ word }) => {
       const own = word === undefined ? [] : ['--', word];
-      return added(await tests(cargo, 'cargo', [...NATIVE, '--tests', ...own], {}, word), await tests(cargo, 'cargo', [...NATIVE, '--doc', ...own], {}, word));
+      return added(
+        await tests(cargo, 'cargo', [...NATIVE, '--tests', ...own], {}, word),
+        await tests(cargo, 'cargo', [...NATIVE, '--doc', ...own], {}, word),
+      );
     },
   },
   wasm: {
@@ -165,7 +194,11 @@ export const RARE = {
   },
   check: { title: 'the crates with each set of features', needs: { checks: true }, run: runRareChecks },
   package: { title: 'package tests, whole sweeps', run: () => ofPackage('test', SOAK) },
-  page: { title: 'page tests that take long', needs: { browser: true }, run: (setup) => ofPage('test', setup, SOAK, ['--grep', '@soak|same-bits']) },
+  page: {
+    title: 'page tests that take long',
+    needs: { browser: true },
+    run: (setup) => ofPage('test', setup, SOAK, ['--grep', '@soak|same-bits']),
+  },
   screens: { title: 'screenshots of the page, in out/screens', needs: { browser: true }, run: (setup) => ofPage('screens', setup) },
   python: {
     title: 'the wheel as it is published',
@@ -185,7 +218,11 @@ export const RARE = {
     needs: { browser: true, python: true, hosts: true },
     run: (setup) => withInstalled((env) => ofPackage('test:hosts', { ...inBrowser(setup), ...env })),
   },
-  runtimes: { title: 'the packed package in Node 22 to 26, Deno, Bun and workerd', needs: { runtimes: true }, run: () => ofPackage('test:runtimes') },
+  runtimes: {
+    title: 'the packed package in Node 22 to 26, Deno, Bun and workerd',
+    needs: { runtimes: true },
+    run: () => ofPackage('test:runtimes'),
+  },
   browsers: {
     title: 'the page in Chromium, Firefox and WebKit',
     needs: { browser: true },
@@ -202,8 +239,16 @@ export const RARE = {
       const env = inBrowser(setup);
       await buildSite();
       const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs') && name !== 'guide.test.mjs');
-      const inNode = await tests(node, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
-      return added(inNode, await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env));
+      const inNode = await tests(
+        node,
+        process.execPath,
+        ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)],
+        env,
+      );
+      return added(
+        inNode,
+        await tests(playwright, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env),
+      );
     },
   },
   guide: {
@@ -222,10 +267,7 @@ export const RARE = {
     needs: { browser: true, ownPython: true },
     run: (setup) => stressed(Object.values(DAILY), setup, 1),
   },
-  'wasm-pack': {
-    title: 'the modules, as wasm-pack makes and tests them',
-    run: testWithWasmPack,
-  },
+  'wasm-pack': { title: 'the modules, as wasm-pack makes and tests them', run: testWithWasmPack },
   release: {
     title: 'a rehearsal of a release',
     run: async () => {
@@ -245,11 +287,21 @@ async function ofPackage(script, env = {}, word, own = []) {
   await buildPackage();
   if (word === undefined && own.length === 0) return tests(node, 'npm', ['run', script, '--silent', '--workspace', 'pkg'], env);
   const folders = script === 'test' ? ['pkg/test', 'pkg/test/scripts'] : [`pkg/test/${script.split(':')[1]}`];
-  const files = folders.flatMap((folder) => readdirSync(join(root, folder)).filter((name) => name.endsWith('.test.mjs')).map((name) => `${folder}/${name}`));
+  const files = folders.flatMap((folder) =>
+    readdirSync(join(root, folder))
+      .filter((name) => name.endsWith('.test.mjs'))
+      .map((name) => `${folder}/${name}`),
+  );
   const isNamed = (file) => basename(file, '.test.mjs').includes(word);
   const run = (own, ...options) =>
     own.length === 0 ? NOTHING : tests(node, process.execPath, ['--test', '--test-reporter=tap', ...options, ...own], env, word);
-  return added(await run(files.filter(isNamed)), await run(files.filter((file) => !isNamed(file)), `--test-name-pattern=${literal(word)}`));
+  return added(
+    await run(files.filter(isNamed)),
+    await run(
+      files.filter((file) => !isNamed(file)),
+      `--test-name-pattern=${literal(word)}`,
+    ),
+  );
 }
 
 /** Playwright's arguments for the tests whose file or name has the word. */
@@ -276,7 +328,13 @@ async function ofPython(place, { ownPython: { problem }, word }, build, env = {}
   const wheel = await build(OWN.python);
   await installWheel(OWN, wheel);
   const own = word === undefined ? [] : ['-k', word];
-  return tests(pytest, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', ...own, place], { ...env, VERONESE_WHEEL: wheel }, word);
+  return tests(
+    pytest,
+    OWN.python,
+    ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', ...own, place],
+    { ...env, VERONESE_WHEEL: wheel },
+    word,
+  );
 }
 
 function ofGuide(env) {

@@ -16,7 +16,15 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
  * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
  * `{ chromium: { problem } }`, `{ python: { problem } }` and the like, because only their tests need them.
  */
-export async function prepare({ checks = false, browser = false, hosts = false, python = false, fiftyone = false, ownPython = false, runtimes = false } = {}) {
+export async function prepare({
+  checks = false,
+  browser = false,
+  hosts = false,
+  python = false,
+  fiftyone = false,
+  ownPython = false,
+  runtimes = false,
+} = {}) {
   checkNode();
   await checkRust();
   const rust = prepareCompiler({ checks }).then(() => prepareWasmTools(compileAhead));

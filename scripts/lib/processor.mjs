@@ -47,17 +47,24 @@ function isOffspring(one, processes) {
 
 /** All processes: `{ pid, parent, own, waited }`, with the seconds of themselves and of those children that have ended and that they waited for. */
 function allProcesses() {
-  return readdirSync('/proc').filter((name) => /^\d+$/.test(name)).flatMap((name) => {
-    try {
-      const line = readFileSync(`/proc/${name}/stat`, 'latin1');
-      // The name of the program stands in brackets and may have spaces and brackets itself.
-      const [, parent, , , , , , , , , , ...ticks] = line.slice(line.lastIndexOf(')') + 2).split(' ').map(Number);
-      const [user, system, waitedUser, waitedSystem] = ticks;
-      return [{ pid: Number(name), parent, own: (user + system) / TICKS_PER_SECOND, waited: (waitedUser + waitedSystem) / TICKS_PER_SECOND }];
-    } catch {
-      return []; // It has just ended.
-    }
-  });
+  return readdirSync('/proc')
+    .filter((name) => /^\d+$/.test(name))
+    .flatMap((name) => {
+      try {
+        const line = readFileSync(`/proc/${name}/stat`, 'latin1');
+        // The name of the program stands in brackets and may have spaces and brackets itself.
+        const [, parent, , , , , , , , , , ...ticks] = line
+          .slice(line.lastIndexOf(')') + 2)
+          .split(' ')
+          .map(Number);
+        const [user, system, waitedUser, waitedSystem] = ticks;
+        return [
+          { pid: Number(name), parent, own: (user + system) / TICKS_PER_SECOND, waited: (waitedUser + waitedSystem) / TICKS_PER_SECOND },
+        ];
+      } catch {
+        return []; // It has just ended.
+      }
+    });
 }
 
 /**
@@ -67,7 +74,13 @@ function allProcesses() {
 function secondsOf(pid) {
   const { own, waited } = seen.get(pid) ?? { own: 0, waited: 0 };
   const children = [...seen.values()].filter(({ parent }) => parent === pid).map((child) => secondsOf(child.pid));
-  return own + Math.max(waited, children.reduce((sum, seconds) => sum + seconds, 0));
+  return (
+    own +
+    Math.max(
+      waited,
+      children.reduce((sum, seconds) => sum + seconds, 0),
+    )
+  );
 }
 
 function forget(pid) {

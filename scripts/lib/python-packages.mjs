@@ -72,7 +72,9 @@ async function suitable(programs) {
 
 /** Whether every version of the list is installed, according to Python's own records, which are quick to read. */
 async function isInstalled(python, list) {
-  const wanted = projectText(list).split('\n').filter((line) => line.includes('=='));
+  const wanted = projectText(list)
+    .split('\n')
+    .filter((line) => line.includes('=='));
   const check = `import importlib.metadata as m; [exit(1) for p in ${JSON.stringify(wanted)} if m.version(p.split('==')[0]) != p.split('==')[1]]`;
   return (await run(python, ['-c', check], { output: 'collect' })).code === 0;
 }

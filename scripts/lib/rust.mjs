@@ -63,7 +63,10 @@ async function preparePinned() {
   const { text } = await run('rustc', ['--version'], { output: 'collect' });
   if (text.startsWith(`rustc ${PINNED} `)) return;
   if ((await run('rustup', ['run', PINNED, 'rustc', '--version'], { output: 'collect' })).code !== 0) {
-    await rustup(['toolchain', 'install', PINNED, '--profile', 'minimal', '--target', TARGET], `The modules are compiled with Rust ${PINNED}, which is not installed`);
+    await rustup(
+      ['toolchain', 'install', PINNED, '--profile', 'minimal', '--target', TARGET],
+      `The modules are compiled with Rust ${PINNED}, which is not installed`,
+    );
   }
   pinned = { RUSTUP_TOOLCHAIN: PINNED };
 }
@@ -77,7 +80,10 @@ export async function prepareCompiler({ checks }) {
   }
   if (!checks) return;
   const components = [];
-  for (const [program, component] of [['fmt', 'rustfmt'], ['clippy', 'clippy']]) {
+  for (const [program, component] of [
+    ['fmt', 'rustfmt'],
+    ['clippy', 'clippy'],
+  ]) {
     if ((await run('cargo', [program, '--version'], { output: 'collect' })).code !== 0) components.push(component);
   }
   if (components.length > 0) {
@@ -93,9 +99,13 @@ export async function prepareWasmTools(meanwhile) {
     longStep(
       'Compiling what writes WebAssembly modules (about a minute; once)',
       `${sources} could not be compiled. See above; if it is the network, run the command again.`,
-      'cargo', build, OF_PROGRAMS,
+      'cargo',
+      build,
+      OF_PROGRAMS,
     );
-  await buildIfChanged('wasm-tools', { inputs: [sources], outputs: [program], versions: [await versionOfRust()] }, () => Promise.all([compile(), meanwhile()]));
+  await buildIfChanged('wasm-tools', { inputs: [sources], outputs: [program], versions: [await versionOfRust()] }, () =>
+    Promise.all([compile(), meanwhile()]),
+  );
 }
 
 /** Installs wasm-pack, and the version of wasm-bindgen's command line tool that it asks for; only a test of it needs them. */

@@ -51,7 +51,12 @@ export async function makeSite({ onlyPages = false } = {}) {
 /** Licences and notices that the page of licences lacks: those of the project, of its archives and of what the site adds. */
 export async function missingNotices(html) {
   const { default: notices } = await import('../../site/data/notices.mjs');
-  const text = html.replaceAll('&quot;', '"').replaceAll('&#39;', "'").replaceAll('&lt;', '<').replaceAll('&gt;', '>').replaceAll('&amp;', '&');
+  const text = html
+    .replaceAll('&quot;', '"')
+    .replaceAll('&#39;', "'")
+    .replaceAll('&lt;', '<')
+    .replaceAll('&gt;', '>')
+    .replaceAll('&amp;', '&');
   return [...notices.project, ...notices.site].filter((one) => !text.includes(one.text.trim())).map(({ name }) => name);
 }
 
@@ -76,8 +81,16 @@ async function bundleScripts(site, { build }) {
 /** The package's scripts as they are, but without comments and spaces. */
 async function minifyPackage({ build }) {
   const folder = join(root, 'pkg/dist');
-  const entryPoints = readdirSync(folder).filter((name) => name.endsWith('.js') && !/^(cli|inline|element-inline|node|worker-node)/.test(name));
-  await build({ entryPoints: entryPoints.map((name) => join(folder, name)), outdir: join(OUT, 'package/dist'), minify: true, format: 'esm', target: 'es2022' });
+  const entryPoints = readdirSync(folder).filter(
+    (name) => name.endsWith('.js') && !/^(cli|inline|element-inline|node|worker-node)/.test(name),
+  );
+  await build({
+    entryPoints: entryPoints.map((name) => join(folder, name)),
+    outdir: join(OUT, 'package/dist'),
+    minify: true,
+    format: 'esm',
+    target: 'es2022',
+  });
 }
 
 /** The module, the package, samples and pictures. */

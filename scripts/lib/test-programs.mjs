@@ -38,7 +38,15 @@ export const playwright = {
 /** pytest, whose last line has all counts. */
 export const pytest = {
   counts: (output) => {
-    const kinds = { passed: 'passed', failed: 'failed', error: 'failed', errors: 'failed', skipped: 'skipped', xfailed: 'skipped', xpassed: 'failed' };
+    const kinds = {
+      passed: 'passed',
+      failed: 'failed',
+      error: 'failed',
+      errors: 'failed',
+      skipped: 'skipped',
+      xfailed: 'skipped',
+      xpassed: 'failed',
+    };
     const last = output.match(/^.*\b\d+ (?:passed|failed|errors?|skipped)\b.* in [\d.]+s.*$/gm)?.at(-1) ?? '';
     return sum(last, /(\d+) (passed|failed|errors?|skipped|xfailed|xpassed)\b/g, kinds, ([, count, kind]) => [kind, count]);
   },

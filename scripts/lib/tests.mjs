@@ -26,5 +26,11 @@ export async function tests(kind, program, args, env = {}, word) {
 /** The outcomes of two programs as one. */
 export function added(one, other) {
   const both = (kind) => one[kind] + other[kind];
-  return { passed: both('passed'), failed: both('failed'), skipped: both('skipped'), failures: [...one.failures, ...other.failures], note: one.note ?? other.note };
+  return {
+    passed: both('passed'),
+    failed: both('failed'),
+    skipped: both('skipped'),
+    failures: [...one.failures, ...other.failures],
+    note: one.note ?? other.note,
+  };
 }

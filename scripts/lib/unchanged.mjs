@@ -17,7 +17,8 @@ export async function stateOf({ apart, build, built = [] }, versions) {
   await build?.();
   const { code, stdout } = await run('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'], { output: 'collect' });
   if (code !== 0) return undefined;
-  const isApart = (path) => apart.some((other) => (other.startsWith('*') ? path.endsWith(other.slice(1)) : path === other || path.startsWith(`${other}/`)));
+  const isApart = (path) =>
+    apart.some((other) => (other.startsWith('*') ? path.endsWith(other.slice(1)) : path === other || path.startsWith(`${other}/`)));
   const files = stdout.split('\0').filter((path) => path !== '' && !isApart(path) && isFile(path));
   return fingerprint([...files.sort(), ...built], versions);
 }

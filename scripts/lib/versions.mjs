@@ -29,7 +29,8 @@ export async function versions() {
   const { packages } = JSON.parse(projectText('package-lock.json'));
   for (const path of MANIFESTS) found[`package-lock.json (${path})`] = packages[path.replace(/\/?package\.json$/, '')]?.version;
   for (const [path, pattern] of NAMED.filter(([name]) => inProject(name))) {
-    for (const [, number] of projectText(path).matchAll(pattern)) found[path] = found[path] === undefined || found[path] === number ? number : 'several';
+    for (const [, number] of projectText(path).matchAll(pattern))
+      found[path] = found[path] === undefined || found[path] === number ? number : 'several';
   }
   const python = inProject('python/pyproject.toml') ? toml('python/pyproject.toml').project : undefined;
   if (python && !python.dynamic?.includes('version')) found['python/pyproject.toml'] = python.version;

@@ -18,7 +18,11 @@ const folder = mkdtempSync(join(tmpdir(), 'veronese-tests-'));
 try {
   execFileSync(process.env.VERONESE_WASM_TOOLS, ['test', file, folder, 'tests'], { stdio: 'inherit' });
   // What the crate expects of its surroundings.
-  Object.assign(globalThis, { __wbgtest_og_console_log: console.log, __wbgtest_og_console_error: console.error, __wbg_test_invoke: (test) => test() });
+  Object.assign(globalThis, {
+    __wbgtest_og_console_log: console.log,
+    __wbgtest_og_console_error: console.error,
+    __wbg_test_invoke: (test) => test(),
+  });
   const wasm = createRequire(import.meta.url)(join(folder, 'tests.js'));
   const { __wasm: exported } = wasm;
   // What a test writes, its panic too, is shown with its failure.

@@ -25,14 +25,16 @@ export class Api {
 
   readonly initPoints: typeof calls.initPoints = (source) => this.#points.init(source);
 
-  readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> => start(() => segmentCall(...given), this.perform);
+  readonly segmentPair = (...given: Parameters<typeof segmentCall>): Promise<Segmentation> =>
+    start(() => segmentCall(...given), this.perform);
 
   readonly solvePair = (...given: Parameters<typeof solveCall>): Promise<Uint8Array> => start(() => solveCall(...given), this.perform);
 
   readonly fitMotions: typeof calls.fitMotions = (...given) => start(() => fitCall(...given), this.perform);
 
   /** Segments a pair for the compiler's sake: nobody asks why nothing was found. */
-  readonly warm = (first: Pixels, second: Pixels): Promise<unknown> => start(() => segmentCall(first, second, { quality: 'fast' }), this.#perform);
+  readonly warm = (first: Pixels, second: Pixels): Promise<unknown> =>
+    start(() => segmentCall(first, second, { quality: 'fast' }), this.#perform);
 
   /** Performs a task that was checked and taken, here or on the other side of a worker. */
   readonly perform = async (task: CallTask, call: CallOptions): Promise<Result> => {
@@ -55,9 +57,7 @@ export class Api {
     if (task.call === 'solvePair') return this.#step(call, (glue) => glue.solvePair(...task.frames, task.settings));
     if (task.call !== 'segmentPair') return this.#step(call, (glue) => stepOf(glue, task, this.#cache));
     const [first, second] = task.frames;
-    return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
-      glue.segmentPair(first, second, task.settings, onStage),
-    );
+    return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) => glue.segmentPair(first, second, task.settings, onStage));
   };
 
   /** One step of a clip or a stream. It yields to the event loop first; otherwise nothing could abort a stream whose source never waits. */

@@ -1,6 +1,16 @@
 // The messages between the page and its worker.
 
-import type { ClipChange, ClipEntry, ClipFrame, ErrorCode, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
+import type {
+  ClipChange,
+  ClipEntry,
+  ClipFrame,
+  ErrorCode,
+  MotionFit,
+  Pixels,
+  PointMeasurements,
+  Progress,
+  Segmentation,
+} from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
 import type { ClipPropagation } from './segmented/types.js';
 import { buffersOf } from './taking.js';
@@ -131,7 +141,11 @@ export interface ClipStatus {
 }
 
 /** The calls on a stream, which `stream` numbers. */
-export type StreamTask = { stream: number } & ({ call: 'beginStream'; settings: Settings } | { call: 'pushStream'; frame: Pixels } | { call: 'finishStream' });
+export type StreamTask = { stream: number } & (
+  | { call: 'beginStream'; settings: Settings }
+  | { call: 'pushStream'; frame: Pixels }
+  | { call: 'finishStream' }
+);
 
 /** The calls on a clip whose states the caller keeps; wasm/src/segmented.rs has the results of each. */
 export type SegmentedStep =
@@ -206,7 +220,17 @@ export interface Annotating {
 }
 
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | MotionFit | LabelledFrame | ClipAnswer | StreamEnd | ClipSummary | Annotating | Uint8Array | null | undefined;
+export type Result =
+  | Segmentation
+  | MotionFit
+  | LabelledFrame
+  | ClipAnswer
+  | StreamEnd
+  | ClipSummary
+  | Annotating
+  | Uint8Array
+  | null
+  | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
@@ -222,11 +246,16 @@ export type Reply<R = Result> =
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
   if ('frames' in task && typeof task.frames === 'object') return buffersOf(task.frames.map(({ data }) => data));
-  const { frame, known, solved, saved, state, annotations, command } = task as Partial<{ [name in 'known' | 'solved' | 'saved' | 'state']: Uint8Array }> & {
-    frame?: Pixels;
-    annotations?: Annotations;
-    command?: Partial<{ annotations: readonly AnnotationMessage[] }>;
-  };
+  const { frame, known, solved, saved, state, annotations, command } = task as Partial<{
+    [name in 'known' | 'solved' | 'saved' | 'state']: Uint8Array;
+  }> & { frame?: Pixels; annotations?: Annotations; command?: Partial<{ annotations: readonly AnnotationMessage[] }> };
   const { masks = [], corrections = [], accepted = [] } = annotations ?? {};
-  return buffersOf([frame?.data, known, solved, saved, state, ...[...masks, ...corrections, ...accepted, ...(command?.annotations ?? [])].map(({ labels }) => labels)]);
+  return buffersOf([
+    frame?.data,
+    known,
+    solved,
+    saved,
+    state,
+    ...[...masks, ...corrections, ...accepted, ...(command?.annotations ?? [])].map(({ labels }) => labels),
+  ]);
 }

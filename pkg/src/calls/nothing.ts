@@ -14,24 +14,40 @@ const ALIKE = 0.3;
 const UNLIKE = 0.8;
 
 /** `motion`: the only one, as far as it is known. */
-export function whyNothing(first: Pixels, second: Pixels, { matrix, residual = 0 }: { matrix?: Matrix | undefined; residual?: number }): Note {
+export function whyNothing(
+  first: Pixels,
+  second: Pixels,
+  { matrix, residual = 0 }: { matrix?: Matrix | undefined; residual?: number },
+): Note {
   const { width, height } = first;
   const [one, other] = [sampled(first), sampled(second)];
   const contrast = Math.max(deviation(one), deviation(other));
   if (contrast < FLAT) {
-    return { code: 'no-contrast', message: `the frames have nearly no contrast: their grey levels differ by ${contrast.toFixed(1)} in all` };
+    return {
+      code: 'no-contrast',
+      message: `the frames have nearly no contrast: their grey levels differ by ${contrast.toFixed(1)} in all`,
+    };
   }
   const isOther = residual > UNLIKE * contrast || correlation(blocks(first), blocks(second)) < ALIKE;
   if (isOther) return { code: 'cut', message: 'the frames show different scenes: there is a cut between them' };
   const difference = mean(one.map((level, at) => Math.abs(level - (other[at] as number))));
   const step = matrix ? longestStep(matrix, width, height) : 0;
   if (step < SHORTEST_STEP && difference < NOISE) {
-    return { code: 'no-motion', message: `nothing moves between the frames: their grey levels differ by ${difference.toFixed(2)} on average` };
+    return {
+      code: 'no-motion',
+      message: `nothing moves between the frames: their grey levels differ by ${difference.toFixed(2)} on average`,
+    };
   }
   if (step < SHORTEST_STEP) {
-    return { code: 'small-steps', message: `nothing moves by ${SHORTEST_STEP} pixels or more as one piece: frames that are farther apart may tell more` };
+    return {
+      code: 'small-steps',
+      message: `nothing moves by ${SHORTEST_STEP} pixels or more as one piece: frames that are farther apart may tell more`,
+    };
   }
-  return { code: 'one-motion', message: `the whole picture follows one motion, of up to ${step.toFixed(1)} pixels: nothing is seen to move by itself` };
+  return {
+    code: 'one-motion',
+    message: `the whole picture follows one motion, of up to ${step.toFixed(1)} pixels: nothing is seen to move by itself`,
+  };
 }
 
 /** The longest displacement at a corner. */

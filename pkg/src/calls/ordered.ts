@@ -59,10 +59,12 @@ export async function* inOrder<Input, Answer>(
 
   const ask = () => {
     if (ended || taking || answers.length >= room) return;
-    taking = take().catch(fail).finally(() => {
-      // Never before the assignment, also where the source throws at once: a wait for what is over would spin.
-      taking = undefined;
-    });
+    taking = take()
+      .catch(fail)
+      .finally(() => {
+        // Never before the assignment, also where the source throws at once: a wait for what is over would spin.
+        taking = undefined;
+      });
   };
 
   const aborted = whenAborted(signal);

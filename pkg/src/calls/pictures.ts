@@ -11,7 +11,9 @@ export function pixelsOfCopy(name: string, kind: string, copy: PromiseSettledRes
     return pixelsOfBitmap(copy.value);
   } catch (cause) {
     if ((cause as Error).name !== 'SecurityError') throw cause;
-    throw new VeroneseError('unreadable-image', `${name} is of another origin, which does not allow this page to read it (CORS)`, { cause });
+    throw new VeroneseError('unreadable-image', `${name} is of another origin, which does not allow this page to read it (CORS)`, {
+      cause,
+    });
   } finally {
     copy.value.close();
   }
@@ -26,7 +28,8 @@ export function pixelsOfBitmap(image: ImageBitmap): Pixels {
 }
 
 function notCopied(name: string, kind: string, cause: unknown): VeroneseError {
-  if (typeof createImageBitmap !== 'function') return invalidInput(`${name} is a picture (${kind}), which nothing reads here: decode it first`);
+  if (typeof createImageBitmap !== 'function')
+    return invalidInput(`${name} is a picture (${kind}), which nothing reads here: decode it first`);
   // Whatever calls itself a picture.
   if (cause instanceof TypeError) return invalidInput(`${name} is no picture: ${cause.message}`);
   if (kind === 'VideoFrame') return invalidInput(`${name} is a VideoFrame that is closed`);

@@ -18,7 +18,12 @@ const LOOK_AHEAD = 8;
 let streams = 0;
 
 /** The stream of frames in a home, which is had when the first frame is asked for. Arguments are checked then, as generators do. */
-export function streamOf(frames: StreamSource, options: StreamOptions | undefined, house: () => Home, places: Places | undefined): ClipStream {
+export function streamOf(
+  frames: StreamSource,
+  options: StreamOptions | undefined,
+  house: () => Home,
+  places: Places | undefined,
+): ClipStream {
   const results: StreamResults = { tracks: new Tracks() };
   const stream = Object.assign(streamed(frames, options, house, places, results), { tracks: () => results.tracks.value() });
   dropped.register(stream, results);
@@ -43,9 +48,13 @@ async function* streamed(
   places: Places | undefined,
   results: StreamResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
-  const { call, transfer, maxSize, settings } = reading(() => parted(entriesOf(options, [...OPTIONS, 'signal', 'onProgress', 'transfer']), OPTIONS));
+  const { call, transfer, maxSize, settings } = reading(() =>
+    parted(entriesOf(options, [...OPTIONS, 'signal', 'onProgress', 'transfer']), OPTIONS),
+  );
   const isIterable = reading(() => {
-    const { [Symbol.asyncIterator]: asynchronous, [Symbol.iterator]: synchronous } = Object(source) as Partial<AsyncIterable<unknown> & Iterable<unknown>>;
+    const { [Symbol.asyncIterator]: asynchronous, [Symbol.iterator]: synchronous } = Object(source) as Partial<
+      AsyncIterable<unknown> & Iterable<unknown>
+    >;
     return typeof asynchronous === 'function' || typeof synchronous === 'function';
   });
   if (!isIterable) throw invalidInput('the frames must be an iterable or async iterable of pixels');

@@ -131,7 +131,8 @@ function checkedFrames(first: unknown, second: unknown, maxSize?: number): Pixel
 export function checkedPixels(which: string, pixels: unknown, maxSize?: number): Pixels {
   const { data, width, height } = Object(pixels) as Partial<Pixels>;
   if (!isArrayOf(data, 'Uint8Array', 'Uint8ClampedArray')) {
-    if (isNamed(pixels)) throw invalidInput(`${which} is a path, an address or a stream: only 'veronese' in Node reads these, decode it first`);
+    if (isNamed(pixels))
+      throw invalidInput(`${which} is a path, an address or a stream: only 'veronese' in Node reads these, decode it first`);
     throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData, or a picture: ${PICTURES}`);
   }
   if (!isWhole(width, 0, Infinity) || !isWhole(height, 0, Infinity)) {
@@ -152,7 +153,11 @@ export function checkedPixels(which: string, pixels: unknown, maxSize?: number):
 
 /** Whether it stands for pixels that are elsewhere. */
 function isNamed(frame: unknown): boolean {
-  return typeof frame === 'string' || frame instanceof URL || typeof (Object(frame) as Partial<AsyncIterable<unknown>>)[Symbol.asyncIterator] === 'function';
+  return (
+    typeof frame === 'string' ||
+    frame instanceof URL ||
+    typeof (Object(frame) as Partial<AsyncIterable<unknown>>)[Symbol.asyncIterator] === 'function'
+  );
 }
 
 const dataOf = (frames: readonly Pixels[]) => frames.map(({ data }) => data);

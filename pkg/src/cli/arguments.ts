@@ -52,7 +52,14 @@ export function parseCommand(args: string[]): Command {
     if (value === '') throw valueOf(option, command);
   }
   try {
-    return { ...READ[command](values, files, given.map((option) => option.name)), quiet: values.quiet };
+    return {
+      ...READ[command](
+        values,
+        files,
+        given.map((option) => option.name),
+      ),
+      quiet: values.quiet,
+    };
   } catch (thrown) {
     if (!(thrown instanceof VeroneseError) || thrown.code !== 'usage') throw thrown;
     throw usage(`${thrown.message}${hint(command)}`);
@@ -61,7 +68,9 @@ export function parseCommand(args: string[]): Command {
 
 function commandNamed(name: string): CommandName {
   if (isCommand(name)) return name;
-  throw usage(`there is no command '${name}'${question(name === 'video' ? 'batch' : meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`);
+  throw usage(
+    `there is no command '${name}'${question(name === 'video' ? 'batch' : meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`,
+  );
 }
 
 function points(values: Values, files: string[]) {
@@ -84,7 +93,15 @@ function convert(values: Values, files: string[], given: readonly string[]) {
     if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
     const firstFrame = first === undefined ? undefined : choice('first-frame', first, '0', '1');
-    return { name: BACK, source: folder, out, clip, force, levels: levels(values.levels), firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
+    return {
+      name: BACK,
+      source: folder,
+      out,
+      clip,
+      force,
+      levels: levels(values.levels),
+      firstFrame: firstFrame && (Number(firstFrame) as 0 | 1),
+    } as const;
   }
   const { shapes, 'frame-rate': rate } = values;
   const settings = {
@@ -97,7 +114,17 @@ function convert(values: Values, files: string[], given: readonly string[]) {
 }
 
 function clip(values: Values, files: string[]) {
-  const { list, out, overlay, masks, corrections, force, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged, 'frame-rate': rate } = values;
+  const {
+    list,
+    out,
+    overlay,
+    masks,
+    corrections,
+    force,
+    'look-ahead': lookAhead,
+    'allow-damaged': allowDamaged,
+    'frame-rate': rate,
+  } = values;
   checkFrames('clip', files, list);
   if (out === undefined) throw usage("'clip' needs '--out DIR'");
   const options = {
@@ -107,11 +134,32 @@ function clip(values: Values, files: string[]) {
     markUnknown: values['mark-unknown'],
     subject: values.subject,
   };
-  if (lookAhead !== undefined && (masks ?? corrections) !== undefined) throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
+  if (lookAhead !== undefined && (masks ?? corrections) !== undefined)
+    throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
   if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
-  const shared = { every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), show: shown(values.show), frameRate: frameRate(rate), maxSize: maxSize(values['max-size']) };
-  if (values.levels !== undefined && masks === undefined && corrections === undefined) throw usage("'--levels' needs '--masks' or '--corrections'");
-  return { name: 'clip' as const, frames: files, list, masks, corrections, levels: levels(values.levels), ...shared, options, overlay, allowDamaged, out, force };
+  const shared = {
+    every: every(values.every),
+    jobs: jobs(values.jobs, availableParallelism()),
+    show: shown(values.show),
+    frameRate: frameRate(rate),
+    maxSize: maxSize(values['max-size']),
+  };
+  if (values.levels !== undefined && masks === undefined && corrections === undefined)
+    throw usage("'--levels' needs '--masks' or '--corrections'");
+  return {
+    name: 'clip' as const,
+    frames: files,
+    list,
+    masks,
+    corrections,
+    levels: levels(values.levels),
+    ...shared,
+    options,
+    overlay,
+    allowDamaged,
+    out,
+    force,
+  };
 }
 
 function pair(values: Values, files: string[]) {
@@ -122,7 +170,12 @@ function pair(values: Values, files: string[]) {
 
 /** The part of all pairs to process is counted from 0. */
 function batch(values: Values, frames: string[]) {
-  const settings = { ...ofPairs(values), every: every(values.every), jobs: jobs(values.jobs, availableParallelism()), shard: shard(values.shard) };
+  const settings = {
+    ...ofPairs(values),
+    every: every(values.every),
+    jobs: jobs(values.jobs, availableParallelism()),
+    shard: shard(values.shard),
+  };
   checkFrames('batch', frames, values.list);
   return { name: 'batch' as const, frames, list: values.list, ...settings };
 }
@@ -134,7 +187,15 @@ function ofPairs(values: Values) {
   }
   const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], subject, confidence };
   // The subject's masks are of the whole of it.
-  return { options, grouped: values.grouped || subject, overlay, allowDamaged: values['allow-damaged'], maxSize: maxSize(values['max-size']), out, force };
+  return {
+    options,
+    grouped: values.grouped || subject,
+    overlay,
+    allowDamaged: values['allow-damaged'],
+    maxSize: maxSize(values['max-size']),
+    out,
+    force,
+  };
 }
 
 function parsed(args: string[]) {
@@ -190,7 +251,10 @@ function formats(text: string): Format[] {
   return [...new Set(text.split(','))].map((name) => {
     if (isFormat(name)) return name;
     const known = Object.keys(FORMATS);
-    throw new VeroneseError('invalid-option', `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`);
+    throw new VeroneseError(
+      'invalid-option',
+      `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`,
+    );
   });
 }
 

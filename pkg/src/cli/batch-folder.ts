@@ -62,7 +62,8 @@ export function openBatch(folder: string, range: Range, background: boolean, gro
 async function readFrame(folder: string, frame: string, grouped: boolean): Promise<SequenceFrame> {
   const { labels, width, height, motions, inputs } = await readPair(folder, grouped);
   const [first] = inputs;
-  if (!isFileName(first)) throw new VeroneseError('invalid-input', `'${join(folder, 'result.json')}' does not name its frames: it is not of 'veronese batch'`);
+  if (!isFileName(first))
+    throw new VeroneseError('invalid-input', `'${join(folder, 'result.json')}' does not name its frames: it is not of 'veronese batch'`);
   // A frame of a video is no file: it is called what ffmpeg would write it to.
   const image = /#\d+$/.test(first) ? `${frame}.png` : first;
   return { labels, width, height, image, motions };

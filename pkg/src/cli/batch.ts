@@ -50,7 +50,8 @@ export async function batch(command: BatchCommand, io: Io): Promise<void> {
       if ('result' in outcome) {
         const { done, report } = outcome.result;
         // Why a pair has one motion is in its line: of many pairs that is nothing out of the ordinary.
-        for (const { message } of ((report as Report).notes ?? []).filter(({ code }) => OF_FILES.includes(code))) note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
+        for (const { message } of ((report as Report).notes ?? []).filter(({ code }) => OF_FILES.includes(code)))
+          note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
         tally[done ? 'done' : 'skipped'] += 1;
         await print(io, jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
       } else {
@@ -88,7 +89,12 @@ function checkPlaces(output: Output, command: BatchCommand, paths: readonly stri
 async function perform(pair: Pair, command: BatchCommand, out: Output | undefined): Promise<Outcome> {
   const { options, grouped, overlay, allowDamaged, maxSize, jobs, force } = command;
   try {
-    const task: PairTask = { kind: 'pair', frames: pair.frames.map(contentOf), settings: { options, grouped, overlay, allowDamaged, maxSize }, withImages: out !== undefined };
+    const task: PairTask = {
+      kind: 'pair',
+      frames: pair.frames.map(contentOf),
+      settings: { options, grouped, overlay, allowDamaged, maxSize },
+      withImages: out !== undefined,
+    };
     const result = await threads(jobs).run({ ...task, ...(out && { folder: join(out.folder, pair.name) }) });
     if (out && result.done) await writePair(out, pair.name, result.files, force);
     return { pair, result: { ...result, files: [] } };

@@ -8,7 +8,19 @@ import { isListOf, isNumber, isObject, isWhole, UNLABELLED, unknownOf } from '..
 import { VeroneseError } from '../common/errors.js';
 import { scaledLabels, scaledSize } from '../common/scaling.js';
 import type { ClipCommand } from './arguments.js';
-import { checkUnlocked, type Edits, editsOf, isObjectNumber, isPropagation, type ObjectEdits, type Propagation, promptOf, RANGE, SPREADS, withMerged } from './clip-edits.js';
+import {
+  checkUnlocked,
+  type Edits,
+  editsOf,
+  isObjectNumber,
+  isPropagation,
+  type ObjectEdits,
+  type Propagation,
+  promptOf,
+  RANGE,
+  SPREADS,
+  withMerged,
+} from './clip-edits.js';
 import type { ClipFrames } from './clip-frames.js';
 import { UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
@@ -92,10 +104,15 @@ export interface Corrections {
 }
 
 /** Undefined where no folder is given. Throws an error that names the file, or the folder of which nothing is read. */
-export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corrections' | 'levels' | 'maxSize'>, frames: ClipFrames): Promise<Corrections | undefined> {
+export async function readCorrections(
+  command: Pick<ClipCommand, 'masks' | 'corrections' | 'levels' | 'maxSize'>,
+  frames: ClipFrames,
+): Promise<Corrections | undefined> {
   const { levels, maxSize } = command;
-  const read = async (folder: string | undefined, reader: (folder: string, names: string[], levels: Levels | undefined) => Promise<Images>) =>
-    folder === undefined ? undefined : readFolder(folder, frames, maxSize, await reader(folder, namesIn(folder).sort(), levels));
+  const read = async (
+    folder: string | undefined,
+    reader: (folder: string, names: string[], levels: Levels | undefined) => Promise<Images>,
+  ) => (folder === undefined ? undefined : readFolder(folder, frames, maxSize, await reader(folder, namesIn(folder).sort(), levels)));
   const masks = await read(command.masks, givenMasks);
   const corrections = await read(command.corrections, paintedLabels);
   const both = [masks, corrections].filter((folder) => folder !== undefined);
@@ -110,15 +127,25 @@ export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corr
   const labels = both.flatMap((folder) => folder.labels);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
   const idle = [...propagate.keys()].find((frame) => ![...labels, ...prompts, ...outlines].some((each) => each.frame === frame));
-  if (idle !== undefined) throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', which has no annotation`);
+  if (idle !== undefined)
+    throw new VeroneseError('invalid-input', `'${EDITS}': 'propagate' has '${frames.files[idle]?.stem}', which has no annotation`);
   const annotations: ClipAnnotation[] = [
     ...(masks?.labels ?? []).map((each) => ({ ...each, own: true })),
     ...(corrections?.labels ?? []),
-    ...[...outsideOf(outlines, edits), ...outlines].map(({ frame, object, labels }) => ({ frame, object, mask: labels.map((label) => (label === object ? 1 : label)) })),
+    ...[...outsideOf(outlines, edits), ...outlines].map(({ frame, object, labels }) => ({
+      frame,
+      object,
+      mask: labels.map((label) => (label === object ? 1 : label)),
+    })),
     ...prompts,
   ];
-  const annotated = new Set([...[...labels, ...outlines].flatMap(({ labels }) => [...new Set(labels)]), ...prompts.map(({ object }) => object)]);
-  const edited = [...[...edits.numbers].flat(), ...edits.names.keys(), ...edits.locked].filter((object) => object > 0 && !annotated.has(object));
+  const annotated = new Set([
+    ...[...labels, ...outlines].flatMap(({ labels }) => [...new Set(labels)]),
+    ...prompts.map(({ object }) => object),
+  ]);
+  const edited = [...[...edits.numbers].flat(), ...edits.names.keys(), ...edits.locked].filter(
+    (object) => object > 0 && !annotated.has(object),
+  );
   return {
     declaration: {
       ...declared(edits),
@@ -162,7 +189,9 @@ function declared({ numbers, names, locked }: ObjectEdits): ClipDeclaration {
 /** Where objects are not that are merged into an outlined one: outside its outline, as it is. */
 function outsideOf(outlines: readonly Outline[], { numbers }: ObjectEdits): Outline[] {
   return outlines.flatMap(({ frame, object: into, labels }) => {
-    const others = [...numbers.keys()].filter((object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object));
+    const others = [...numbers.keys()].filter(
+      (object) => numbers.get(object) === into && !outlines.some((own) => own.frame === frame && own.object === object),
+    );
     return others.map((object) => ({ frame, object, labels: labels.map((label) => (label === 0 ? 0 : UNLABELLED)) }));
   });
 }
@@ -172,11 +201,15 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
   for (const { path, stem, ...image } of found.images) {
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
-    if (labelled.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
+    if (labelled.some((other) => other.frame === frame))
+      throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
     const size = frames.size ?? (await frames.read(0));
     const { labels, width, height } = scaledLabels(image, maxSize);
     if (width !== size.width || height !== size.height) {
-      throw new VeroneseError('frame-size-mismatch', `'${path}' has ${image.width}×${image.height} pixels, the frames have ${size.width}×${size.height}`);
+      throw new VeroneseError(
+        'frame-size-mismatch',
+        `'${path}' has ${image.width}×${image.height} pixels, the frames have ${size.width}×${size.height}`,
+      );
     }
     labelled.push({ frame, labels });
   }
@@ -188,12 +221,23 @@ async function readFolder(folder: string, frames: ClipFrames, maxSize: number | 
   const lists = [labelled, prompts, outlines, accepted ?? [], ...Object.values(edits).map((list) => Object.keys(list))];
   if (lists.every((list) => list.length === 0)) {
     const [left] = found.left;
-    const remedy = left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
+    const remedy =
+      left !== undefined && (isImage(left) || UNREAD_IMAGE.test(left)) ? 'save it as PNG' : "'convert --to corrections' reads annotations";
     const which = left !== undefined ? `'${left}' is not read: ${remedy}` : hasEdits ? `'${EDITS}' is empty` : 'there is no file of these';
-    throw new VeroneseError('invalid-input', `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`);
+    throw new VeroneseError(
+      'invalid-input',
+      `nothing is read of the folder '${folder}': ${found.expected}, named as frames of the clip are, and '${EDITS}'; ${which}`,
+    );
   }
-  const notes = found.left.length > 0 ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }] : found.notes;
-  const hashes = [...labelled, ...outlines].map(({ frame, object, labels }: Labelled & Partial<Outline>) => [frame, sha256(labels), ...(object === undefined ? [] : [object])]);
+  const notes =
+    found.left.length > 0
+      ? [...found.notes, { code: 'file-left-out', message: `'${folder}': not read: ${found.left.join(', ')}` }]
+      : found.notes;
+  const hashes = [...labelled, ...outlines].map(({ frame, object, labels }: Labelled & Partial<Outline>) => [
+    frame,
+    sha256(labels),
+    ...(object === undefined ? [] : [object]),
+  ]);
   const all = [hashes, edits, ...propagate, prompts, accepted];
   const paths = [...new Set([...found.names.map((name) => join(folder, name)), ...found.paths])];
   return { ...found, notes, ...content, labels: labelled, paths, sha256: sha256(JSON.stringify(all)) };
@@ -207,13 +251,27 @@ async function paintedLabels(folder: string, names: string[], levels: Levels | u
     const path = join(folder, name);
     images.push({ path, stem: stemOf(name), ...(await readLabels(path, { foreign: true, levels })) });
   }
-  return { images, paths: [], notes: [], names, left: names.filter((name) => !isRead(name) && isMeant(folder, name)), expected: 'labels are NAME.png' };
+  return {
+    images,
+    paths: [],
+    notes: [],
+    names,
+    left: names.filter((name) => !isRead(name) && isMeant(folder, name)),
+    expected: 'labels are NAME.png',
+  };
 }
 
 /** Masks as people have them, in the folder or in one for each object. */
 async function givenMasks(folder: string, names: string[], levels: Levels | undefined): Promise<Images> {
   const objects = names.filter((name) => /^\d+$/.test(name) && isFolder(join(folder, name)));
-  const inside = [...names.filter((name) => !objects.includes(name)), ...objects.flatMap((name) => namesIn(join(folder, name)).sort().map((file) => join(name, file)))];
+  const inside = [
+    ...names.filter((name) => !objects.includes(name)),
+    ...objects.flatMap((name) =>
+      namesIn(join(folder, name))
+        .sort()
+        .map((file) => join(name, file)),
+    ),
+  ];
   const paths = inside.filter(isImage).map((name) => join(folder, name));
   const left = inside.filter((name) => !isImage(name) && isMeant(folder, name));
   const about = { paths, names, left, expected: 'masks are NAME.png, or 3/NAME.png of object 3' };
@@ -221,7 +279,13 @@ async function givenMasks(folder: string, names: string[], levels: Levels | unde
   const files = await Promise.all(paths.map(async (path) => ({ name: path.replaceAll('\\', '/'), bytes: await pngOf(path) })));
   const { frames, notes } = readAnnotations(files, levels === undefined ? {} : { levels });
   const pathOf = (stem: string) => paths.find((path) => stemOf(basename(path)) === stem) as string;
-  const images = [...frames].map(([stem, frame]) => ({ path: pathOf(stem), stem, labels: frame.read(), width: frame.width, height: frame.height }));
+  const images = [...frames].map(([stem, frame]) => ({
+    path: pathOf(stem),
+    stem,
+    labels: frame.read(),
+    width: frame.width,
+    height: frame.height,
+  }));
   return { ...about, images, notes };
 }
 
@@ -269,7 +333,8 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
   const content = await readJson(path);
   editsOf(content, wrong, ['prompts', 'polygons', 'accepted', 'propagate', 'size']);
   const { propagate = {}, prompts: listed = [], polygons = [], accepted, size: own, ...edits } = content as Record<string, unknown>;
-  if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to the directions in which annotations spread");
+  if (!isObject(propagate))
+    throw wrong("'propagate' must be an object, from names of frames to the directions in which annotations spread");
   const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
     if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
@@ -294,17 +359,25 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
     if (entry['clicks'] === undefined && entry['box'] === undefined) throw bad('must have clicks, a box, or both');
     const prompt = scaledPrompt({ ...entry, frame }, scale);
     const object = promptOf(prompt, await sizeOf(), bad);
-    if (prompts.some((other) => other.frame === frame && other.object === object)) throw bad(`is the second one of object ${object} in its frame`);
+    if (prompts.some((other) => other.frame === frame && other.object === object))
+      throw bad(`is the second one of object ${object} in its frame`);
     prompts.push({ ...prompt, frame, object });
   }
   const outlines = new Map<string, Outline>();
-  for (const { entry: { object, points }, frame, bad } of entriesOf('polygons', polygons, ['points'])) {
+  for (const {
+    entry: { object, points },
+    frame,
+    bad,
+  } of entriesOf('polygons', polygons, ['points'])) {
     if (!isObjectNumber(object)) throw bad(`must have an object, ${RANGE}`);
     if (!isListOf(points, isPoint) || points.length < 3) throw bad('must have points, three or more [x, y]');
     const { width, height } = await sizeOf();
     const canvas = new Canvas(width, height);
     // Whole numbers are centres of pixels here, corners there.
-    canvas.polygon(points.flat().map((value) => scale * (value + 0.5)), object);
+    canvas.polygon(
+      points.flat().map((value) => scale * (value + 0.5)),
+      object,
+    );
     if (!canvas.labels.includes(object)) throw bad('has no pixel of the frame');
     // Several are parts of one.
     const before = outlines.get(`${frame} ${object}`)?.labels;
@@ -317,7 +390,13 @@ async function readEdits(path: string, frames: ClipFrames, maxSize: number | und
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];
   });
-  return { edits, prompts, outlines: [...outlines.values()], accepted: accepted?.map((name) => frameOf('accepted', name)), propagate: new Map(spreads) };
+  return {
+    edits,
+    prompts,
+    outlines: [...outlines.values()],
+    accepted: accepted?.map((name) => frameOf('accepted', name)),
+    propagate: new Map(spreads),
+  };
 }
 
 function isPoint(value: unknown): value is [x: number, y: number] {
@@ -325,14 +404,22 @@ function isPoint(value: unknown): value is [x: number, y: number] {
 }
 
 /** The factor by which annotations in pixels of a size are scaled, as the frames are. */
-async function scaleOf(own: unknown, frames: ClipFrames, maxSize: number | undefined, wrong: (reason: string) => VeroneseError): Promise<number> {
+async function scaleOf(
+  own: unknown,
+  frames: ClipFrames,
+  maxSize: number | undefined,
+  wrong: (reason: string) => VeroneseError,
+): Promise<number> {
   const isSide = (side: unknown): side is number => isWhole(side, 1, Number.MAX_SAFE_INTEGER);
   if (!isListOf(own, isSide) || own.length !== 2) throw wrong("'size' must be a width and a height");
   const [width, height] = own as [number, number];
   const size = frames.size ?? (await frames.read(0));
   const scaled = scaledSize({ width, height }, maxSize);
   if (scaled.width === size.width && scaled.height === size.height) return scaled.width / width;
-  throw new VeroneseError('frame-size-mismatch', wrong(`it is about frames of ${width}×${height} pixels, these have ${size.width}×${size.height}`).message);
+  throw new VeroneseError(
+    'frame-size-mismatch',
+    wrong(`it is about frames of ${width}×${height} pixels, these have ${size.width}×${size.height}`).message,
+  );
 }
 
 function scaledPrompt(entry: Record<string, unknown>, scale: number): Record<string, unknown> {

@@ -41,7 +41,8 @@ export function editsOf(value: unknown, wrong: Wrong, more: readonly string[] = 
   const numbers = new Map<number, number>();
   const give = (object: number, number: number) => {
     if (object === number) return;
-    if ((numbers.get(object) ?? number) !== number) throw wrong(`object ${object} cannot become ${called(numbers.get(object))} and ${called(number)}`);
+    if ((numbers.get(object) ?? number) !== number)
+      throw wrong(`object ${object} cannot become ${called(numbers.get(object))} and ${called(number)}`);
     numbers.set(object, number);
   };
   for (const [first = 0, ...others] of merge) for (const other of others) give(other, first);
@@ -52,7 +53,8 @@ export function editsOf(value: unknown, wrong: Wrong, more: readonly string[] = 
   }
   if (!isObject(names)) throw wrong("'names' must be an object of names by number");
   for (const [number, name] of Object.entries(names)) {
-    if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number))) throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
+    if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number)))
+      throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
     if (typeof name !== 'string' || name === '') throw wrong(`'names' must have a text for object ${number}`);
   }
   if (!isListOf(locked, isObjectNumber)) throw wrong(`'locked' must be a list of objects, ${RANGE}`);
@@ -77,9 +79,14 @@ export function withMerged(objects: Iterable<number>, numbers: ReadonlyMap<numbe
 }
 
 /** The object of an entry with clicks and a box. Throws where it is not one, or not within the frame. */
-export function promptOf({ object, clicks = [], box }: Record<string, unknown>, { width, height }: { width: number; height: number }, wrong: Wrong): number {
+export function promptOf(
+  { object, clicks = [], box }: Record<string, unknown>,
+  { width, height }: { width: number; height: number },
+  wrong: Wrong,
+): number {
   if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}`);
-  if (!isListOf(clicks, isClick)) throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
+  if (!isListOf(clicks, isClick))
+    throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
   if (box !== undefined && !isBox(box)) throw wrong('must have a box, the whole numbers [x, y, width, height]');
   const inside = clicks.filter(([, , sign]) => sign === 1);
   if (!box && inside.length === 0) throw wrong(`must have a box or a click that belongs to object ${object}`);

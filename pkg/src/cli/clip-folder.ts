@@ -111,7 +111,8 @@ export function tracksOf(value: unknown, path: string): Tracks {
   if (!isObject(value)) throw wrong('it is no object');
   const { width, height, frames, objects, background = [], frameRate, timestamps } = value;
   if (value['version'] !== 1) throw wrong('its version is not 1');
-  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong(`"width" and "height" must be from 1 to ${LONGEST_SIDE}`);
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE))
+    throw wrong(`"width" and "height" must be from 1 to ${LONGEST_SIDE}`);
   if (!isListOf(frames, isFileName) || frames.length === 0) throw wrong('"frames" must be names of files');
   if (new Set(frames.map(keyOf)).size < frames.length) throw wrong('"frames" has a name twice');
   const { files: named = [] } = value;

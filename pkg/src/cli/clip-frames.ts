@@ -93,9 +93,13 @@ export class ClipFrames {
     const { name, failure, sha256: known } = this.files[index] as Seen;
     if (failure) throw failure.thrown;
     const bytes = await this.#source.content(index);
-    if (!bytes) throw new VeroneseError('unreadable-video', `${name} is missing: the video had ${this.length} frames when it was read before`);
+    if (!bytes)
+      throw new VeroneseError('unreadable-video', `${name} is missing: the video had ${this.length} frames when it was read before`);
     if (sha256(bytes) !== known) throw new VeroneseError('invalid-input', `${name} has changed since it was read before`);
-    const picture = await decoded({ name, bytes }, { allowDamaged: this.#source.allowDamaged, maxSize: this.#source.maxSize, range: this.range, onNote: (note) => this.#add(note) });
+    const picture = await decoded(
+      { name, bytes },
+      { allowDamaged: this.#source.allowDamaged, maxSize: this.#source.maxSize, range: this.range, onNote: (note) => this.#add(note) },
+    );
     const { width, height } = picture;
     if (!this.size) [this.size, this.#first] = [{ width, height }, name];
     if (width !== this.size.width || height !== this.size.height) {
@@ -124,7 +128,13 @@ export async function clipFrames({ frames: names, list, every, allowDamaged, max
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), allowDamaged, maxSize, range: narrowRange(ranges), notes: leftOutNotes(names) });
+  return new ClipFrames(files, paths, {
+    content: (index) => readInput(paths[index] as string),
+    allowDamaged,
+    maxSize,
+    range: narrowRange(ranges),
+    notes: leftOutNotes(names),
+  });
 }
 
 /** The range of the samples in a file that has 16 bits of each. What cannot be read is an error when it is. */
@@ -154,14 +164,25 @@ async function framesOfVideo(video: Video, maxSize: number | undefined, io: Io):
   const { file, every } = video;
   const files: Seen[] = [];
   const about: VideoInfo = { times: [] };
-  const seen = (number: number) => ({ name: `${basename(file)}#${number}`, stem: String(number).padStart(5, '0'), file: `${basename(file)}#${number}` });
+  const seen = (number: number) => ({
+    name: `${basename(file)}#${number}`,
+    stem: String(number).padStart(5, '0'),
+    file: `${basename(file)}#${number}`,
+  });
   try {
-    for await (const { bytes } of videoFrames(video, io, about)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
+    for await (const { bytes } of videoFrames(video, io, about))
+      files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
   } catch (thrown) {
     if (files.length === 0) throw thrown;
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
   const reader = new VideoReader({ ...video, quiet: true }, io);
-  const source = { content: (index: number) => reader.read(index), close: () => reader.close(), maxSize, times: timesOf(about, files.length, every), notes: notesOnVideo(file, about) };
+  const source = {
+    content: (index: number) => reader.read(index),
+    close: () => reader.close(),
+    maxSize,
+    times: timesOf(about, files.length, every),
+    notes: notesOnVideo(file, about),
+  };
   return new ClipFrames(files, [file], source);
 }

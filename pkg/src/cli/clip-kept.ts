@@ -55,10 +55,12 @@ export class KeptClip {
         await journal.replace(new Uint8Array());
         await write(output, own);
       }
-      const clip = await segmenter.openClip({ length: frames.length, read: frames.read }, { journal, markUnknown }).catch((thrown: unknown) => {
-        if (isNew) throw thrown;
-        return undefined;
-      });
+      const clip = await segmenter
+        .openClip({ length: frames.length, read: frames.read }, { journal, markUnknown })
+        .catch((thrown: unknown) => {
+          if (isNew) throw thrown;
+          return undefined;
+        });
       rmSync(path(`${LOG}.damaged`), { force: true });
       const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
       if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });

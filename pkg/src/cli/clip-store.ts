@@ -106,10 +106,25 @@ export class ClipStore {
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the manifest. */
-  async end(frames: readonly FrameFile[], about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>, tracks: ClipTracks, changes: readonly ClipChange[], notes: readonly AnnotationNote[]): Promise<void> {
+  async end(
+    frames: readonly FrameFile[],
+    about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>,
+    tracks: ClipTracks,
+    changes: readonly ClipChange[],
+    notes: readonly AnnotationNote[],
+  ): Promise<void> {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
-    const manifest: ClipManifest = { version: 1, ...about, ...names, ...tracks, ...(changes.length > 0 && { changes }), ...(notes.length > 0 && { notes }), settings, job };
+    const manifest: ClipManifest = {
+      version: 1,
+      ...about,
+      ...names,
+      ...tracks,
+      ...(changes.length > 0 && { changes }),
+      ...(notes.length > 0 && { notes }),
+      settings,
+      job,
+    };
     await writing(this.#output.folder, () => {
       this.#output.removeOld((path) => /^(labels|overlay)\//.test(path) || isShown(path), imagesOf(frames, settings));
       this.#output.write(TRACKS, jsonLine(manifest));
@@ -122,7 +137,13 @@ export class ClipStore {
 /** The paths of the images of all frames, and of what is shown of them. */
 function imagesOf(frames: readonly FrameFile[], { overlay, show = [] }: ClipManifest['settings']): string[] {
   const images = (overlay ? [LABELS, OVERLAY] : [LABELS]).flatMap((folder) => frames.map(({ stem }) => `${folder}/${stem}.png`));
-  return [...images, ...pathsOf(show, frames.map(({ stem }) => stem))];
+  return [
+    ...images,
+    ...pathsOf(
+      show,
+      frames.map(({ stem }) => stem),
+    ),
+  ];
 }
 
 /** Hash of the settings, names and contents. */

@@ -48,7 +48,15 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const corrections = await readCorrections(command, frames);
     for (const each of corrections?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
-    const store = new ClipStore(output, { ...options, every, maxSize, ...corrections?.hashes, overlay: wanted, ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }), software });
+    const store = new ClipStore(output, {
+      ...options,
+      every,
+      maxSize,
+      ...corrections?.hashes,
+      overlay: wanted,
+      ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }),
+      software,
+    });
     const before = store.finished(frames.files);
     const missing = frames.files.flatMap((file, index) => (store.isThere(file) ? [] : [index]));
     if (before && missing.length === 0) return await report(before, io);
@@ -87,14 +95,22 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const notes = corrections || motions === 1 ? [] : reasons;
     const { changes } = segmented;
     if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
-    const found = [...frames.notes, ...segmented.notes, ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest))];
-    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [...(corrections?.notes ?? []), ...found]);
+    const found = [
+      ...frames.notes,
+      ...segmented.notes,
+      ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest)),
+    ];
+    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [
+      ...(corrections?.notes ?? []),
+      ...found,
+    ]);
     for (const each of found) note(io, each);
     for (const { name, object } of show) {
       const isThere = !name.startsWith('cutout') || object === 0 || tracks.objects.some(({ id }) => id === object);
       if (!isThere) warn(io, `there is no object ${object}: '${name}' is transparent`);
     }
-    if (tracks.dropped > 0) warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
+    if (tracks.dropped > 0)
+      warn(io, `${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
     await print(io, lastLine(tracks.objects, changes));
   } catch (thrown) {
     segmenter.close();
@@ -109,7 +125,11 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
 }
 
 /** Segments the clip unless it has its masks; up to the first bad frame. */
-async function segment({ clip }: KeptClip, frames: ClipFrames, options: Pick<ClipCommand['options'], 'motions' | 'quality' | 'subject'>): Promise<void> {
+async function segment(
+  { clip }: KeptClip,
+  frames: ClipFrames,
+  options: Pick<ClipCommand['options'], 'motions' | 'quality' | 'subject'>,
+): Promise<void> {
   if (clip.frames.every(({ hasMasks }) => hasMasks)) return;
   try {
     await clip.segment(options);
@@ -119,7 +139,13 @@ async function segment({ clip }: KeptClip, frames: ClipFrames, options: Pick<Cli
 }
 
 /** The clip with its annotations. `before`: the folder with the results of a finished run on these frames, if there is one. */
-async function annotated(kept: KeptClip, frames: ClipFrames, corrections: Corrections | undefined, before: string | undefined, progress: Passes): Promise<Labelled> {
+async function annotated(
+  kept: KeptClip,
+  frames: ClipFrames,
+  corrections: Corrections | undefined,
+  before: string | undefined,
+  progress: Passes,
+): Promise<Labelled> {
   const { clip } = kept;
   const indices = clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? [index] : []));
   let changes = indices.length > 0 ? kept.changes(corrections?.hashes) : [];
@@ -131,7 +157,10 @@ async function annotated(kept: KeptClip, frames: ClipFrames, corrections: Correc
     changes = await clip.replaceAnnotations({ ...edits, annotations: annotations.filter(({ frame }) => isThere(frame)), accepted: stays });
     await kept.annotated(corrections?.hashes, changes);
   }
-  const notes = missingNotes(corrections?.edited ?? [], clip.objects.map(({ number }) => number));
+  const notes = missingNotes(
+    corrections?.edited ?? [],
+    clip.objects.map(({ number }) => number),
+  );
   return { frames: labelled(kept, indices, progress), tracks: () => clip.tracks(), changes, notes };
 }
 
@@ -143,7 +172,8 @@ async function acceptAsSeen({ clip }: KeptClip, { files }: ClipFrames, accepted:
   for (const frame of fresh) {
     const { labels } = await readLabels(join(folder, LABELS, `${files[frame]?.stem}.png`));
     // A map is about the objects that it names; an eraser about all.
-    for (const map of [labels, labels.map((label) => (label === 0 ? 0 : UNLABELLED))]) annotations.push({ frame, labels: map, propagate: 'none' });
+    for (const map of [labels, labels.map((label) => (label === 0 ? 0 : UNLABELLED))])
+      annotations.push({ frame, labels: map, propagate: 'none' });
   }
   await clip.replaceAnnotations({ annotations, accepted: accepted.filter((frame) => !fresh.includes(frame)) });
   await clip.accept(fresh);
@@ -196,7 +226,10 @@ class Passes {
   update({ stage, frame }: { stage: string; frame: number }): void {
     if (stage !== this.#stage) {
       // Annotations come to some frames, and to some of them more than once.
-      this.#bar = new ProgressBar(stage === 'annotations' ? undefined : this.#count, this.#io.stderr, { unit: 'frames', title: `${stage}: ` });
+      this.#bar = new ProgressBar(stage === 'annotations' ? undefined : this.#count, this.#io.stderr, {
+        unit: 'frames',
+        title: `${stage}: `,
+      });
     }
     this.#stage = stage;
     this.#bar?.update({ done: frame, skipped: 0, failed: 0 });
@@ -208,7 +241,12 @@ class Passes {
 }
 
 /** The pictures of a frame by their folders. */
-async function images(frames: ClipFrames, frame: ClipFrame, withOverlay: boolean, showing: Showing | undefined): Promise<{ [folder: string]: Uint8Array }> {
+async function images(
+  frames: ClipFrames,
+  frame: ClipFrame,
+  withOverlay: boolean,
+  showing: Showing | undefined,
+): Promise<{ [folder: string]: Uint8Array }> {
   const { index, labels, width, height } = frame;
   const files = { labels: await encodePng(width, height, labels, { palette: davisPalette() }) };
   if (!withOverlay && !showing) return files;

@@ -48,11 +48,31 @@ export const OPTIONS = {
     value: 'exact|1..65535',
     text: 'what levels of masks are that look smoothed, or compressed with loss: exact, each is an object; or a level, from which on they are the object (default: an error)',
   },
-  'first-frame': { type: 'string', value: '0|1', text: `with ${BACK}: the number of the first frame in MOTS as text (default: 0 where a line has it, else 1)` },
-  grouped: { type: 'boolean', default: false, text: 'groups instead of motions in labels.png and mask-K.png; one rigid background is one group' },
-  subject: { type: 'boolean', default: false, text: 'only the main subject is an object, as for a cut-out: the one thing that the pictures are about' },
-  'mark-unknown': { type: 'boolean', default: false, text: 'use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous' },
-  confidence: { type: 'boolean', default: false, text: "also write confidence.png: 255 times the probability that each pixel's label is right" },
+  'first-frame': {
+    type: 'string',
+    value: '0|1',
+    text: `with ${BACK}: the number of the first frame in MOTS as text (default: 0 where a line has it, else 1)`,
+  },
+  grouped: {
+    type: 'boolean',
+    default: false,
+    text: 'groups instead of motions in labels.png and mask-K.png; one rigid background is one group',
+  },
+  subject: {
+    type: 'boolean',
+    default: false,
+    text: 'only the main subject is an object, as for a cut-out: the one thing that the pictures are about',
+  },
+  'mark-unknown': {
+    type: 'boolean',
+    default: false,
+    text: 'use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous',
+  },
+  confidence: {
+    type: 'boolean',
+    default: false,
+    text: "also write confidence.png: 255 times the probability that each pixel's label is right",
+  },
   overlay: { type: 'boolean', default: false, text: 'also write overlay.png: the first frame with each motion in its colour' },
   show: {
     type: 'string',
@@ -61,26 +81,50 @@ export const OPTIONS = {
       'also write films and pictures, separated by commas: overlay, the frames with each object in its colour, or beside, the frames and next to them the same, as .mp4, .webm or .gif; ' +
       'sheet.png, some frames at a glance; cutout-N, object N alone and the rest transparent, as PNG files, or as .webm or .mov; films need the program ffmpeg',
   },
-  'max-size': { type: 'string', value: 'N', text: 'scale frames down whose longest side has more than N pixels, 16 to 4096; results are of that size (default: larger than 4096 is an error)' },
+  'max-size': {
+    type: 'string',
+    value: 'N',
+    text: 'scale frames down whose longest side has more than N pixels, 16 to 4096; results are of that size (default: larger than 4096 is an error)',
+  },
   jobs: { type: 'string', short: 'j', value: 'N', text: 'number of pairs processed at once (default: the number of processors)' },
   shard: { type: 'string', default: '1/1', value: 'I/N', text: 'process only part I of N, to share the pairs between N machines' },
   to: {
     type: 'string',
     value: 'FORMATS',
-    text:
-      `formats, separated by commas: ${formatsOf(false)}; of tracks, not of batch: ${formatsOf(true)}; or ${BACK} alone, which reads masks back`,
+    text: `formats, separated by commas: ${formatsOf(false)}; of tracks, not of batch: ${formatsOf(true)}; or ${BACK} alone, which reads masks back`,
   },
-  tolerance: { type: 'string', default: '0.5', value: 'PIXELS', text: "distance by which polygons may deviate from a mask's border; 0 follows its pixels" },
+  tolerance: {
+    type: 'string',
+    default: '0.5',
+    value: 'PIXELS',
+    text: "distance by which polygons may deviate from a mask's border; 0 follows its pixels",
+  },
   background: { type: 'boolean', default: false, text: 'convert the background, label 0, as well' },
   image: { type: 'string', value: 'NAME', text: 'of pair: file name of the image that the masks belong to (default: first.png)' },
   from: { type: 'string', default: '0', value: 'N', text: 'of batch and clip: the first frame to convert, counted from 0' },
   until: { type: 'string', value: 'M', text: 'of batch and clip: the last frame to convert (default: the last one)' },
   shapes: { type: 'string', value: 'polygon|box', text: 'of clip: shapes in cvat-video (default: polygon)' },
-  video: { type: 'string', value: 'NAME', text: 'of clip: file name of the video, for cvat-video and label-studio-video (default: the name of DIR)' },
+  video: {
+    type: 'string',
+    value: 'NAME',
+    text: 'of clip: file name of the video, for cvat-video and label-studio-video (default: the name of DIR)',
+  },
   'frame-rate': { type: 'string', value: 'N', text: "of clip: frames per second, for formats that need it (default: the clip's, else 25)" },
-  clip: { type: 'string', value: 'DIR', text: `with ${BACK}: the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)` },
-  'allow-damaged': { type: 'boolean', default: false, text: 'take a damaged JPEG file or video as far as it can be read, with a note; otherwise that is an error' },
-  force: { type: 'boolean', default: false, text: 'write to DIR even if it has files that veronese did not write there, and overwrite those in the way; without it they are an error' },
+  clip: {
+    type: 'string',
+    value: 'DIR',
+    text: `with ${BACK}: the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)`,
+  },
+  'allow-damaged': {
+    type: 'boolean',
+    default: false,
+    text: 'take a damaged JPEG file or video as far as it can be read, with a note; otherwise that is an error',
+  },
+  force: {
+    type: 'boolean',
+    default: false,
+    text: 'write to DIR even if it has files that veronese did not write there, and overwrite those in the way; without it they are an error',
+  },
   quiet: { type: 'boolean', short: 'q', default: false, text: 'no progress, notes and warnings; results and errors stay' },
   help: { type: 'boolean', short: 'h', text: 'show this help' },
   version: { type: 'boolean', short: 'v', text: 'show the version' },
@@ -103,7 +147,17 @@ export interface CommandText {
 /** Options of all commands. */
 export const ALWAYS: readonly OptionName[] = ['quiet', 'help', 'version'];
 
-const OF_PAIRS: readonly OptionName[] = ['out', 'motions', 'quality', 'grouped', 'subject', 'mark-unknown', 'confidence', 'overlay', 'max-size'];
+const OF_PAIRS: readonly OptionName[] = [
+  'out',
+  'motions',
+  'quality',
+  'grouped',
+  'subject',
+  'mark-unknown',
+  'confidence',
+  'overlay',
+  'max-size',
+];
 const AT_THE_END: readonly OptionName[] = ['allow-damaged', 'force'];
 
 export const COMMANDS = {
@@ -134,7 +188,25 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: ['out', 'list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'levels', 'subject', 'mark-unknown', 'max-size', 'overlay', 'show', 'frame-rate', 'jobs', ...AT_THE_END],
+    options: [
+      'out',
+      'list',
+      'every',
+      'motions',
+      'quality',
+      'look-ahead',
+      'masks',
+      'corrections',
+      'levels',
+      'subject',
+      'mark-unknown',
+      'max-size',
+      'overlay',
+      'show',
+      'frame-rate',
+      'jobs',
+      ...AT_THE_END,
+    ],
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',
@@ -153,7 +225,23 @@ export const COMMANDS = {
     usage: ['DIR --to FORMATS [options]', `SOURCE --to ${BACK} --out DIR [--clip DIR] [--force]`],
     about: 'convert results for annotation tools, and annotations back',
     more: `DIR is a folder of pair, batch or clip. SOURCE is a file, an archive or a folder of annotations: COCO, YouTube-VIS, CVAT, Label Studio, MOTS, YOLO, PNG masks; of them come NAME.png for each annotated frame, and edits.json, for --corrections of clip.`,
-    options: ['to', 'out', 'tolerance', 'background', 'grouped', 'image', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'levels', 'first-frame', 'force'],
+    options: [
+      'to',
+      'out',
+      'tolerance',
+      'background',
+      'grouped',
+      'image',
+      'from',
+      'until',
+      'shapes',
+      'video',
+      'frame-rate',
+      'clip',
+      'levels',
+      'first-frame',
+      'force',
+    ],
     texts: { out: 'output folder (default: the input folder)', grouped: 'of pair and batch: groups instead of motions' },
     examples: [
       ['A clip for COCO tools and as DAVIS masks', 'veronese convert masks --to coco,davis'],

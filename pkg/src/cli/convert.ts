@@ -54,7 +54,10 @@ function kindOf(folder: string): Kind {
   if (has(TRACKS)) return 'clip';
   if (has('result.json') || has('labels.png')) return 'pair';
   if (has(LABELS)?.isDirectory()) {
-    throw new VeroneseError('invalid-input', `'${folder}' has no ${TRACKS}: the clip is not finished, run 'veronese clip' again to finish it`);
+    throw new VeroneseError(
+      'invalid-input',
+      `'${folder}' has no ${TRACKS}: the clip is not finished, run 'veronese clip' again to finish it`,
+    );
   }
   if (!has('.')) throw notFound(join(folder, '.'));
   if (has('.')?.isDirectory() && pairFolders(folder).length > 0) return 'batch';
@@ -82,7 +85,8 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
     ['frame-rate', frameRate !== undefined, ['clip']],
   ];
   for (const [name, isGiven, kinds] of given) {
-    if (isGiven && !kinds.includes(kind)) throw new VeroneseError('invalid-option', `option '--${name}' is not for '${folder}', a folder of '${kind}'`);
+    if (isGiven && !kinds.includes(kind))
+      throw new VeroneseError('invalid-option', `option '--${name}' is not for '${folder}', a folder of '${kind}'`);
   }
   const tracks = kind === 'batch' && to.find((name) => FORMATS[name].tracks);
   if (!tracks) return;
@@ -92,11 +96,16 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
 
 async function opened({ folder, range, background, grouped, image, frameRate }: ConvertCommand, kind: Kind): Promise<Source> {
   if (kind !== 'pair') {
-    const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
+    const sequence =
+      kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
     return { frames: sequence, metadata: sequence.meta, count: sequence.count };
   }
   const { labels, width, height, motions, ...pair } = await readPair(folder, grouped);
   const names = pair.grouped && { names: Object.fromEntries(motions.map(({ label }) => [label, `group-${label}`])) };
   const wanted = motions.map(({ label }) => label).filter((label) => label > 0 || background);
-  return { frames: [{ labels, width, height, motions, ...(image !== undefined && { image }) }], metadata: { labels: wanted, ...names }, count: 1 };
+  return {
+    frames: [{ labels, width, height, motions, ...(image !== undefined && { image }) }],
+    metadata: { labels: wanted, ...names },
+    count: 1,
+  };
 }

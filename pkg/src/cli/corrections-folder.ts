@@ -25,8 +25,16 @@ export async function convertBack({ source, clip, levels, firstFrame }: Correcti
   output.check([EDITS]);
   const known = clip === undefined ? undefined : await framesOf(clip);
   const files: AnnotationFile[] = [];
-  for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path, /\.jpe?g$/i.test(path) ? HEAD : undefined) });
-  const { format, frames: annotated, names, boxes, size, notes } = readAnnotations(files, { ...known, ...(levels !== undefined && { levels }), ...(firstFrame !== undefined && { firstFrame }) });
+  for (const path of pathsOf(source))
+    files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path, /\.jpe?g$/i.test(path) ? HEAD : undefined) });
+  const {
+    format,
+    frames: annotated,
+    names,
+    boxes,
+    size,
+    notes,
+  } = readAnnotations(files, { ...known, ...(levels !== undefined && { levels }), ...(firstFrame !== undefined && { firstFrame }) });
   for (const each of notes) note(io, each);
   const written = await output.stage(
     async (write) => {

@@ -46,7 +46,10 @@ export function findFrames(names: readonly string[], listed: readonly string[] =
 export function checkName(path: string): void {
   const name = basename(path);
   if (isFileName(name) && isFileName(basename(name, extname(name)))) return;
-  throw new VeroneseError('invalid-input', `${JSON.stringify(path)} cannot name results: it has control characters, a backslash or only dots`);
+  throw new VeroneseError(
+    'invalid-input',
+    `${JSON.stringify(path)} cannot name results: it has control characters, a backslash or only dots`,
+  );
 }
 
 /** The video that is given instead of frames: the one file that is not an image, or that is an animation. */
@@ -72,15 +75,24 @@ async function isAnimation(name: string): Promise<boolean> {
 
 /** Says which pictures in folders of frames are not read. */
 export function leftOutNotes(names: readonly string[]): Note[] {
-  return names.filter((name) => kindOf(name) === 'folder').flatMap((name) => {
-    const [first, ...others] = unreadIn(name);
-    if (first === undefined) return [];
-    return [{ code: 'file-left-out', message: `'${name}': not read: ${first}${others.length > 0 ? ` and ${others.length} more` : ''}; frames are ${READ}` }];
-  });
+  return names
+    .filter((name) => kindOf(name) === 'folder')
+    .flatMap((name) => {
+      const [first, ...others] = unreadIn(name);
+      if (first === undefined) return [];
+      return [
+        {
+          code: 'file-left-out',
+          message: `'${name}': not read: ${first}${others.length > 0 ? ` and ${others.length} more` : ''}; frames are ${READ}`,
+        },
+      ];
+    });
 }
 
 function unreadIn(folder: string): string[] {
-  return entries(folder).filter((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.')).sort(byNumbers);
+  return entries(folder)
+    .filter((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.'))
+    .sort(byNumbers);
 }
 
 function framesOf(name: string): string[] {
@@ -126,7 +138,10 @@ async function contentOf(list: string, stdin: NodeJS.ReadableStream): Promise<st
 function matching(pattern: string): string[] {
   const path = sep === '\\' ? pattern.replaceAll('\\', '/') : pattern;
   const { root } = parse(path);
-  const parts = path.slice(root.length).split('/').filter((part) => part !== '');
+  const parts = path
+    .slice(root.length)
+    .split('/')
+    .filter((part) => part !== '');
   let places = [root];
   for (const [index, part] of parts.entries()) {
     const last = index === parts.length - 1;
@@ -180,7 +195,11 @@ function expression(part: string): RegExp {
   const source = part.replace(/\[!?[^\]]+\]|[\s\S]/g, (piece) => {
     if (piece === '*') return '.*';
     if (piece === '?') return '.';
-    if (piece.length > 1) return `[${piece.slice(1, -1).replace(/^!/, '^').replace(/[\\\]]/g, '\\$&')}]`;
+    if (piece.length > 1)
+      return `[${piece
+        .slice(1, -1)
+        .replace(/^!/, '^')
+        .replace(/[\\\]]/g, '\\$&')}]`;
     return piece.replace(/[.+^${}()|[\]\\/]/, '\\$&');
   });
   return new RegExp(`^${source}$`, 's');

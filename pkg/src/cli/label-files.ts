@@ -7,7 +7,10 @@ import { decodeIndices } from '../formats/png-reader.js';
 import { crispLevels } from '../formats/reading/smoothed.js';
 
 /** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */
-export async function readLabels(path: string, options?: { foreign: boolean; levels: Levels | undefined }): Promise<{ labels: Uint8Array; width: number; height: number }> {
+export async function readLabels(
+  path: string,
+  options?: { foreign: boolean; levels: Levels | undefined },
+): Promise<{ labels: Uint8Array; width: number; height: number }> {
   const bytes = await readInput(path);
   try {
     const { indices, isGrey, ...size } = decodeIndices(bytes, options);

@@ -37,14 +37,16 @@ export async function main(args: string[], io: Io): Promise<number> {
 }
 
 async function answer(command: Exclude<Command, BatchCommand | ClipCommand>, io: Io): Promise<string> {
-  const outputIn = (folder: string, { force }: { force: boolean }, isInput = false) => new Output(folder, { force, isInput, signal: io.signal });
+  const outputIn = (folder: string, { force }: { force: boolean }, isInput = false) =>
+    new Output(folder, { force, isInput, signal: io.signal });
   if (command.name === 'help') return (await import('./help.js')).help(command.topic, heading(io));
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') {
     const folder = command.out ?? command.folder;
     return (await import('./convert.js')).convert(command, outputIn(folder, command, resolve(folder) === resolve(command.folder)), io);
   }
-  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command), io);
+  if (command.name === 'corrections')
+    return (await import('./corrections-folder.js')).convertBack(command, outputIn(command.out, command), io);
   if (command.name === 'pair') return pair(command, command.out === undefined ? undefined : outputIn(command.out, command), io);
   return jsonLine((await threads(1).run({ kind: 'points', file: command.file, options: command.options })).report);
 }

@@ -74,7 +74,8 @@ export async function readPair(folder: string, grouped: boolean): Promise<Pair> 
 export function resultOf(value: unknown, path: string): Result {
   const whole = (value: unknown): boolean => Number.isSafeInteger(value) && (value as number) >= 0;
   const label = (value: unknown): boolean => isWhole(value, 0, UNLABELLED - 1);
-  const numbers = (value: unknown, count: number): boolean => Array.isArray(value) && value.length === count && value.every(Number.isFinite);
+  const numbers = (value: unknown, count: number): boolean =>
+    Array.isArray(value) && value.length === count && value.every(Number.isFinite);
   const motion = (m: unknown): m is SegmentedMotion =>
     isObject(m) &&
     label(m['label']) &&
@@ -115,5 +116,8 @@ function joined(a: SegmentedMotion, b: SegmentedMotion): SegmentedMotion {
 function belongs(labels: Uint8Array, pixels: ReadonlyMap<number, number>): boolean {
   const counts = new Map<number, number>();
   for (const label of labels) if (label !== 255) counts.set(label, (counts.get(label) ?? 0) + 1);
-  return [...counts].every(([label, count]) => pixels.get(label) === count) && [...pixels].every(([label, count]) => (counts.get(label) ?? 0) === count);
+  return (
+    [...counts].every(([label, count]) => pixels.get(label) === count) &&
+    [...pixels].every(([label, count]) => (counts.get(label) ?? 0) === count)
+  );
 }

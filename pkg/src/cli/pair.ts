@@ -62,7 +62,10 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
 }
 
 /** The pictures in files, with samples of 16 bits on one scale. */
-async function decodedAlike(inputs: readonly InputFile[], { allowDamaged, maxSize }: PairSettings): Promise<{ pictures: Picture[]; notes: Note[] }> {
+async function decodedAlike(
+  inputs: readonly InputFile[],
+  { allowDamaged, maxSize }: PairSettings,
+): Promise<{ pictures: Picture[]; notes: Note[] }> {
   const notes: Note[] = [];
   const read = async (range?: Range) => {
     const pictures: Picture[] = [];
@@ -103,7 +106,10 @@ export interface Decoding {
 }
 
 /** The picture in a file; the error of one that is none names it. */
-export async function decoded({ name, bytes }: InputFile, { allowDamaged = false, maxSize, range, onNote }: Decoding = {}): Promise<Picture> {
+export async function decoded(
+  { name, bytes }: InputFile,
+  { allowDamaged = false, maxSize, range, onNote }: Decoding = {},
+): Promise<Picture> {
   const options = { maxSize, ...(range && { range }) };
   try {
     return await decodeImage(bytes, options);

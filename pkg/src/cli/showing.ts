@@ -11,7 +11,18 @@ import { encodePng } from '../entries/codecs.js';
 import { overlay } from './overlay.js';
 
 /** N is the number of an object. */
-export const SHOWN = ['overlay.mp4', 'overlay.webm', 'overlay.gif', 'beside.mp4', 'beside.webm', 'beside.gif', 'sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'];
+export const SHOWN = [
+  'overlay.mp4',
+  'overlay.webm',
+  'overlay.gif',
+  'beside.mp4',
+  'beside.webm',
+  'beside.gif',
+  'sheet.png',
+  'cutout-N',
+  'cutout-N.webm',
+  'cutout-N.mov',
+];
 
 /** A file, or a folder of a picture for each frame. */
 export interface Shown {
@@ -49,7 +60,12 @@ export function shownOf(name: string): Shown | undefined {
   const known = kind === 'cutout' ? isWhole(object, 0, UNLABELLED - 1) && String(object) === number : number === undefined;
   const pattern = kind === 'cutout' ? name.replace(/\d+/, 'N') : name;
   if (!known || !SHOWN.includes(pattern)) return undefined;
-  return { name, kind: kind as Shown['kind'], object, format: end === undefined || end === 'png' ? undefined : (end as keyof typeof ENCODERS) };
+  return {
+    name,
+    kind: kind as Shown['kind'],
+    object,
+    format: end === undefined || end === 'png' ? undefined : (end as keyof typeof ENCODERS),
+  };
 }
 
 /** The paths of what is shown of frames with these names. */
@@ -147,9 +163,21 @@ class Film {
 
   constructor({ name, kind, format }: Shown, path: string, { width, height, rate }: { width: number; height: number; rate: number }) {
     this.#name = name;
-    const { opaque = [], transparent = [] }: { opaque?: readonly string[]; transparent?: readonly string[] } = ENCODERS[format as keyof typeof ENCODERS];
+    const { opaque = [], transparent = [] }: { opaque?: readonly string[]; transparent?: readonly string[] } =
+      ENCODERS[format as keyof typeof ENCODERS];
     const cut = kind === 'cutout';
-    const input = ['-f', 'rawvideo', '-pix_fmt', cut ? 'rgba' : 'rgb24', '-s', `${width}x${height}`, '-framerate', String(rate), '-i', 'pipe:0'];
+    const input = [
+      '-f',
+      'rawvideo',
+      '-pix_fmt',
+      cut ? 'rgba' : 'rgb24',
+      '-s',
+      `${width}x${height}`,
+      '-framerate',
+      String(rate),
+      '-i',
+      'pipe:0',
+    ];
     const args = ['-v', 'error', '-y', ...input, ...(cut ? transparent : opaque), `file:${path}`];
     this.#ffmpeg = spawn('ffmpeg', args, { stdio: ['pipe', 'ignore', 'pipe'] });
     this.#ffmpeg.stderr?.on('data', (piece) => (this.#messages += String(piece)));

@@ -9,7 +9,9 @@ export class ClosedPipe extends Error {}
 export function print({ stdout }: Io, text: string): Promise<void> {
   return new Promise((resolve, reject) => {
     const failed = (error: NodeJS.ErrnoException) => {
-      reject(error.code === 'EPIPE' ? new ClosedPipe() : new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
+      reject(
+        error.code === 'EPIPE' ? new ClosedPipe() : new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`),
+      );
     };
     stdout.once('error', failed);
     stdout.write(text, (error) => {

@@ -68,13 +68,25 @@ export function timesOf({ times, frameRate }: VideoInfo, count: number, every: n
 /** What is assumed of the video. */
 export function notesOnVideo(file: string, { light, aspect, isInterlaced, size, change }: VideoInfo): Note[] {
   const notes: Note[] = [];
-  if (light) notes.push({ code: 'video-hdr', message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping` });
-  if (aspect) notes.push({ code: 'video-aspect', message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file` });
+  if (light)
+    notes.push({
+      code: 'video-hdr',
+      message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping`,
+    });
+  if (aspect)
+    notes.push({
+      code: 'video-aspect',
+      message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file`,
+    });
   if (isInterlaced) {
     const remedy = `what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away`;
     notes.push({ code: 'video-interlaced', message: `'${file}' is interlaced, its frames are of two moments each: ${remedy}` });
   }
-  if (change) notes.push({ code: 'video-size', message: `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}` });
+  if (change)
+    notes.push({
+      code: 'video-size',
+      message: `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}`,
+    });
   return notes;
 }
 
@@ -101,13 +113,31 @@ export function enter(about: VideoInfo, line: string): void {
  * Every K-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are taken.
  * Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`, the last one after all frames if ffmpeg gave them but complained.
  */
-export async function* videoFrames({ file, every, allowDamaged, quiet }: Video, io: Io, about?: VideoInfo): AsyncGenerator<Frame, void, undefined> {
+export async function* videoFrames(
+  { file, every, allowDamaged, quiet }: Video,
+  io: Io,
+  about?: VideoInfo,
+): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
   const status = statusOf(file);
   if (!status) throw notFound(file);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
-  const input = ['-nostdin', '-hide_banner', '-nostats', '-v', 'level+info', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
-  const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter((_, __, [, chain]) => chain);
+  const input = [
+    '-nostdin',
+    '-hide_banner',
+    '-nostats',
+    '-v',
+    'level+info',
+    '-protocol_whitelist',
+    'file,pipe',
+    '-i',
+    `file:${file}`,
+    '-map',
+    '0:v:0',
+  ];
+  const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter(
+    (_, __, [, chain]) => chain,
+  );
   // Each frame that is in the file, and none twice, whatever its time is.
   const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
   const ffmpeg = spawn('ffmpeg', [...input, ...filters, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', '-pix_fmt', 'rgb24', 'pipe:1'], {
@@ -226,7 +256,8 @@ function statusOf(file: string): Stats | undefined {
 /** The option has had this name since 5.1; the older one went later. */
 async function framesAsTheyAre(): Promise<string[]> {
   const { stdout } = await promisify(execFile)('ffmpeg', ['-version']).catch((error: Error) => {
-    const sentence = 'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out by other means';
+    const sentence =
+      'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out by other means';
     throw new VeroneseError('ffmpeg-missing', sentence, { cause: error });
   });
   const [, major, minor] = (/^ffmpeg version n?(\d+)\.(\d+)/.exec(stdout) ?? []).map(Number);
@@ -238,7 +269,8 @@ async function framesAsTheyAre(): Promise<string[]> {
 function reasonIn(messages: string, file: string): string | undefined {
   if (/matches no streams/.test(messages)) return 'has no pictures: there is no video stream in it';
   // Versions that read WebP read no animated ones at first.
-  if (/\.webp$/i.test(file)) return `cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file (${lastLine(messages)})`;
+  if (/\.webp$/i.test(file))
+    return `cannot be read by this version of ffmpeg: take a newer one, or make it a PNG or GIF file (${lastLine(messages)})`;
   const line = lastLine(messages);
   return line && `cannot be read: ${line}`;
 }
@@ -292,9 +324,13 @@ function lengthOf(bytes: Buffer, file: string): number | undefined {
   const [text, width, height] = /^P6\s(\d+)\s(\d+)\s255\s/.exec(header) ?? [];
   if (text === undefined) {
     if (bytes.length < 40) return undefined;
-    throw new VeroneseError('unreadable-video', `'${file}': ffmpeg gave something else than frames of 8 bits: ${JSON.stringify(header.slice(0, 20))}`);
+    throw new VeroneseError(
+      'unreadable-video',
+      `'${file}': ffmpeg gave something else than frames of 8 bits: ${JSON.stringify(header.slice(0, 20))}`,
+    );
   }
   const sides = [Number(width), Number(height)] as const;
-  if (Math.max(...sides) > LONGEST_SIDE) throw new VeroneseError('frame-size-unsupported', `the frames of '${file}' have ${sides.join(' × ')} pixels`);
+  if (Math.max(...sides) > LONGEST_SIDE)
+    throw new VeroneseError('frame-size-unsupported', `the frames of '${file}' have ${sides.join(' × ')} pixels`);
   return text.length + 3 * sides[0] * sides[1];
 }

@@ -100,7 +100,9 @@ export function unknownOf(given: Record<string, unknown>, known: readonly string
 
 /** The one property of a typed array that nobody can put another in place of, and that is the same in every realm. */
 // oxlint-disable-next-line typescript/unbound-method -- it is called on whatever is to be named
-const nameOf = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(Uint8Array.prototype), Symbol.toStringTag)?.get as () => string | undefined;
+const nameOf = Object.getOwnPropertyDescriptor(Object.getPrototypeOf(Uint8Array.prototype), Symbol.toStringTag)?.get as () =>
+  | string
+  | undefined;
 
 /** Whether it is a typed array of one of these names; one of another realm (a frame, a test environment) is as good. */
 export function isArrayOf(value: unknown, ...names: string[]): value is TypedArray {

@@ -33,12 +33,7 @@ export function veroneseError(thrown: unknown): VeroneseError {
 
 /** An error thrown by the Rust side: a plain `Error` of our name with a code. */
 export function isFailure(thrown: unknown): thrown is Error & { code: ErrorCode } {
-  return (
-    thrown instanceof Error &&
-    thrown.name === 'VeroneseError' &&
-    'code' in thrown &&
-    typeof thrown.code === 'string'
-  );
+  return thrown instanceof Error && thrown.name === 'VeroneseError' && 'code' in thrown && typeof thrown.code === 'string';
 }
 
 export function cancelled(signal?: AbortSignal): VeroneseError {

@@ -8,7 +8,11 @@ export function scaled(frame: Pixels, longest: number | undefined): Pixels {
   const { width, height } = scaledSize(frame, longest);
   if (width === w && height === h) return frame;
   const channels = data.length / (w * h);
-  const [out, row, sums] = [new Uint8Array(channels * width * height), new Float64Array(channels * width), new Float64Array(channels * width)];
+  const [out, row, sums] = [
+    new Uint8Array(channels * width * height),
+    new Float64Array(channels * width),
+    new Float64Array(channels * width),
+  ];
   const area = (w / width) * (h / height);
   for (let y = 0, to = 0; y < h; y++) {
     row.fill(0);
@@ -16,11 +20,12 @@ export function scaled(frame: Pixels, longest: number | undefined): Pixels {
       const [begin, end] = [(x * w) / width, ((x + 1) * w) / width];
       for (let from = Math.floor(begin); from < end; from++) {
         const part = Math.min(from + 1, end) - Math.max(from, begin);
-        for (let channel = 0; channel < channels; channel++) (row[channels * x + channel] as number) += part * (data[channels * (y * w + from) + channel] as number);
+        for (let channel = 0; channel < channels; channel++)
+          (row[channels * x + channel] as number) += part * (data[channels * (y * w + from) + channel] as number);
       }
     }
     // Scaled down, a row of the frame belongs to two rows at most.
-    for (let top = y; top < y + 1; ) {
+    for (let top = y; top < y + 1;) {
       const end = ((to + 1) * h) / height;
       const bottom = Math.min(y + 1, end);
       for (let at = 0; at < row.length; at++) (sums[at] as number) += (bottom - top) * (row[at] as number);
@@ -40,7 +45,10 @@ export function scaledSize({ width, height }: Pick<Pixels, 'width' | 'height'>, 
 }
 
 /** Labels scaled as frames are: each pixel has the label in its middle. */
-export function scaledLabels(image: { labels: Uint8Array; width: number; height: number }, longest: number | undefined): { labels: Uint8Array; width: number; height: number } {
+export function scaledLabels(
+  image: { labels: Uint8Array; width: number; height: number },
+  longest: number | undefined,
+): { labels: Uint8Array; width: number; height: number } {
   const { labels, width: w, height: h } = image;
   const { width, height } = scaledSize(image, longest);
   if (width === w && height === h) return image;

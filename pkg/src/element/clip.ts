@@ -1,7 +1,17 @@
 // A clip in the element: the open clip or the stream, the frame that is shown, what is told of its changes. Loaded when there is a clip.
 
 import type { ClipFrames, ElementClipProgress, VeroneseSegmenterMessages } from '../../types/element-class.js';
-import type { Clip, ClipEvent, ClipFrame, ClipStream, ClipTracks, Pixels, SegmenterPool, SegmentOptions, StreamSource } from '../../types/index.js';
+import type {
+  Clip,
+  ClipEvent,
+  ClipFrame,
+  ClipStream,
+  ClipTracks,
+  Pixels,
+  SegmenterPool,
+  SegmentOptions,
+  StreamSource,
+} from '../../types/index.js';
 import { type ClipSource, sourceOf } from './clip-source.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import type { Place } from './sources.js';
@@ -127,7 +137,8 @@ export class ElementClip {
   /** Segments all frames. When it ends, listeners know of all frames with masks, also if it fails. */
   async segment(pool: Pool, options: SegmentOptions & { signal: AbortSignal }): Promise<ClipTracks> {
     const { clip } = this;
-    if (!clip) return this.#follow(pool.segmentStream(this.#source?.stream as StreamSource, { ...options, onProgress: this.#listeners.progress }));
+    if (!clip)
+      return this.#follow(pool.segmentStream(this.#source?.stream as StreamSource, { ...options, onProgress: this.#listeners.progress }));
     this.progress.removeAttribute('value');
     this.#segmenting += 1;
     try {
@@ -186,7 +197,7 @@ export class ElementClip {
   async #tellAll(clip: Clip): Promise<void> {
     let tracks: ClipTracks | undefined;
     try {
-      for (let isChanged = false; this.#isBehind && !this.#isClosed; ) {
+      for (let isChanged = false; this.#isBehind && !this.#isClosed;) {
         this.#isBehind = false;
         isChanged = (await this.#tellFrames(clip)) || isChanged;
         await this.shown();
@@ -236,7 +247,7 @@ export class ElementClip {
   }
 
   async #showLatest(): Promise<void> {
-    for (let index = -1; (index !== this.#current || this.#isStale) && !this.#isClosed; ) {
+    for (let index = -1; (index !== this.#current || this.#isStale) && !this.#isClosed;) {
       index = this.#current;
       this.#isStale = false;
       try {
@@ -278,7 +289,9 @@ export class ElementClip {
     const { clip } = this;
     if (!clip) return Promise.resolve(this.#done.map((done, index) => named(index, done)));
     const file = (index: number) => {
-      const made = this.#files.get(index) ?? clip.labels(index).then(async ({ labels, width, height }) => named(index, await packed(labels, width, height)));
+      const made =
+        this.#files.get(index) ??
+        clip.labels(index).then(async ({ labels, width, height }) => named(index, await packed(labels, width, height)));
       this.#files.set(index, made);
       // It is tried again.
       made.catch(() => this.#files.delete(index));

@@ -331,7 +331,10 @@ export class VeroneseSegmenterElement extends Base {
     signal.throwIfAborted();
     this.#leaveClip();
     this.#view.draw(first);
-    const result = await segmenter.segmentPair(first, second, { ...this.#options(signal), onProgress: (progress) => this.#tell('progress', progress) });
+    const result = await segmenter.segmentPair(first, second, {
+      ...this.#options(signal),
+      onProgress: (progress) => this.#tell('progress', progress),
+    });
     signal.throwIfAborted();
     this.#result = result;
     this.#paintPair(result);

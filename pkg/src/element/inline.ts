@@ -7,4 +7,5 @@ import { code } from './inline-worker.js';
 export { VeroneseSegmenterElement } from './element.js';
 
 VeroneseSegmenterElement.Pool = SegmenterPool;
-VeroneseSegmenterElement.worker = () => new Worker(URL.createObjectURL(new Blob([code], { type: 'text/javascript' })), { name: 'veronese' });
+VeroneseSegmenterElement.worker = () =>
+  new Worker(URL.createObjectURL(new Blob([code], { type: 'text/javascript' })), { name: 'veronese' });

@@ -54,7 +54,9 @@ export const VeroneseSegmenter = forwardRef<VeroneseSegmenterElement>(function V
     const areNames = [first, second].every((source) => source === undefined || typeof source === 'string');
     for (const [name, source] of Object.entries({ first, second })) attribute(element(), name, areNames ? source : undefined);
     if (areNames || first === undefined || second === undefined) return;
-    element().setFrames(first as FrameSource, second as FrameSource).catch(() => undefined); // the event has the error
+    element()
+      .setFrames(first as FrameSource, second as FrameSource)
+      .catch(() => undefined); // the event has the error
   }, [first, second]);
 
   const others = Object.fromEntries(Object.entries(props).filter(([name]) => !OWN.includes(name)));

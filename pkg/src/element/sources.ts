@@ -53,6 +53,7 @@ async function fetched(name: string, source: string | URL, base: string, signal:
 /** What a server answers with success; otherwise a sentence with the address and the status. */
 export async function answered(address: string, request: RequestInit): Promise<Response | string> {
   const response = await fetch(address, request).catch((thrown: Error) => thrown);
-  if (response instanceof Error) return `${address} cannot be reached, or its origin does not allow this page to read it (CORS): ${response.message}`;
+  if (response instanceof Error)
+    return `${address} cannot be reached, or its origin does not allow this page to read it (CORS): ${response.message}`;
   return response.ok ? response : `${address} answered ${`${response.status} ${response.statusText}`.trim()}`;
 }

@@ -106,7 +106,8 @@ export class View {
       option.setAttribute('aria-selected', String(chosen));
       if (chosen) this.objects.setAttribute('aria-activedescendant', option.id);
     }
-    for (const entry of this.#legend.children as Iterable<HTMLElement> & HTMLCollection) entry.toggleAttribute('data-selected', entry.dataset.object === String(object));
+    for (const entry of this.#legend.children as Iterable<HTMLElement> & HTMLCollection)
+      entry.toggleAttribute('data-selected', entry.dataset.object === String(object));
   }
 
   set disabled(disabled: boolean) {

@@ -24,7 +24,8 @@ export class Zoom {
   /** What is at a place, a share of the stage's size, stays there. */
   by(factor: number, place: readonly [x: number, y: number] = [0.5, 0.5]): void {
     const scale = Math.max(1, Math.min(LARGEST, factor * this.#scale));
-    const along = (axis: 0 | 1) => Math.max(1 - scale, Math.min(0, place[axis] - ((place[axis] - this.#corner[axis]) * scale) / this.#scale));
+    const along = (axis: 0 | 1) =>
+      Math.max(1 - scale, Math.min(0, place[axis] - ((place[axis] - this.#corner[axis]) * scale) / this.#scale));
     this.#corner = [along(0), along(1)];
     this.#scale = scale;
     const [x, y] = this.#corner.map((share) => `${100 * share}%`);

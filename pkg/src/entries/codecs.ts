@@ -35,8 +35,10 @@ function decoding(options: unknown): { allowDamaged: boolean; range: Uint16Array
   const { allowDamaged = false, range = [], maxSize } = entriesOf(options, ['allowDamaged', 'range', 'maxSize']);
   if (typeof allowDamaged !== 'boolean') throw invalidOption('allowDamaged', 'true or false', allowDamaged);
   const isSample = (value: unknown): value is number => isWhole(value, 0, 65_535);
-  if (!isListOf(range, isSample) || ![0, 2].includes(range.length)) throw invalidOption('range', 'two whole numbers from 0 to 65535', range);
-  if (maxSize !== undefined && !isWhole(maxSize, 1, LONGEST_SIDE)) throw invalidOption('maxSize', `a whole number of pixels from 1 to ${LONGEST_SIDE}`, maxSize);
+  if (!isListOf(range, isSample) || ![0, 2].includes(range.length))
+    throw invalidOption('range', 'two whole numbers from 0 to 65535', range);
+  if (maxSize !== undefined && !isWhole(maxSize, 1, LONGEST_SIDE))
+    throw invalidOption('maxSize', `a whole number of pixels from 1 to ${LONGEST_SIDE}`, maxSize);
   return { allowDamaged, range: Uint16Array.from(range), maxSize };
 }
 

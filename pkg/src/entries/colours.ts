@@ -4,8 +4,7 @@
  * After Okabe and Ito, then bright ones: each as far as it can be from all before it, most of all from the last eight, also to eyes that lack one
  * kind of cone. Two digits for each channel.
  */
-const FIRST =
-  'f0a00056b4e9d66eaf00a878f0e442d554000068beececec9669ff4be1a5d2c3ffff5a69a5ffa5e100966978d2a5c369d296a58796ffb4960078d2d2';
+const FIRST = 'f0a00056b4e9d66eaf00a878f0e442d554000068beececec9669ff4be1a5d2c3ffff5a69a5ffa5e100966978d2a5c369d296a58796ffb4960078d2d2';
 /** The others. One digit for each channel. */
 const OTHERS =
   '00f922ff037bcef4d5d06b9f70bb807dba00d2fbf0378fcfab061cb8de04dfc4c9a1f7790f1f9fa03c9315acff0ba86eb503f6abf90740ef657fd2ac84435bfb0b' +

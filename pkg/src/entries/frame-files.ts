@@ -61,7 +61,10 @@ async function bytesOf(place: string | URL): Promise<Uint8Array> {
     if (ArrayBuffer.isView(found)) return found as Uint8Array;
     if (found instanceof ArrayBuffer) return new Uint8Array(found);
     if (found.ok) return new Uint8Array(await found.arrayBuffer());
-    throw new VeroneseError(found.status === 404 ? 'file-not-found' : 'unreadable-file', `${found.url} answered ${`${found.status} ${found.statusText}`.trim()}`);
+    throw new VeroneseError(
+      found.status === 404 ? 'file-not-found' : 'unreadable-file',
+      `${found.url} answered ${`${found.status} ${found.statusText}`.trim()}`,
+    );
   } catch (thrown) {
     if (thrown instanceof VeroneseError) throw thrown;
     const { code, message } = thrown as NodeJS.ErrnoException;

@@ -8,7 +8,10 @@ export { davisPalette, groupLabels, VeroneseError, version } from './package.js'
 // Never fetched: the address only stands for a module, so that nothing is unpacked before it is needed.
 const FRAMES = new URL('veronese:frames');
 const POINTS = new URL('veronese:points');
-const INSIDE = new Map([[FRAMES.href, frames], [POINTS.href, points]]);
+const INSIDE = new Map([
+  [FRAMES.href, frames],
+  [POINTS.href, points],
+]);
 
 /** Base64 of deflated bytes, of which this is about half as long as base64 of the bytes themselves. */
 async function unpacked(packed: string): Promise<Uint8Array<ArrayBuffer>> {
@@ -17,11 +20,12 @@ async function unpacked(packed: string): Promise<Uint8Array<ArrayBuffer>> {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({
-  read: (place) => {
-    const packed = INSIDE.get(String(place));
-    return packed === undefined ? fetch(place) : unpacked(packed);
-  },
-  frames: FRAMES,
-  points: POINTS,
-});
+export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } =
+  packageFor({
+    read: (place) => {
+      const packed = INSIDE.get(String(place));
+      return packed === undefined ? fetch(place) : unpacked(packed);
+    },
+    frames: FRAMES,
+    points: POINTS,
+  });

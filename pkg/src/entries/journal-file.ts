@@ -141,7 +141,10 @@ function lock(name: string, path: string): void {
       const { code } = thrown as NodeJS.ErrnoException;
       if (code !== 'EEXIST') throw failed(name, thrown);
       if (attempt === 2 || !takenOver(path)) {
-        throw new VeroneseError('invalid-option', `option 'journal': another clip has '${name}' open: close it first; if there is none, delete '${path}'`);
+        throw new VeroneseError(
+          'invalid-option',
+          `option 'journal': another clip has '${name}' open: close it first; if there is none, delete '${path}'`,
+        );
       }
     }
   }

@@ -29,7 +29,15 @@ interface Entry extends Partial<Pick<Host, 'worker' | 'jobs' | 'places' | 'journ
 }
 
 /** Without an address the caller has to name the module, without `worker` to make the workers. */
-export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors, places = pictures, journal = storedJournal }: Entry) {
+export function packageFor({
+  read = (place) => fetch(place),
+  frames,
+  points,
+  worker = noWorker,
+  jobs = processors,
+  places = pictures,
+  journal = storedJournal,
+}: Entry) {
   const newCore = () => new Core(glue, read, frames);
   const newPoints = () => new Core(pointsGlue, read, points);
   const api = new Api(newCore(), newPoints());
@@ -37,7 +45,14 @@ export function packageFor({ read = (place) => fetch(place), frames, points, wor
   // Not of `Api`: workers have that, and none of the code that takes frames to them.
   const openClip = (given: ClipFrames, options?: OpenOptions): Promise<Clip> => openedClip(given, options, here, { places, journal });
   const segmentStream = (given: StreamSource, options?: StreamOptions): ClipStream => streamOf(given, options, here, places);
-  return { ...api, segmentPair: places.pair(api.segmentPair), solvePair: places.pair(api.solvePair), openClip, segmentStream, ...segmenters({ newCore, newPoints, worker, jobs, places, journal }) };
+  return {
+    ...api,
+    segmentPair: places.pair(api.segmentPair),
+    solvePair: places.pair(api.solvePair),
+    openClip,
+    segmentStream,
+    ...segmenters({ newCore, newPoints, worker, jobs, places, journal }),
+  };
 }
 
 /** In the storage of the page's origin. */

@@ -4,4 +4,5 @@ import { packageFor } from './package.js';
 
 export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
 
-export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({});
+export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } =
+  packageFor({});

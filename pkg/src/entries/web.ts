@@ -21,9 +21,10 @@ function workerFromAfar(): Worker {
   return new Worker(URL.createObjectURL(new Blob([text], { type: 'text/javascript' })), { type: 'module', name: 'veronese' });
 }
 
-export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } = packageFor({
-  frames,
-  points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),
-  // Bundlers look for this very expression.
-  worker: () => (isAfar() ? workerFromAfar() : new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'veronese' })),
-});
+export const { init, initPoints, segmentPair, openClip, segmentStream, solvePair, fitMotions, Segmenter, SegmenterPool, segmentPairs } =
+  packageFor({
+    frames,
+    points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),
+    // Bundlers look for this very expression.
+    worker: () => (isAfar() ? workerFromAfar() : new Worker(new URL('./worker.js', import.meta.url), { type: 'module', name: 'veronese' })),
+  });

@@ -20,7 +20,7 @@ export function compressed(counts: readonly number[]): string {
   const characters: string[] = [];
   counts.forEach((count, at) => {
     let value = at > 2 ? count - (counts[at - 2] as number) : count;
-    for (let more = true; more; ) {
+    for (let more = true; more;) {
       let group = value & 31;
       value >>= 5;
       more = group & 16 ? value !== -1 : value !== 0;

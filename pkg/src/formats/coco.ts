@@ -61,7 +61,15 @@ export function cocoVideo({ classes, tracked }: Settings): Encoder {
       names.push(image);
       for (const mask of masks) {
         const seen = { segmentations: [], bboxes: [], areas: [] };
-        const annotation = annotations.get(mask.label) ?? { id: 0, video_id: 1, category_id: categories.idOf(mask), iscrowd: 0, width, height, ...seen };
+        const annotation = annotations.get(mask.label) ?? {
+          id: 0,
+          video_id: 1,
+          category_id: categories.idOf(mask),
+          iscrowd: 0,
+          width,
+          height,
+          ...seen,
+        };
         annotations.set(mask.label, annotation);
         fillUp(annotation, index);
         annotation.segmentations.push(cocoRle(mask, frame));

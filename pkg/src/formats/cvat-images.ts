@@ -6,7 +6,15 @@ import type { Settings } from './metadata.js';
 import { Outlines, points, type Ring } from './outline.js';
 import { rowRuns } from './runs.js';
 
-const ENTITIES: Readonly<Record<string, string>> = { '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;', '\n': '&#10;', '\t': '&#9;', '\r': '&#13;' };
+const ENTITIES: Readonly<Record<string, string>> = {
+  '&': '&amp;',
+  '<': '&lt;',
+  '>': '&gt;',
+  '"': '&quot;',
+  '\n': '&#10;',
+  '\t': '&#9;',
+  '\r': '&#13;',
+};
 
 export function cvatImages(file: string, shape: 'mask' | 'polygon') {
   return ({ one, classes, tracked, tolerance }: Settings): Encoder => {
@@ -28,7 +36,13 @@ export function cvatImages(file: string, shape: 'mask' | 'polygon') {
 }
 
 /** The whole document. `task` are further elements of the task. */
-export function cvatDocument(mode: 'annotation' | 'interpolation', size: number, names: Iterable<string>, task: readonly string[], elements: readonly string[]): string {
+export function cvatDocument(
+  mode: 'annotation' | 'interpolation',
+  size: number,
+  names: Iterable<string>,
+  task: readonly string[],
+  elements: readonly string[],
+): string {
   return [
     '<?xml version="1.0" encoding="utf-8"?>',
     '<annotations>',
@@ -74,7 +88,9 @@ function groupOf(label: number, grouped: boolean): string {
 
 /** The vertices of a polygon. */
 export function cvatPoints(ring: Ring): string {
-  return points(ring).map((point) => point.map((value) => value.toFixed(2)).join()).join(';');
+  return points(ring)
+    .map((point) => point.map((value) => value.toFixed(2)).join())
+    .join(';');
 }
 
 /** Text inside XML attributes and elements. What XML 1.0 cannot hold at all is left out. */

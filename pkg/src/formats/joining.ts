@@ -68,7 +68,12 @@ function inARow(parts: readonly Ring[], root: number): Map<number, Bridge> {
 /** A tree of shortest bridges, as Prim grows it. */
 function nearest(parts: readonly Ring[], root: number): Map<number, Bridge> {
   const step = Math.ceil(parts.reduce((sum, { length }) => sum + length / 2, 0) / MOST_CORNERS);
-  const best = new Map<number, Bridge>(parts.map((_, part) => [part, { length: Infinity, to: root, there: corner(parts[root] as Ring, 0), here: corner(parts[part] as Ring, 0) }]));
+  const best = new Map<number, Bridge>(
+    parts.map((_, part) => [
+      part,
+      { length: Infinity, to: root, there: corner(parts[root] as Ring, 0), here: corner(parts[part] as Ring, 0) },
+    ]),
+  );
   const bridges = new Map<number, Bridge>();
   const extents = parts.map(extentOf);
   let last = root;
@@ -76,7 +81,8 @@ function nearest(parts: readonly Ring[], root: number): Map<number, Bridge> {
     best.delete(last);
     let next: number | undefined;
     for (const [part, bridge] of best) {
-      if (gap(extents[last] as Extent, extents[part] as Extent) < bridge.length) shorten(bridge, last, parts[last] as Ring, parts[part] as Ring, step);
+      if (gap(extents[last] as Extent, extents[part] as Extent) < bridge.length)
+        shorten(bridge, last, parts[last] as Ring, parts[part] as Ring, step);
       if (next === undefined || bridge.length < (best.get(next) as Bridge).length) next = part;
     }
     if (next === undefined) return bridges;
@@ -91,7 +97,8 @@ function shorten(bridge: Bridge, to: number, there: Ring, here: Ring, step: numb
     for (let j = 0; j < here.length / 2; j += step) {
       const [onThere, onHere] = [way(there, k, here, j), way(here, j, there, k)];
       if (Math.min(onThere, onHere) >= bridge.length) continue;
-      const [far, near] = onThere <= onHere ? [nearestPlace(there, k, here, j), corner(here, j)] : [corner(there, k), nearestPlace(here, j, there, k)];
+      const [far, near] =
+        onThere <= onHere ? [nearestPlace(there, k, here, j), corner(here, j)] : [corner(there, k), nearestPlace(here, j, there, k)];
       Object.assign(bridge, { length: Math.min(onThere, onHere), to, there: far, here: near });
     }
   }
@@ -99,7 +106,10 @@ function shorten(bridge: Bridge, to: number, there: Ring, here: Ring, step: numb
 
 /** The square of the way from a corner of `other` to the edge behind a corner of `ring`. */
 function way(ring: Ring, at: number, other: Ring, end: number): number {
-  return (onEdge(ring, at, 0, other, end) - (other[2 * end] as number)) ** 2 + (onEdge(ring, at, 1, other, end) - (other[2 * end + 1] as number)) ** 2;
+  return (
+    (onEdge(ring, at, 0, other, end) - (other[2 * end] as number)) ** 2 +
+    (onEdge(ring, at, 1, other, end) - (other[2 * end + 1] as number)) ** 2
+  );
 }
 
 function nearestPlace(ring: Ring, at: number, other: Ring, end: number): Place {
@@ -169,7 +179,8 @@ function* stepsOf(parts: readonly Ring[], hanging: readonly Hanging[][], part: n
   const byCorner = new Map<number, Hanging[]>();
   for (const one of own) byCorner.set(one.bridge.there.at, [...(byCorner.get(one.bridge.there.at) ?? []), one]);
   const childrenAt = function* (at: number, wanted: (way: number) => boolean): Generator<Step> {
-    for (const { bridge, part } of byCorner.get(at) ?? []) if (wanted(along(bridge.there))) yield { part, there: bridge.there, here: bridge.here };
+    for (const { bridge, part } of byCorner.get(at) ?? [])
+      if (wanted(along(bridge.there))) yield { part, there: bridge.there, here: bridge.here };
   };
   const begin = from ? along(from) : 0;
   if (from) yield from;

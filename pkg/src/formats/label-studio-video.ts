@@ -26,11 +26,13 @@ export function labelStudioVideo({ clip, fromName = 'box', toName = 'video', mod
       }
     },
     finish({ length }) {
-      const result = [...tracks].sort(([a], [b]) => a - b).map(([label, { name, sequence }]) => {
-        leave(sequence, length);
-        const value = { framesCount: length, duration: duration(length), labels: [name], sequence };
-        return { id: `object-${label}`, type: 'videorectangle', from_name: fromName, to_name: toName, value };
-      });
+      const result = [...tracks]
+        .sort(([a], [b]) => a - b)
+        .map(([label, { name, sequence }]) => {
+          leave(sequence, length);
+          const value = { framesCount: length, duration: duration(length), labels: [name], sequence };
+          return { id: `object-${label}`, type: 'videorectangle', from_name: fromName, to_name: toName, value };
+        });
       return [json('label-studio-video.json', [{ data: { video: clip }, predictions: [{ model_version: modelVersion, result }] }])];
     },
   };

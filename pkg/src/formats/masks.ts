@@ -23,7 +23,10 @@ export interface Mask {
 }
 
 /** The masks of the wanted labels that are there, by label; 255 is never one, and 0 only if it is asked for. */
-export function masksOf({ labels, width, motions }: { labels: Uint8Array; width: number; motions: readonly FormatMotion[] }, settings: Settings): Mask[] {
+export function masksOf(
+  { labels, width, motions }: { labels: Uint8Array; width: number; motions: readonly FormatMotion[] },
+  settings: Settings,
+): Mask[] {
   const wanted = settings.labels && new Set(settings.labels);
   const masks: Mask[] = [];
   for (const [label, box] of boxesOf(labels, width).entries()) {

@@ -26,7 +26,20 @@ export interface Settings extends Omit<Metadata, 'timestamps' | 'frameRate'> {
   duration: (length: number) => number;
 }
 
-const KNOWN = ['clip', 'names', 'classes', 'labels', 'tracked', 'frameRate', 'timestamps', 'tolerance', 'shape', 'fromName', 'toName', 'modelVersion'];
+const KNOWN = [
+  'clip',
+  'names',
+  'classes',
+  'labels',
+  'tracked',
+  'frameRate',
+  'timestamps',
+  'tolerance',
+  'shape',
+  'fromName',
+  'toName',
+  'modelVersion',
+];
 
 /** Throws `invalid-option`. */
 export function settingsOf(metadata: unknown, one: boolean): Settings {
@@ -53,7 +66,8 @@ export function settingsOf(metadata: unknown, one: boolean): Settings {
       ...(names && { names: { ...names } }),
       ...(labels && { labels: [...labels] }),
       tracked: taken('tracked', 'true or false', (value) => typeof value === 'boolean') ?? !one,
-      tolerance: taken('tolerance', 'a number of pixels from 0', (value): value is number => Number.isFinite(value) && (value as number) >= 0) ?? 0,
+      tolerance:
+        taken('tolerance', 'a number of pixels from 0', (value): value is number => Number.isFinite(value) && (value as number) >= 0) ?? 0,
       shape: taken('shape', "'polygon' or 'box'", (value) => value === 'polygon' || value === 'box') ?? 'polygon',
       ...(fromName !== undefined && { fromName }),
       ...(toName !== undefined && { toName }),
@@ -67,7 +81,13 @@ export function settingsOf(metadata: unknown, one: boolean): Settings {
 }
 
 /** The number of frames per second, the mean where only times are given. */
-export function rateOf({ frameRate, timestamps = [] }: { frameRate?: number | undefined; timestamps?: readonly number[] | undefined }): number | undefined {
+export function rateOf({
+  frameRate,
+  timestamps = [],
+}: {
+  frameRate?: number | undefined;
+  timestamps?: readonly number[] | undefined;
+}): number | undefined {
   if (frameRate !== undefined) return frameRate;
   const [first, last] = [timestamps[0], timestamps.at(-1)];
   const rate = (timestamps.length - 1) / ((last ?? 0) - (first ?? 0));

@@ -113,7 +113,10 @@ function traced({ width, height, pixels }: Mask): Cracks {
   const cracks: Cracks = { x: new Uint16Array(steps), y: new Uint16Array(steps), from: [0] };
   // Heading right, down, left, up: the step, and the pixels in front of a vertex to the left and to the right, both as ways from the
   // pixel whose top-left corner the vertex is.
-  const [stepX, stepY] = [[1, 0, -1, 0], [0, 1, 0, -1]];
+  const [stepX, stepY] = [
+    [1, 0, -1, 0],
+    [0, 1, 0, -1],
+  ];
   const left = [-stride, 0, -1, -stride - 1];
   const right = [0, -1, -stride - 1, -stride];
   const ahead = [1, stride, -1, -stride];

@@ -16,7 +16,12 @@ export function davis({ one, clip }: Settings): Encoder {
   if (!one) checkPath(clip);
   const stems = new Stems();
   return {
-    add: (frame) => [{ name: one ? 'davis.png' : `davis/Annotations/480p/${clip}/${stems.of(frame)}.png`, content: davisPng(frame.labels, frame.width, frame.height) }],
+    add: (frame) => [
+      {
+        name: one ? 'davis.png' : `davis/Annotations/480p/${clip}/${stems.of(frame)}.png`,
+        content: davisPng(frame.labels, frame.width, frame.height),
+      },
+    ],
     finish: () => (one ? [] : [{ name: 'davis/ImageSets/2017/val.txt', content: lines([clip]) }]),
   };
 }
@@ -34,7 +39,11 @@ export function masks(): Encoder {
       const stem = stems.of(frame);
       return masks.map(({ label }) => ({
         name: `masks/${label}/${stem}.png`,
-        content: png(width, height, labels.map((value) => (value === label ? 255 : 0))),
+        content: png(
+          width,
+          height,
+          labels.map((value) => (value === label ? 255 : 0)),
+        ),
       }));
     },
     finish: () => [],

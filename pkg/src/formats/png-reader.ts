@@ -10,7 +10,15 @@ const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 const SAMPLES: Record<number, number> = { 0: 1, 2: 3, 3: 1, 4: 2, 6: 4 };
 const [GREY, INDEXED] = [0, 3];
 /** The first column and row of each pass, and the steps between them: of a picture that is interlaced, and of one that is not. */
-const INTERLACED = [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]] as const;
+const INTERLACED = [
+  [0, 0, 8, 8],
+  [4, 0, 8, 8],
+  [0, 4, 4, 8],
+  [2, 0, 4, 4],
+  [0, 2, 2, 4],
+  [1, 0, 2, 2],
+  [0, 1, 1, 2],
+] as const;
 const PLAIN = [[0, 0, 1, 1]] as const;
 /** Compressed data are taken in pieces of this size, bytes: what is longer than the picture is noticed before it fills the memory. */
 const PIECE = 65_536;
@@ -41,7 +49,14 @@ export function decodePng(file: Uint8Array): Samples {
   const isKnown = channels !== undefined && ([8, 16].includes(depth) || (channels === 1 && [1, 2, 4].includes(depth)));
   if (!isKnown || !passes || (type === INDEXED && !palette)) throw damaged();
   const parts = passes
-    .map(([left, top, across, down]) => ({ left, top, across, down, width: Math.ceil((width - left) / across), height: Math.ceil((height - top) / down) }))
+    .map(([left, top, across, down]) => ({
+      left,
+      top,
+      across,
+      down,
+      width: Math.ceil((width - left) / across),
+      height: Math.ceil((height - top) / down),
+    }))
     .filter((part) => part.width > 0 && part.height > 0)
     .map((part) => ({ ...part, stride: Math.ceil((part.width * channels * depth) / 8) }));
   const length = parts.reduce((sum, part) => sum + (part.stride + 1) * part.height, 0);
@@ -54,12 +69,13 @@ export function decodePng(file: Uint8Array): Samples {
     const bytes = unfiltered(all.subarray(at, (at += (stride + 1) * part.height)), stride, part.height, Math.ceil((depth * channels) / 8));
     const own = samplesOf(bytes, depth, part.width * channels, part.height);
     if (passes.length === 1) samples = own;
-    else for (let y = 0, from = 0; y < part.height; y++) {
-      for (let x = 0; x < part.width; x++, from += channels) {
-        const to = ((top + y * down) * width + left + x * across) * channels;
-        for (let channel = 0; channel < channels; channel++) samples[to + channel] = own[from + channel] as number;
+    else
+      for (let y = 0, from = 0; y < part.height; y++) {
+        for (let x = 0; x < part.width; x++, from += channels) {
+          const to = ((top + y * down) * width + left + x * across) * channels;
+          for (let channel = 0; channel < channels; channel++) samples[to + channel] = own[from + channel] as number;
+        }
       }
-    }
   }
   return { width, height, depth, channels, samples, ...(type === INDEXED && palette && { palette, ...(alpha && { alpha }) }) };
 }
@@ -77,7 +93,11 @@ export interface Indices extends Size {
 export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indices {
   const { depth, type } = opened(file);
   const fits = foreign ? depth <= 8 && (type === GREY || type === INDEXED) : depth === 8 && type === INDEXED;
-  if (!fits) throw new VeroneseError('invalid-input', `has no labels: it is not an ${foreign ? 'indexed or grey PNG of up to 8 bits' : '8-bit indexed PNG'}`);
+  if (!fits)
+    throw new VeroneseError(
+      'invalid-input',
+      `has no labels: it is not an ${foreign ? 'indexed or grey PNG of up to 8 bits' : '8-bit indexed PNG'}`,
+    );
   const { width, height, samples } = decodePng(file);
   return { indices: samples as Uint8Array, isGrey: type === GREY, width, height };
 }
@@ -112,7 +132,8 @@ function opened(file: Uint8Array): Png {
   if (header?.length !== 13) throw unreadable('has no header');
   const view = viewOf(header);
   const [width, height] = [view.getUint32(0), view.getUint32(4)];
-  if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_LABEL_SIDE || width * height > MOST_LABELS) throw unreadable(`has ${width} × ${height} pixels`);
+  if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_LABEL_SIDE || width * height > MOST_LABELS)
+    throw unreadable(`has ${width} × ${height} pixels`);
   const [depth, type, compression, filter, interlacing] = header.subarray(8) as unknown as [number, number, number, number, number];
   const passes = compression === 0 && filter === 0 ? [PLAIN, INTERLACED][interlacing] : undefined;
   return { width, height, depth, type, passes, data, ...colours };
@@ -125,7 +146,8 @@ function viewOf({ buffer, byteOffset, byteLength }: Uint8Array): DataView {
 /** Samples of rows that each begin with a byte of their own: of fewer than 8 bits, the first in the highest bits; of 16, most significant byte first. */
 function samplesOf(rows: Uint8Array, depth: number, width: number, height: number): Uint8Array | Uint16Array {
   if (depth === 8) return rows;
-  if (depth === 16) return Uint16Array.from({ length: rows.length / 2 }, (_, at) => ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number));
+  if (depth === 16)
+    return Uint16Array.from({ length: rows.length / 2 }, (_, at) => ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number));
   const perByte = 8 / depth;
   const stride = rows.length / height;
   return Uint8Array.from({ length: width * height }, (_, at) => {
@@ -146,7 +168,7 @@ function damaged(): VeroneseError {
 /** Each is its length, its name, as many bytes, and a checksum; the data have one of their own. */
 function* chunks(file: Uint8Array): Generator<{ name: string; content: Uint8Array }, void, undefined> {
   const view = viewOf(file);
-  for (let at = SIGNATURE.length; at + 12 <= file.length; ) {
+  for (let at = SIGNATURE.length; at + 12 <= file.length;) {
     const length = view.getUint32(at);
     yield { name: String.fromCharCode(...file.subarray(at + 4, at + 8)), content: file.subarray(at + 8, at + 8 + length) };
     at += 12 + length;

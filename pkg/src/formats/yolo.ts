@@ -27,7 +27,10 @@ export function yolo(settings: Settings): Encoder {
       if (one) return [{ name: 'yolo-names.txt', content: names }];
       // Labels are looked for in the folder beside that of the images, where the frames belong. Quoted as JSON, names are YAML too.
       const numbered = classes.entries.map((name, number) => `  ${number}: ${JSON.stringify(name)}`);
-      return [{ name: 'yolo/names.txt', content: names }, { name: 'yolo/data.yaml', content: lines(['train: images', 'val: images', 'names:', ...numbered]) }];
+      return [
+        { name: 'yolo/names.txt', content: names },
+        { name: 'yolo/data.yaml', content: lines(['train: images', 'val: images', 'names:', ...numbered]) },
+      ];
     },
   };
 }
@@ -67,13 +70,21 @@ function sideOf({ left, top, width, height, pixels }: Mask, ring: Ring, at: numb
   if (!Number.isInteger(x) || !Number.isInteger(y)) {
     return [Number.isInteger(x) && !isInside(0, Number(y % 1 > 0)) ? 1 : 0, Number.isInteger(y) && !isInside(Number(x % 1 > 0), 0) ? 1 : 0];
   }
-  const sides = ([[0, 0], [1, 0], [0, 1], [1, 1]] as const).filter(([toLeft, up]) => isInside(toLeft, up));
+  const sides = (
+    [
+      [0, 0],
+      [1, 0],
+      [0, 1],
+      [1, 1],
+    ] as const
+  ).filter(([toLeft, up]) => isInside(toLeft, up));
   if (sides.length === 3) {
     const sum = (axis: 0 | 1) => sides.reduce((total, side) => total + side[axis], 0);
     return [sum(0) > 1 ? 1 : 0, sum(1) > 1 ? 1 : 0];
   }
   // Of two pixels that touch at a corner the one on the right of the way there, or from there on where the way has no length.
-  const along = (from: number, to: number) => [0, 1].map((axis) => (ring.at((to + axis) % ring.length) as number) - (ring.at(from + axis) as number));
+  const along = (from: number, to: number) =>
+    [0, 1].map((axis) => (ring.at((to + axis) % ring.length) as number) - (ring.at(from + axis) as number));
   const [across, down] = [along(at - 2, at), along(at, at + 2)].find(([across, down]) => across !== 0 || down !== 0) ?? [0, 0];
   const onRight = sides.find(([toLeft, up]) => (across as number) * (0.5 - up) - (down as number) * (0.5 - toLeft) > 0);
   return [...(onRight ?? sides[0] ?? [0, 0])] as [0 | 1, 0 | 1];

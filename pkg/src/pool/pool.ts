@@ -104,7 +104,11 @@ export class WorkerPool<Task, Result> {
     };
   }
 
-  #run(task: Task, { signal, onProgress }: CallOptions = {}, { pin, apart, givesWay = false }: Partial<Pick<Job<Task, Result>, 'pin' | 'apart' | 'givesWay'>> = {}): Promise<Result> {
+  #run(
+    task: Task,
+    { signal, onProgress }: CallOptions = {},
+    { pin, apart, givesWay = false }: Partial<Pick<Job<Task, Result>, 'pin' | 'apart' | 'givesWay'>> = {},
+  ): Promise<Result> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
     if (pin?.lost) return Promise.reject(pin.lost);
     return new Promise((resolve, reject) => {
@@ -173,7 +177,8 @@ export class WorkerPool<Task, Result> {
     // Those that keep state last, since they expect more tasks; then those that have not started.
     idle.sort((one, other) => one.pins.size - other.pins.size || Number(!one.thread) - Number(!other.thread));
     for (const lane of idle) {
-      const fits = ({ pin, apart }: Job<Task, Result>) => (pin ? lane.pins.has(pin) : !apart || !lane.pins.has(apart) || this.#lanes.length === 1);
+      const fits = ({ pin, apart }: Job<Task, Result>) =>
+        pin ? lane.pins.has(pin) : !apart || !lane.pins.has(apart) || this.#lanes.length === 1;
       const fitting = this.#waiting.filter(fits);
       const job = fitting.find(({ givesWay }) => !givesWay) ?? fitting[0];
       const { job: left } = lane;

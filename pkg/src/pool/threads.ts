@@ -40,7 +40,10 @@ export function spawnWith<Task, Result>(
       worker.addEventListener('message', (event: MessageEvent<Reply<Result>>) => onReply(event.data));
       worker.addEventListener('error', (event: ErrorEvent) => {
         event.preventDefault();
-        onDeath(event.message || "its file could not be loaded; give option 'worker', or import veronese/inline (of the element: worker, veronese/element/inline); from another origin it needs CORS, and its origin and blob: in worker-src");
+        onDeath(
+          event.message ||
+            "its file could not be loaded; give option 'worker', or import veronese/inline (of the element: worker, veronese/element/inline); from another origin it needs CORS, and its origin and blob: in worker-src",
+        );
       });
       worker.addEventListener('messageerror', () => onDeath('a message could not be read'));
     }

@@ -49,7 +49,9 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
 /** Buffers that are handed over instead of copied. */
 function buffersOfResult(result: Result): ArrayBuffer[] {
   if (result instanceof Uint8Array) return buffersOf([result]);
-  type Large = Pick<Segmentation, 'confidence'> & Pick<ClipAnswer, 'records' | 'draft'> & StreamEnd & { labels: Uint8Array | LabelledFrame };
+  type Large = Pick<Segmentation, 'confidence'> &
+    Pick<ClipAnswer, 'records' | 'draft'> &
+    StreamEnd & { labels: Uint8Array | LabelledFrame };
   const { labels, confidence, records, draft, frames = [] }: Partial<Large> = Object(result);
   const ofFrames = frames.map((frame: LabelledFrame | number) => (typeof frame === 'number' ? undefined : frame.labels));
   return buffersOf([labels instanceof Uint8Array ? labels : labels?.labels, confidence, records, draft?.labels, ...ofFrames]);

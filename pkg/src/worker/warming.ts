@@ -8,13 +8,26 @@ import type { Api } from '../calls/api.js';
  * Width and height of the pair of each slice, pixels. The largest ones, of which one is halved and one is not, are repeated: measured,
  * smaller pairs alone leave some of what is slow unused.
  */
-const SLICES = [[32, 24], [48, 36], [64, 48], [96, 72], [128, 96], [352, 264], [256, 192]] as const;
+const SLICES = [
+  [32, 24],
+  [48, 36],
+  [64, 48],
+  [96, 72],
+  [128, 96],
+  [352, 264],
+  [256, 192],
+] as const;
 /** The first slice that is repeated. */
 const REPEATED = 5;
 /** Tiles across and down, of which every other one belongs to the background. */
 const TILES = 3;
 /** Displacements between the frames, pixels; the first is the background's. */
-const MOTIONS = [[0.3, 0.2], [2, 1], [-1, 2], [1, -2]] as const;
+const MOTIONS = [
+  [0.3, 0.2],
+  [2, 1],
+  [-1, 2],
+  [1, -2],
+] as const;
 /** Slices go on until this time has passed. */
 const MILLISECONDS = 500;
 
@@ -68,5 +81,8 @@ function frame(time: 0 | 1, width: number, height: number): Pixels {
 }
 
 function texture(x: number, y: number, phase: number): number {
-  return 128 + 50 * (Math.sin(0.55 * x + phase) * Math.cos(0.37 * y - phase) + 0.6 * Math.sin(0.21 * x + 0.43 * y) + 0.4 * Math.cos(0.9 * y - 0.3 * x));
+  return (
+    128 +
+    50 * (Math.sin(0.55 * x + phase) * Math.cos(0.37 * y - phase) + 0.6 * Math.sin(0.21 * x + 0.43 * y) + 0.4 * Math.cos(0.9 * y - 0.3 * x))
+  );
 }

@@ -6,7 +6,12 @@ export function masksOfCvat(xml, { width, height, frames }) {
   for (const [, id, shapes] of xml.matchAll(/<track id="(\d+)"[^>]*>([^]*?)<\/track>/g)) {
     const masks = Array.from({ length: frames }, () => null);
     for (const [, frame, outside, points] of shapes.matchAll(/<polygon frame="(\d+)"[^>]*outside="([01])"[^>]*points="([^"]*)"/g)) {
-      if (outside === '0') masks[Number(frame)] = filled(points.split(';').map((point) => point.split(',').map(Number)), width, height);
+      if (outside === '0')
+        masks[Number(frame)] = filled(
+          points.split(';').map((point) => point.split(',').map(Number)),
+          width,
+          height,
+        );
     }
     tracks.set(Number(id), masks);
   }

@@ -41,7 +41,9 @@ async function corrected(page, truths, width, most) {
     const missed = found === null && j < FOUND;
     found ??= j;
     if (j >= CONTENT) return { id, found };
-    const { steps, frame } = missed ? pointing(page, truths, width, state) : improving(page, { labels, truths, width, id, j, frames }, state);
+    const { steps, frame } = missed
+      ? pointing(page, truths, width, state)
+      : improving(page, { labels, truths, width, id, j, frames }, state);
     if (steps.length === 0 || page.actions() + steps.length > most) return { id, found };
     for (const step of steps) await step();
     if (frame !== undefined) frames.push(frame);
@@ -85,13 +87,15 @@ function painting(page, fault, id, width, { frame, tool, radius, objects }) {
  */
 function faultIn(labels, id, truths, width, corrected) {
   const away = (frame) => Math.min(truths.length, ...corrected.map((other) => Math.abs(other - frame)));
-  const faults = [...truths.keys()].filter((frame) => away(frame) > 0).flatMap((frame) =>
-    [true, false].map((missed) => {
-      const wrong = truths[frame].map((is, p) => Number(missed ? is && labels[frame][p] !== id : !is && labels[frame][p] === id));
-      const region = largest(wrong, width);
-      return { frame, missed, weight: region.pixels * away(frame), mask: region.mask };
-    }),
-  );
+  const faults = [...truths.keys()]
+    .filter((frame) => away(frame) > 0)
+    .flatMap((frame) =>
+      [true, false].map((missed) => {
+        const wrong = truths[frame].map((is, p) => Number(missed ? is && labels[frame][p] !== id : !is && labels[frame][p] === id));
+        const region = largest(wrong, width);
+        return { frame, missed, weight: region.pixels * away(frame), mask: region.mask };
+      }),
+    );
   for (const fault of faults.sort((one, other) => other.weight - one.weight)) {
     const deepest = depths(fault.mask, width).reduce((a, b) => Math.max(a, b));
     if (deepest > THINNEST + 1) return { ...fault, deepest };
@@ -101,7 +105,14 @@ function faultIn(labels, id, truths, width, corrected) {
 
 /** J of labels together. */
 function jOf(labels, ids, truths) {
-  return mean(truths.map((truth, index) => overlap(labels[index].map((label) => Number(ids.includes(label))), truth)));
+  return mean(
+    truths.map((truth, index) =>
+      overlap(
+        labels[index].map((label) => Number(ids.includes(label))),
+        truth,
+      ),
+    ),
+  );
 }
 
 /** The first of those with the highest value; `null` of none. */

@@ -84,7 +84,8 @@ async function changing(page, does) {
   const changed = page.evaluate(() => {
     const run = document.querySelector('#clip-run');
     return new Promise((resolve) => {
-      const look = (records) => records.some(({ oldValue }) => oldValue === 'working') && run.dataset.phase !== 'working' && resolve(run.dataset.phase);
+      const look = (records) =>
+        records.some(({ oldValue }) => oldValue === 'working') && run.dataset.phase !== 'working' && resolve(run.dataset.phase);
       new MutationObserver(look).observe(run, { attributeFilter: ['data-phase'], attributeOldValue: true });
     });
   });
@@ -109,7 +110,10 @@ async function goTo(page, frame) {
 
 /** Draws through points of the picture, [x, y] in pixels of the frame. */
 async function drag(page, points) {
-  const [box, size] = await Promise.all([page.locator('.layers').boundingBox(), page.locator('#frame').evaluate(({ width, height }) => ({ width, height }))]);
+  const [box, size] = await Promise.all([
+    page.locator('.layers').boundingBox(),
+    page.locator('#frame').evaluate(({ width, height }) => ({ width, height })),
+  ]);
   const places = points.map(([x, y]) => [box.x + ((x + 0.5) / size.width) * box.width, box.y + ((y + 0.5) / size.height) * box.height]);
   await page.mouse.move(...places[0]);
   await page.mouse.down();
@@ -120,7 +124,10 @@ async function drag(page, points) {
 /** Presses on the slider of the brush, which stands or lies. */
 async function slide(page, radius) {
   const slider = page.locator('#tools [name=radius]');
-  const [{ width, height }, { min, max }] = await Promise.all([slider.boundingBox(), slider.evaluate(({ min, max }) => ({ min: Number(min), max: Number(max) }))]);
+  const [{ width, height }, { min, max }] = await Promise.all([
+    slider.boundingBox(),
+    slider.evaluate(({ min, max }) => ({ min: Number(min), max: Number(max) })),
+  ]);
   const along = THUMB / 2 + ((radius - min) / (max - min)) * (Math.max(width, height) - THUMB);
   await slider.click({ position: height > width ? { x: width / 2, y: height - along } : { x: along, y: height / 2 } });
 }

@@ -32,7 +32,8 @@ export function depths(region, width) {
   const height = region.length / width;
   const along = new Float64Array(region.length);
   for (let p = 0; p < region.length; p += 1) if (region[p]) along[p] = 1 + (p >= width ? along[p - width] : 0);
-  for (let p = region.length - 1; p >= 0; p -= 1) if (region[p]) along[p] = Math.min(along[p], 1 + (p + width < region.length ? along[p + width] : 0));
+  for (let p = region.length - 1; p >= 0; p -= 1)
+    if (region[p]) along[p] = Math.min(along[p], 1 + (p + width < region.length ? along[p + width] : 0));
   const found = new Float64Array(region.length);
   for (let y = 0; y < height; y += 1) {
     for (let x = 0; x < width; x += 1) {

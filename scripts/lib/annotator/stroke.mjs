@@ -4,7 +4,10 @@ import { depths, largest } from './regions.mjs';
 
 /** The points of the stroke, [x, y] in pixels; its brush leaves the region nowhere. Empty if the brush fits nowhere. */
 export function strokeIn(region, width, radius) {
-  const inside = largest(depths(region, width).map((depth) => Number(depth > radius)), width).mask;
+  const inside = largest(
+    depths(region, width).map((depth) => Number(depth > radius)),
+    width,
+  ).mask;
   const step = Math.max(1, Math.floor(radius));
   const nodes = new Set();
   inside.forEach((is, p) => {

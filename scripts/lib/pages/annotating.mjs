@@ -12,7 +12,11 @@ export const PARTS = {
 
 /** Rows of all clips, then of those that constants were first set on and of the others. */
 function groups(rows) {
-  const all = [['all', rows], ['old', rows.filter(({ old }) => old)], ['new', rows.filter(({ old }) => !old)]];
+  const all = [
+    ['all', rows],
+    ['old', rows.filter(({ old }) => old)],
+    ['new', rows.filter(({ old }) => !old)],
+  ];
   return all.filter(([, own]) => own.length > 0);
 }
 
@@ -38,7 +42,9 @@ function object({ real }) {
     ['ms a touch', ({ touched }) => touched.milliseconds],
   ];
   const rows = groups(real).map(([name, own]) => [
-    `${name} (${own.length})`, ...scores.map(([, of]) => score(mean(own.map(of)))), ...times.map(([, of]) => amount(mean(own.map(of)))),
+    `${name} (${own.length})`,
+    ...scores.map(([, of]) => score(mean(own.map(of)))),
+    ...times.map(([, of]) => amount(mean(own.map(of)))),
   ]);
   const falls = ({ rounds }) => rounds.some((j, k) => j < rounds[k - 1] - 0.01);
   const sum = (own, of) => own.reduce((all, row) => all + of(row), 0);
@@ -46,10 +52,23 @@ function object({ real }) {
   const last = (own) => score(mean(own.map((row) => row.rounds.at(-1))));
   const worst = (own) => own.toSorted((one, other) => one.auto - other.auto).slice(0, Math.ceil(own.length / 3));
   const trust = groups(real).map(([name, own]) => [
-    `${name} (${own.length})`, own.filter(falls).length, `${fixed(100 * far(own), 1)} %`, last(worst(own)), score(mean(worst(own).map(({ mask }) => mask))),
-    whole(sum(own, ({ othersChanged }) => othersChanged)), whole(sum(own, ({ acceptedChanged }) => acceptedChanged)),
+    `${name} (${own.length})`,
+    own.filter(falls).length,
+    `${fixed(100 * far(own), 1)} %`,
+    last(worst(own)),
+    score(mean(worst(own).map(({ mask }) => mask))),
+    whole(sum(own, ({ othersChanged }) => othersChanged)),
+    whole(sum(own, ({ acceptedChanged }) => acceptedChanged)),
   ]);
-  const titles = ['clips', 'fall in a round', 'far frames that lose', 'worst third, last round', 'worst third, mask', 'pixels of others', 'pixels of accepted'];
+  const titles = [
+    'clips',
+    'fall in a round',
+    'far frames that lose',
+    'worst third, last round',
+    'worst third, mask',
+    'pixels of others',
+    'pixels of accepted',
+  ];
   return `${table(['clips', ...[...scores, ...times].map(([title]) => title)], rows)}\n\n${table(titles, trust)}`;
 }
 
@@ -68,9 +87,19 @@ function harm({ harm }) {
     const [before, after] = [({ before }) => before, ({ after }) => after].map((of) => score(mean(changes.map(of))));
     const right = sum(({ mended }) => mended);
     const wrong = sum(({ spoilt }) => spoilt);
-    return [`${name} (${changes.length})`, before, after, worse, ...[right, wrong].map((pixels) => whole(Math.round(pixels / 1000))), fixed(wrong / right, 2)];
+    return [
+      `${name} (${changes.length})`,
+      before,
+      after,
+      worse,
+      ...[right, wrong].map((pixels) => whole(Math.round(pixels / 1000))),
+      fixed(wrong / right, 2),
+    ];
   });
-  return table(['annotation of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'], rows);
+  return table(
+    ['annotation of one frame', 'J before', 'J after', 'clips that lose', 'mended, 1000 pixels', 'spoilt, 1000 pixels', 'harm'],
+    rows,
+  );
 }
 
 function points({ points }) {
@@ -90,13 +119,22 @@ function objects({ objects }) {
   const rows = [...kinds.map((kind) => [kind, objects.filter((row) => kindOf(row) === kind)]), ['all', objects]].map(([name, own]) => {
     const all = own.flatMap((row) => row.objects);
     const changed = all.reduce((sum, { othersChanged }) => sum + othersChanged, 0);
-    const scores = ['assigned', 'lastQuarter', 'stroked'].map((figure) => score(mean(all.map((object) => object[figure]).filter((j) => j != null))));
+    const scores = ['assigned', 'lastQuarter', 'stroked'].map((figure) =>
+      score(mean(all.map((object) => object[figure]).filter((j) => j != null))),
+    );
     return [`${name} (${own.length})`, all.length, ...scores, whole(changed), amount(mean(own.map((row) => row.frameMilliseconds)))];
   });
   return table(['clips', 'objects', 'assigned', 'last quarter', 'after strokes', 'pixels of others changed', 'ms a frame'], rows);
 }
 
 function page({ rows, ...figures }) {
-  const lines = rows.map(({ clip, frames, found, actions, seconds, j }) => [clip, frames, score(found), actions, fixed(seconds, 0), score(j)]);
+  const lines = rows.map(({ clip, frames, found, actions, seconds, j }) => [
+    clip,
+    frames,
+    score(found),
+    actions,
+    fixed(seconds, 0),
+    score(j),
+  ]);
   return `${origin(figures)}\n\n${table(['clip', 'frames', 'found', 'actions', 'seconds', 'J'], lines)}`;
 }

@@ -27,7 +27,10 @@ const PAGES = {
 export function tablesOf(name, figures) {
   const parts = Object.values(PAGES).flatMap((page) => Object.entries(page));
   const own = parts.filter(([, [file]]) => file === name);
-  return own.map(([, [, text]]) => text(figures)).filter((text) => text !== '').join('\n\n');
+  return own
+    .map(([, [, text]]) => text(figures))
+    .filter((text) => text !== '')
+    .join('\n\n');
 }
 
 /** Writes all pages and says which of them changed. */

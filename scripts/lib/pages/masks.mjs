@@ -12,7 +12,13 @@ export const PARTS = {
 
 function scenes({ scenes }) {
   const rows = scenes.map(({ of, cases, method, miou, countRight, subPixel, boundary }) => [
-    of, cases, method, score(miou), percent(countRight), score(subPixel), score(boundary),
+    of,
+    cases,
+    method,
+    score(miou),
+    percent(countRight),
+    score(subPixel),
+    score(boundary),
   ]);
   return table(['scenes', 'cases', 'method', 'mean IoU', 'n right', 'sub-pixel', 'F'], rows);
 }
@@ -20,13 +26,23 @@ function scenes({ scenes }) {
 function real(pairs) {
   if (pairs.length === 0) return '';
   const rows = pairs.map(({ of, cases, method, jBackground, jOracle, groupedBoundary, rand }) => [
-    of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score),
+    of,
+    cases,
+    method,
+    ...[jBackground, jOracle, groupedBoundary, rand].map(score),
   ]);
   return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand'], rows);
 }
 
 function ablation({ date, rows }) {
-  const columns = [['J', 'j'], ['J by hand', 'byHand'], ['F', 'f'], ['scenes', 'scenes'], ['bare ground', 'bare'], ['large', 'large']];
+  const columns = [
+    ['J', 'j'],
+    ['J by hand', 'byHand'],
+    ['F', 'f'],
+    ['scenes', 'scenes'],
+    ['bare ground', 'bare'],
+    ['large', 'large'],
+  ];
   const { scenes, bare, large, j } = rows[0].tables.best.figures;
   const counts = `${j?.cases ?? 0} real pairs, ${scenes.cases} scenes, ${bare.cases} of bare ground, ${large.cases} large ones, ${date}.`;
   return [counts, ...['best', 'fast'].flatMap((quality) => [`*${quality}*:`, withoutParts(rows, quality, columns)])].join('\n\n');
@@ -47,4 +63,3 @@ function calibration({ date, scenes, object, background, unknown }) {
   const sentence = `\`markUnknown\` marks ${marked('occluded')} of the hidden pixels of the scenes and ${marked('visible')} of the others.`;
   return [`${date}.`, table(head, ranges), sentence].join('\n\n');
 }
-

@@ -11,7 +11,10 @@ const TITLES = {
 };
 
 export const PARTS = {
-  browser: ['browser', (report) => [`${origin(report)} ${report.rounds} calls of each kind.`, downloads(report), calls(report)].join('\n\n')],
+  browser: [
+    'browser',
+    (report) => [`${origin(report)} ${report.rounds} calls of each kind.`, downloads(report), calls(report)].join('\n\n'),
+  ],
   page: ['page', page],
 };
 
@@ -26,16 +29,18 @@ function downloads({ wasmGzip, jsGzip, readyMs, peers: { opencv }, peersReadyMs 
 /** `first`: on a fresh page; `overlap`: mean IoU of the true labels and the labels found. */
 function calls({ sizes }) {
   const rows = Object.entries(sizes).flatMap(([pixels, cases]) =>
-    Object.entries(cases).filter(([name]) => name in TITLES).map(([name, { median, native, first, overlap, memoryBytes }]) => [
-      size(pixels),
-      TITLES[name],
-      amount(median),
-      native ? amount(native) : '',
-      first ? amount(first) : '',
-      ratioToFlow(name, cases),
-      overlap === undefined ? '' : score(overlap),
-      memoryBytes ? mib(memoryBytes) : '',
-    ]),
+    Object.entries(cases)
+      .filter(([name]) => name in TITLES)
+      .map(([name, { median, native, first, overlap, memoryBytes }]) => [
+        size(pixels),
+        TITLES[name],
+        amount(median),
+        native ? amount(native) : '',
+        first ? amount(first) : '',
+        ratioToFlow(name, cases),
+        overlap === undefined ? '' : score(overlap),
+        memoryBytes ? mib(memoryBytes) : '',
+      ]),
   );
   return table(['frames', 'call', 'median', 'native', 'first call', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
 }
@@ -60,8 +65,14 @@ function page({ frames, size: pixels, quality, workers, seconds, memory, tasks, 
   const blocking = Object.entries(tasks).map(([name, { count, longest }]) => [name, count, amount(longest)]);
   return [
     `${origin(figures)} ${frames} frames of ${size(pixels)} pixels, quality *${quality}*, ${workers} workers: ${fixed(seconds, 0)} s, ${fixed(frames / seconds, 1)} frames a second.`,
-    table(['', 'memory of the browser, MiB'], Object.entries(memory).map(([when, bytes]) => [when, mib(bytes)])),
-    table(['until', 'median, ms', 'worst, ms'], waits.map(([name, median, worst]) => [name, amount(median), worst === undefined ? '' : amount(worst)])),
+    table(
+      ['', 'memory of the browser, MiB'],
+      Object.entries(memory).map(([when, bytes]) => [when, mib(bytes)]),
+    ),
+    table(
+      ['until', 'median, ms', 'worst, ms'],
+      waits.map(([name, median, worst]) => [name, amount(median), worst === undefined ? '' : amount(worst)]),
+    ),
     table(['tasks above 50 ms while', 'number', 'longest, ms'], blocking),
   ].join('\n\n');
 }

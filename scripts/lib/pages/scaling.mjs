@@ -12,9 +12,28 @@ function costs({ frames, ...figures }) {
   const kb = (bytes) => amount(bytes / 1000);
   const rows = Object.entries(frames).flatMap(([size, byQuality]) =>
     Object.entries(byQuality).map(([quality, { pair, track, label, decode, encode, file, pairs, saved, png, memory }]) => [
-      size, quality, ...[pair, track, label, decode, encode].map(ms), ...[file, pairs, saved, png].map(kb), fixed(memory / 2 ** 20, 0),
+      size,
+      quality,
+      ...[pair, track, label, decode, encode].map(ms),
+      ...[file, pairs, saved, png].map(kb),
+      fixed(memory / 2 ** 20, 0),
       amount(FRAMES_PER_SECOND * (pair + track + label + decode * 2 + encode)),
-    ]));
-  const head = ['frames', 'quality', 'pair', 'objects', 'labels', 'JPEG', 'PNG', 'JPEG, kB', 'pair, kB', 'saved, kB', 'PNG, kB', 'memory, MiB', 'core-hours'];
+    ]),
+  );
+  const head = [
+    'frames',
+    'quality',
+    'pair',
+    'objects',
+    'labels',
+    'JPEG',
+    'PNG',
+    'JPEG, kB',
+    'pair, kB',
+    'saved, kB',
+    'PNG, kB',
+    'memory, MiB',
+    'core-hours',
+  ];
   return `${origin(figures)}\n\n${table(head, rows)}`;
 }

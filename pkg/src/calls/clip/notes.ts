@@ -37,7 +37,8 @@ async function whyEmpty(tracks: ClipTracks, frames: SeenFrames): Promise<Note> {
   for (const index of some) reasons.push(whyPair(tracks, { index, frames: [await frames.read(index), await frames.read(index + 1)] }));
   const count = (code: string) => reasons.filter((reason) => reason.code === code).length;
   const [reason] = [...reasons].sort((a, b) => count(b.code) - count(a.code)) as [Note];
-  if (reason.code === 'no-contrast' || reason.code === 'cut') return { ...reason, message: `${reason.message}, in ${count(reason.code)} of ${some.length} pairs that were looked at` };
+  if (reason.code === 'no-contrast' || reason.code === 'cut')
+    return { ...reason, message: `${reason.message}, in ${count(reason.code)} of ${some.length} pairs that were looked at` };
   const step = await tellingStep(frames);
   if (step === undefined) return reason;
   const message = `between frames that are up to 8 apart nothing moves far enough to be told; between frames that are ${step} apart something does`;

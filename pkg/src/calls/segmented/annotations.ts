@@ -29,14 +29,18 @@ export interface FrameAnnotations {
 }
 
 /** Checks annotations of frames, whose size is not known yet. */
-export function checkedAnnotations({ corrections: painting = [], prompts: pointing = [], accepted }: { [option in keyof FrameAnnotations]: unknown }, length: number): FrameAnnotations {
+export function checkedAnnotations(
+  { corrections: painting = [], prompts: pointing = [], accepted }: { [option in keyof FrameAnnotations]: unknown },
+  length: number,
+): FrameAnnotations {
   const form = '{ frame, object, clicks, box }';
   const prompts: Prompt[] = [];
   const read = (option: Prompt['option']) => (entry: Record<string, unknown>, wrong: Wrong) => {
     const isPrompt = entry['labels'] === undefined && ['box', 'clicks'].some((name) => entry[name] !== undefined);
     if (option === 'corrections' && !isPrompt) return painted(entry, wrong);
     const { frame, object, ...prompt } = promptOf(entry, wrong);
-    if (prompts.some((other) => frame === other.frame && object === other.object)) throw wrong(`points to object ${object} in frame ${frame}, as one before does`);
+    if (prompts.some((other) => frame === other.frame && object === other.object))
+      throw wrong(`points to object ${object} in frame ${frame}, as one before does`);
     prompts.push({ frame, object, ...prompt, option });
     return undefined;
   };
@@ -49,7 +53,8 @@ function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omi
   const own = bytesOf(labels, 'labels', wrong);
   if (object === undefined) return { labels: own };
   if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}, or none`);
-  if (own.some((label) => label !== 0 && label !== object && label !== UNLABELLED)) throw wrong(`must have the labels 0, ${object} and ${UNLABELLED}: it is about object ${object} alone`);
+  if (own.some((label) => label !== 0 && label !== object && label !== UNLABELLED))
+    throw wrong(`must have the labels 0, ${object} and ${UNLABELLED}: it is about object ${object} alone`);
   return { labels: own, object };
 }
 
@@ -57,14 +62,21 @@ function painted({ labels, object }: Record<string, unknown>, wrong: Wrong): Omi
 export function promptOf(entry: Record<string, unknown>, wrong: Wrong): Pointed {
   const { frame, propagate, object, clicks = [], box } = entry;
   if (!isObjectNumber(object)) throw wrong(`must have an object, ${RANGE}`);
-  if (!isListOf(clicks, isClick)) throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
+  if (!isListOf(clicks, isClick))
+    throw wrong('must have clicks, a list of [x, y, 1] for what belongs to the object and [x, y, -1] for what does not, in whole numbers');
   if (box !== undefined && !isBox(box)) throw wrong('must have a box, the whole numbers [x, y, width, height]');
   const inside = clicks.filter(([, , sign]) => sign === 1);
   if (!box && clicks.length > 0 && inside.length === 0) throw wrong(`must have a box or a click that belongs to object ${object}`);
   const [left = 0, top = 0, columns = 0, rows = 0] = box ?? [];
   const stray = box && inside.find(([x, y]) => x < left || x >= left + columns || y < top || y >= top + rows);
   if (stray) throw wrong(`has a click at ${stray[0]}, ${stray[1]} that belongs to object ${object} and is not in its box`);
-  return { frame: frame as number, object, clicks: clicks.flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]), box: [...(box ?? [])], propagate: propagate as ClipPropagation | undefined };
+  return {
+    frame: frame as number,
+    object,
+    clicks: clicks.flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]),
+    box: [...(box ?? [])],
+    propagate: propagate as ClipPropagation | undefined,
+  };
 }
 
 function isPlaces(value: unknown): value is number[] {
@@ -131,7 +143,9 @@ export function checkedList(
   return [...all.values()];
 }
 
-export const SPREADS = PROPAGATIONS.map((name) => `'${name}'`).join(', ').replace(/, (?=[^,]*$)/, ' or ');
+export const SPREADS = PROPAGATIONS.map((name) => `'${name}'`)
+  .join(', ')
+  .replace(/, (?=[^,]*$)/, ' or ');
 
 export function isPropagation(value: unknown): value is ClipPropagation {
   return (PROPAGATIONS as readonly unknown[]).includes(value);

@@ -20,7 +20,11 @@ export interface ClipResults {
 /** `house` finds a home for the clip. Arguments are checked when the first frame is requested, as generators do. */
 export function segmentedClip(frames: ClipSource, options: ClipOptions | undefined, house: () => Home, places?: Places): SegmentedClip {
   const results: ClipResults = { tracks: new Tracks() };
-  const rest = { tracks: () => results.tracks.value(), state: async () => results.state?.slice(), changes: async () => structuredClone(results.changes ?? []) };
+  const rest = {
+    tracks: () => results.tracks.value(),
+    state: async () => results.state?.slice(),
+    changes: async () => structuredClone(results.changes ?? []),
+  };
   return Object.assign(segmented(frames, options, house, places, results), rest);
 }
 
@@ -31,7 +35,11 @@ async function* segmented(
   places: Places | undefined,
   results: ClipResults,
 ): AsyncGenerator<ClipFrame, void, undefined> {
-  const [{ checkedOptions }, { PlacedClip }, { segmentedTwice }] = await Promise.all([import('./options.js'), import('./place.js'), import('./whole.js')]);
+  const [{ checkedOptions }, { PlacedClip }, { segmentedTwice }] = await Promise.all([
+    import('./options.js'),
+    import('./place.js'),
+    import('./whole.js'),
+  ]);
   const task = reading(() => checkedOptions(frames, options));
   const { signal, source, settings } = task;
   if (signal?.aborted) throw cancelled(signal);

@@ -25,7 +25,8 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   const numbers = new Map<number, number>();
   const give = (object: number, number: number) => {
     if (object === number) return;
-    if ((numbers.get(object) ?? number) !== number) throw wrong(`object ${object} cannot become ${called(numbers.get(object))} and ${called(number)}`);
+    if ((numbers.get(object) ?? number) !== number)
+      throw wrong(`object ${object} cannot become ${called(numbers.get(object))} and ${called(number)}`);
     numbers.set(object, number);
   };
   for (const [first = 0, ...others] of merge) for (const other of others) give(other, first);
@@ -37,14 +38,21 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   if (!isObject(names)) throw wrong("'names' must be an object of names by number");
   const named = Object.entries(names).filter(([, name]) => name !== undefined);
   for (const [number, name] of named) {
-    if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number))) throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
+    if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number)))
+      throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
     if (typeof name !== 'string' || name === '') throw wrong(`'names' must have a text for object ${number}`);
   }
   if (locked !== undefined && !isListOf(locked, isObjectNumber)) throw wrong(`'locked' must be a list of objects, ${RANGE}`);
   return {
     numbers,
     names: new Map(named.map(([number, name]) => [Number(number), name as string])),
-    named: given['names'] === undefined ? undefined : withMerged(named.map(([number]) => Number(number)), numbers),
+    named:
+      given['names'] === undefined
+        ? undefined
+        : withMerged(
+            named.map(([number]) => Number(number)),
+            numbers,
+          ),
     locked: locked && withMerged(locked, numbers),
   };
 }

@@ -10,7 +10,19 @@ import { type Edits, editsOf, isObjectNumber, RANGE, withMerged } from './edits.
 import { checkedAnnotations, checkUnlocked, type FrameAnnotations } from './annotations.js';
 
 const OF_ALL = ['motions', 'quality', 'markUnknown', 'subject', 'lookAhead', 'maxSize'];
-const OF_WHOLE = ['corrections', 'prompts', 'accepted', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
+const OF_WHOLE = [
+  'corrections',
+  'prompts',
+  'accepted',
+  'edits',
+  'locked',
+  'state',
+  'changesOnly',
+  'onChange',
+  'knownPairs',
+  'onPairs',
+  'onPreview',
+] as const;
 
 /** Frames that can be read again. */
 export interface Whole {
@@ -18,7 +30,8 @@ export interface Whole {
   length: number;
 }
 
-export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
+export interface CheckedOptions
+  extends FrameAnnotations, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
   source: Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
@@ -33,7 +46,20 @@ export interface CheckedOptions extends FrameAnnotations, Pick<ClipOptions, 'sig
 
 export function checkedOptions(frames: unknown, options: unknown): CheckedOptions {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
-  const { corrections, prompts, accepted, edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
+  const {
+    corrections,
+    prompts,
+    accepted,
+    edits = {},
+    locked,
+    state,
+    changesOnly = false,
+    onChange,
+    knownPairs,
+    onPairs,
+    onPreview,
+    ...rest
+  } = given;
   const { call, transfer, maxSize, settings } = parted(rest, OF_ALL);
   const source = sourceOf(frames);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
@@ -66,7 +92,8 @@ export function checkedOptions(frames: unknown, options: unknown): CheckedOption
 
 function sourceOf(frames: unknown): Whole {
   const { length, read } = Object(frames) as { length: unknown; read: unknown };
-  if (typeof read !== 'function' || !isWhole(length, 0, Infinity)) throw invalidInput("the frames must be { length, read(index) }, 'length' a whole number");
+  if (typeof read !== 'function' || !isWhole(length, 0, Infinity))
+    throw invalidInput("the frames must be { length, read(index) }, 'length' a whole number");
   return { length, read: (index) => (frames as Whole).read(index) };
 }
 

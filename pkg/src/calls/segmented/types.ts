@@ -59,19 +59,17 @@ export type ClipPrompt = {
   frame: number;
   /** Default: that of a label map or mask of the frame, otherwise `'both'`. */
   propagate?: ClipPropagation | undefined;
-} & (
-  | {
-      /** The number of the object, 1 to 254; one that no object has makes a new object. */
-      object: number;
-      /**
-       * Pixels that belong to the object or do not; those that do are in the box, if there is one. In this order each adds the part around
-       * it to the mask, or takes it away, unless the mask is as it says already.
-       */
-      clicks?: readonly ClipClick[] | undefined;
-      /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
-      box?: readonly [x: number, y: number, width: number, height: number] | undefined;
-    }
-);
+} & {
+  /** The number of the object, 1 to 254; one that no object has makes a new object. */
+  object: number;
+  /**
+   * Pixels that belong to the object or do not; those that do are in the box, if there is one. In this order each adds the part around
+   * it to the mask, or takes it away, unless the mask is as it says already.
+   */
+  clicks?: readonly ClipClick[] | undefined;
+  /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
+  box?: readonly [x: number, y: number, width: number, height: number] | undefined;
+};
 
 /** A frame that a person finds right: its index, or with all its labels as the person saw them, one per pixel, row by row. */
 export type ClipAccepted = number | { frame: number; labels?: Uint8Array | undefined };

@@ -14,7 +14,12 @@ import { sized } from '../clip/tracks.js';
 import type { ClipResults } from './clip.js';
 
 /** If the source fails, the frames before come first. */
-export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: CheckedOptions, results: ClipResults): AsyncGenerator<ClipFrame, void, undefined> {
+export async function* segmentedTwice(
+  clip: PlacedClip,
+  frames: Frames,
+  task: CheckedOptions,
+  results: ClipResults,
+): AsyncGenerator<ClipFrame, void, undefined> {
   const { transfer, onProgress } = task;
   const { read, length: of } = task.source;
   // A state may be of the frames before one that failed.
@@ -53,14 +58,19 @@ async function solved(clip: PlacedClip, frames: Frames, task: CheckedOptions): P
   const solve = async (index: number, first: Pixels, second: Pixels) => {
     const { motions, quality, subject } = settings;
     const frames = [copyOf(first), copyOf(second)] as const;
-    const pairs = (await anywhere?.({ call: 'solvePair', frames, settings: { motions, quality, subject } }, { signal: task.signal })) as Uint8Array;
+    const pairs = (await anywhere?.(
+      { call: 'solvePair', frames, settings: { motions, quality, subject } },
+      { signal: task.signal },
+    )) as Uint8Array;
     await onPairs(index, pairs.slice());
     return pairs;
   };
   const isShared = size > 1 && settings['lookAhead'] === 'all';
   const ahead = new Ahead((index) => frames.one(read, index), isShared ? solve : undefined, isShared ? size : 1, length - 1);
   for (const index of upTo(length)) {
-    const next = await clip.wait(ahead.at(index, (index) => known.has(index)).catch((thrown) => ((frames.failure = { thrown }), undefined)));
+    const next = await clip.wait(
+      ahead.at(index, (index) => known.has(index)).catch((thrown) => ((frames.failure = { thrown }), undefined)),
+    );
     if (!next) break;
     if (index === 0) checkSizes(task, next.frame);
     task.onProgress?.({ frame: index, of: length, stage: 'pairs' });
@@ -94,7 +104,12 @@ async function restored(clip: PlacedClip, frames: Frames, task: CheckedOptions, 
 }
 
 /** Applies all annotations; returns the indices of the frames that change, and what objects gain and lose. */
-async function annotated(clip: PlacedClip, frames: Frames, task: CheckedOptions, length: number): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
+async function annotated(
+  clip: PlacedClip,
+  frames: Frames,
+  task: CheckedOptions,
+  length: number,
+): Promise<Required<Pick<Annotating, 'changes'>> & { changed: Set<number> }> {
   const { source, onProgress, onChange } = task;
   const { read } = source;
   const changed = new Set<number>();
@@ -124,7 +139,8 @@ function annotationsOf({ corrections, prompts, accepted, locked, edits }: Checke
   const isThere = ({ frame }: { frame: number }) => frame < length;
   const maps = corrections.filter(({ object, propagate }) => object === undefined && propagate !== undefined);
   const ways = new Map(maps.map(({ frame, propagate }) => [frame, propagate]));
-  const spread = <T extends LabelledFrame | Prompt>(annotations: readonly T[]) => annotations.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
+  const spread = <T extends LabelledFrame | Prompt>(annotations: readonly T[]) =>
+    annotations.filter(isThere).map((each) => ({ ...each, propagate: each.propagate ?? ways.get(each.frame) }));
   return {
     masks: [],
     corrections: spread(corrections),

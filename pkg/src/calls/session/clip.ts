@@ -1,7 +1,18 @@
 // A clip from its opening to its closing. The core's clip lives in a home: a worker, or this thread. Here are its frames and its journal, and the
 // loop that gives it the frames that it wants. A home that dies is replaced by another one, which reads the journal.
 
-import type { Clip, ClipEntry, ClipEvent, ClipFrame, ClipFrameStatus, ClipJournal, ClipStep, ClipTracks, Pixels, Segmentation } from '../../../types/index.js';
+import type {
+  Clip,
+  ClipEntry,
+  ClipEvent,
+  ClipFrame,
+  ClipFrameStatus,
+  ClipJournal,
+  ClipStep,
+  ClipTracks,
+  Pixels,
+  Segmentation,
+} from '../../../types/index.js';
 import { checkedBytes, entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import { checkCount } from '../clip/frames.js';
@@ -52,7 +63,16 @@ const ACCEPTED = 2;
 const ANNOTATED = 4;
 /** Bytes of frames that are read ahead. */
 const MOST_AHEAD = 256 << 20;
-const NOTHING: ClipStatus = { flags: new Uint8Array(), revisions: new Float64Array(), objects: [], nextObject: 1, width: 0, height: 0, dropped: 0, solved: [] };
+const NOTHING: ClipStatus = {
+  flags: new Uint8Array(),
+  revisions: new Float64Array(),
+  objects: [],
+  nextObject: 1,
+  width: 0,
+  height: 0,
+  dropped: 0,
+  solved: [],
+};
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
 let clips = 0;
@@ -104,7 +124,13 @@ export class OpenedClip implements Clip, StepClip {
     this.#place = place;
     const { journal, writer } = this.#parts;
     homes.register(this, { ...place, journal, writer }, this);
-    const task: ClipTask = { call: 'openClip', clip: place.clip, frames: frames.length, markUnknown, saved: saved && new Uint8Array(saved) };
+    const task: ClipTask = {
+      call: 'openClip',
+      clip: place.clip,
+      frames: frames.length,
+      markUnknown,
+      saved: saved && new Uint8Array(saved),
+    };
     const answer = (await place.home.perform(task, {}).catch((thrown) => {
       this.#leave();
       throw thrown;
@@ -161,8 +187,10 @@ export class OpenedClip implements Clip, StepClip {
       const { first = 0, last = length - 1, drafts = false, pairs, ...rest } = given;
       const { call, settings } = parted(rest, ['motions', 'quality', 'subject']);
       checkCount(length);
-      if (!isWhole(last, 1, length - 1)) throw new VeroneseError('invalid-option', `option 'last': must be a frame from 1 to ${length - 1}`);
-      if (!isWhole(first, 0, last - 1)) throw new VeroneseError('invalid-option', `option 'first': must be a frame before the last, ${last}`);
+      if (!isWhole(last, 1, length - 1))
+        throw new VeroneseError('invalid-option', `option 'last': must be a frame from 1 to ${length - 1}`);
+      if (!isWhole(first, 0, last - 1))
+        throw new VeroneseError('invalid-option', `option 'first': must be a frame before the last, ${last}`);
       if (typeof drafts !== 'boolean') throw invalidOption('drafts', 'true or false', drafts);
       if (pairs !== undefined && typeof pairs !== 'function') throw invalidOption('pairs', 'a function', pairs);
       if (call.signal?.aborted) throw cancelled(call.signal);
@@ -387,7 +415,11 @@ export class OpenedClip implements Clip, StepClip {
     const step = new Step(this, { range, frame: commands.frameOfCommand(command) });
     this.#wake();
     // A copy: it is given again if the home is lost.
-    const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command) });
+    const task = (clip: number): ClipTask => ({
+      call: 'applyClip',
+      clip,
+      command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command),
+    });
     this.#given.add(step);
     this.#send<ClipAnswer>(task).then(
       (answer) => {
@@ -551,7 +583,10 @@ export class OpenedClip implements Clip, StepClip {
       const bytes = await this.#parts.writer.write(records, replaces);
       if (bytes > 0) this.#emit({ type: 'kept', bytes });
     } catch (thrown) {
-      const error = thrown instanceof VeroneseError ? thrown : new VeroneseError('write-failed', `the journal cannot be written: ${(thrown as Error)?.message}`, { cause: thrown });
+      const error =
+        thrown instanceof VeroneseError
+          ? thrown
+          : new VeroneseError('write-failed', `the journal cannot be written: ${(thrown as Error)?.message}`, { cause: thrown });
       this.#emit({ type: 'unkept', error });
     }
   }
@@ -584,7 +619,8 @@ export class OpenedClip implements Clip, StepClip {
       }
     } catch (thrown) {
       // A home that cannot be had, or a clip that was closed.
-      if (!this.#closed) void this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
+      if (!this.#closed)
+        void this.#close(thrown instanceof VeroneseError ? thrown : new VeroneseError('internal', String(thrown), { cause: thrown }));
     } finally {
       this.#isRunning = false;
     }
@@ -632,7 +668,11 @@ export class OpenedClip implements Clip, StepClip {
       if (this.#closed) throw thrown;
       if (isCode(thrown, 'worker-failed', 'internal')) return this.#giveUp(wanted, step, thrown);
       const isOfSize = isCode(thrown, 'frame-size-mismatch');
-      return this.#unreadable(wanted, step, isOfSize ? new VeroneseError(thrown.code, `frame ${index}: ${thrown.message}`, { cause: thrown }) : thrown);
+      return this.#unreadable(
+        wanted,
+        step,
+        isOfSize ? new VeroneseError(thrown.code, `frame ${index}: ${thrown.message}`, { cause: thrown }) : thrown,
+      );
     }
   }
 
@@ -667,7 +707,12 @@ export class OpenedClip implements Clip, StepClip {
       if (!isShared) return undefined;
       return perform({ call: 'solvePair', frames: [copied(before), copied(frame)], settings }, { signal }) as Promise<Uint8Array>;
     };
-    return new Ahead((index) => this.#parts.frames.read(index), isShared || given ? solve : undefined, isShared ? this.#room(size) : 1, last);
+    return new Ahead(
+      (index) => this.#parts.frames.read(index),
+      isShared || given ? solve : undefined,
+      isShared ? this.#room(size) : 1,
+      last,
+    );
   }
 
   /** How many frames there is room for, of as many as there are workers. */
@@ -690,7 +735,14 @@ export class OpenedClip implements Clip, StepClip {
     // What was given before the clip was opened again is not lost for that.
     if (!step) {
       this.#isPaused = true;
-      this.#emit({ type: 'paused', frame: index, error: thrown instanceof VeroneseError ? thrown : new VeroneseError('unreadable-file', `frame ${index}: ${(thrown as Error)?.message}`, { cause: thrown }) });
+      this.#emit({
+        type: 'paused',
+        frame: index,
+        error:
+          thrown instanceof VeroneseError
+            ? thrown
+            : new VeroneseError('unreadable-file', `frame ${index}: ${(thrown as Error)?.message}`, { cause: thrown }),
+      });
       return;
     }
     const failures = ++step.failures;
@@ -730,10 +782,12 @@ export class OpenedClip implements Clip, StepClip {
 }
 
 /** Frees the homes and journals of clips that nobody has any more. */
-const homes = new FinalizationRegistry<{ home: Home; clip: number; journal: ClipJournal; writer: JournalWriter }>(({ journal, writer, ...place }) => {
-  leave(place);
-  void closeJournal(writer, journal);
-});
+const homes = new FinalizationRegistry<{ home: Home; clip: number; journal: ClipJournal; writer: JournalWriter }>(
+  ({ journal, writer, ...place }) => {
+    leave(place);
+    void closeJournal(writer, journal);
+  },
+);
 
 function leave({ home, clip }: { home: Home; clip: number }): void {
   home.perform({ call: 'closeClip', clip }, {}).then(home.release, home.release);
@@ -752,4 +806,3 @@ function isSame(one: WantedFrame | undefined, other: WantedFrame): boolean {
 function isCode(thrown: unknown, ...codes: string[]): thrown is VeroneseError {
   return thrown instanceof VeroneseError && codes.includes(thrown.code);
 }
-

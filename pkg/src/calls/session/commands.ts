@@ -1,6 +1,18 @@
 // What a caller asks of a clip, checked, as messages to the core. What follows from the clip itself (locks, numbers, sizes) is checked there.
 
-import { checkAttached, invalidOption, isArrayOf, isListOf, isNumber, isObject, isWhole, LONGEST_SIDE, optionsObject, UNLABELLED, unknownOf } from '../../common/checks.js';
+import {
+  checkAttached,
+  invalidOption,
+  isArrayOf,
+  isListOf,
+  isNumber,
+  isObject,
+  isWhole,
+  LONGEST_SIDE,
+  optionsObject,
+  UNLABELLED,
+  unknownOf,
+} from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { AnnotationMessage, ClipCommand, DeclarationMessage, DescriptionMessage } from '../messages.js';
 import { taken } from '../taking.js';
@@ -75,7 +87,8 @@ function annotationOf(clip: CommandTarget, given: Record<string, unknown>, wrong
   if (unknown !== undefined) throw wrong(`there is no ${unknown}`);
   const { frame, propagate, object, strokes, mask, labels, own = false, clicks, box } = given;
   if (!isWhole(frame, 0, clip.length - 1)) throw wrong(`'frame' must be a whole number from 0 to ${clip.length - 1}`);
-  if (propagate !== undefined && !PROPAGATIONS.includes(propagate as string)) throw wrong(`'propagate' must be one of ${PROPAGATIONS.map((word) => `'${word}'`).join(', ')}`);
+  if (propagate !== undefined && !PROPAGATIONS.includes(propagate as string))
+    throw wrong(`'propagate' must be one of ${PROPAGATIONS.map((word) => `'${word}'`).join(', ')}`);
   const about = { frame, propagate: propagate as string | undefined };
   const forms = [strokes, mask, labels, clicks === undefined ? box : clicks].filter((form) => form !== undefined);
   if (forms.length !== 1) throw wrong(FORMS);
@@ -89,23 +102,37 @@ function annotationOf(clip: CommandTarget, given: Record<string, unknown>, wrong
   const painted = strokes === undefined ? mask : strokes;
   if (painted === undefined) return { ...about, content: 'prompt', object, ...promptOf(clip, clicks, box, wrong) };
   const image = labelImage(clip, name, painted, wrong);
-  if (image.some((label) => label !== 0 && label !== 1 && label !== UNLABELLED)) throw wrong(`'${name}' must be 1 where the object is, 0 where it is not, and ${UNLABELLED} where that is open`);
+  if (image.some((label) => label !== 0 && label !== 1 && label !== UNLABELLED))
+    throw wrong(`'${name}' must be 1 where the object is, 0 where it is not, and ${UNLABELLED} where that is open`);
   return { ...about, content: name, object, labels: image };
 }
 
 function labelImage({ width, height }: CommandTarget, name: string, given: unknown, wrong: (reason: string) => VeroneseError): Uint8Array {
   if (!isArrayOf(given, 'Uint8Array', 'Uint8ClampedArray')) throw wrong(`'${name}' must be a Uint8Array, one label per pixel`);
   checkAttached(name, given);
-  if (width > 0 && given.length !== width * height) throw wrong(`'${name}' has ${given.length} labels, a frame has ${width}×${height} pixels`);
+  if (width > 0 && given.length !== width * height)
+    throw wrong(`'${name}' has ${given.length} labels, a frame has ${width}×${height} pixels`);
   return taken([given], false)[0] as Uint8Array;
 }
 
-function promptOf(clip: CommandTarget, clicks: unknown, box: unknown, wrong: (reason: string) => VeroneseError): Pick<AnnotationMessage, 'clicks' | 'box'> {
+function promptOf(
+  clip: CommandTarget,
+  clicks: unknown,
+  box: unknown,
+  wrong: (reason: string) => VeroneseError,
+): Pick<AnnotationMessage, 'clicks' | 'box'> {
   const { width = 0, height = 0 } = clip.width > 0 ? clip : { width: LONGEST_SIDE, height: LONGEST_SIDE };
   const isPlace = (at: unknown[]) => isWhole(at[0], 0, width - 1) && isWhole(at[1], 0, height - 1);
-  const isClick = (click: unknown): click is [number, number, 1 | -1] => Array.isArray(click) && click.length === 3 && isPlace(click) && (click[2] === 1 || click[2] === -1);
-  const isBox = (sides: unknown): sides is number[] => Array.isArray(sides) && sides.length === 4 && isPlace(sides) && isWhole(sides[2], 1, width - sides[0]) && isWhole(sides[3], 1, height - sides[1]);
-  if (clicks !== undefined && !isListOf(clicks, isClick)) throw wrong("'clicks' must be a list of [x, y, 1] for pixels of the object and [x, y, -1] for others, within the frame");
+  const isClick = (click: unknown): click is [number, number, 1 | -1] =>
+    Array.isArray(click) && click.length === 3 && isPlace(click) && (click[2] === 1 || click[2] === -1);
+  const isBox = (sides: unknown): sides is number[] =>
+    Array.isArray(sides) &&
+    sides.length === 4 &&
+    isPlace(sides) &&
+    isWhole(sides[2], 1, width - sides[0]) &&
+    isWhole(sides[3], 1, height - sides[1]);
+  if (clicks !== undefined && !isListOf(clicks, isClick))
+    throw wrong("'clicks' must be a list of [x, y, 1] for pixels of the object and [x, y, -1] for others, within the frame");
   if (box !== undefined && !isBox(box)) throw wrong("'box' must be [x, y, width, height] in whole pixels, within the frame");
   return { clicks: (clicks ?? []).flatMap(([x, y, sign]) => [x, y, sign === 1 ? 1 : 0]), box: box ?? [] };
 }
@@ -115,7 +142,8 @@ function descriptionOf(option: string, object: unknown, description: unknown): D
   if (typeof name !== 'string') throw invalidOption('name', 'a text', name);
   if (typeof own !== 'string') throw invalidOption('class', 'a text', own);
   const isLevel = (level: unknown): level is number => isWhole(level, 0, 255);
-  if (colour !== undefined && !(isListOf(colour, isLevel) && colour.length === 3)) throw invalidOption('colour', '[red, green, blue] from 0 to 255', colour);
+  if (colour !== undefined && !(isListOf(colour, isLevel) && colour.length === 3))
+    throw invalidOption('colour', '[red, green, blue] from 0 to 255', colour);
   return { object: objectOf(option, object), name, class: own, colour };
 }
 

@@ -17,7 +17,8 @@ export class ClipFrames {
   constructor(frames: unknown, places: Places | undefined, maxSize: number | undefined) {
     const { length, read } = Object(frames) as { length: unknown; read: unknown };
     const isReadable = typeof read === 'function';
-    if (!isReadable && !Array.isArray(frames)) throw invalidInput('the frames must be a list of pixels, or { length, read(index) }; segmentStream takes frames that come once');
+    if (!isReadable && !Array.isArray(frames))
+      throw invalidInput('the frames must be a list of pixels, or { length, read(index) }; segmentStream takes frames that come once');
     if (!isWhole(length, 0, Infinity)) throw invalidInput("the frames: 'length' must be a whole number");
     const list = isReadable ? [] : [...(frames as unknown[])];
     this.length = length;

@@ -53,7 +53,12 @@ function checked(given: unknown, options: unknown, places: Places) {
     throw invalidOption('journal', 'a name, or an object with read, append and replace', journal);
   }
   const bytes = saved === undefined ? undefined : (taken([checkedBytes('what was saved', saved)], false)[0] as Uint8Array);
-  return { frames: new ClipFrames(given, places, maxSize), journal: journal as string | ClipJournal | undefined, saved: bytes, markUnknown };
+  return {
+    frames: new ClipFrames(given, places, maxSize),
+    journal: journal as string | ClipJournal | undefined,
+    saved: bytes,
+    markUnknown,
+  };
 }
 
 function isJournal(value: unknown): value is ClipJournal {

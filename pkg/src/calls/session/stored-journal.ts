@@ -97,7 +97,11 @@ function opened(): Promise<IDBDatabase> {
 /** Holds the lock of a journal until the returned function is called, or the page is closed. */
 async function lock(name: string): Promise<() => Promise<void>> {
   const { locks } = globalThis.navigator ?? {};
-  if (!locks || !globalThis.indexedDB) throw new VeroneseError('invalid-option', "option 'journal': there is no storage for names here: give an object with read, append and replace");
+  if (!locks || !globalThis.indexedDB)
+    throw new VeroneseError(
+      'invalid-option',
+      "option 'journal': there is no storage for names here: give an object with read, append and replace",
+    );
   return new Promise((resolve, reject) => {
     const held = locks.request(`veronese journal ${name}`, { ifAvailable: true }, (lock) => {
       if (!lock) throw new VeroneseError('invalid-option', `option 'journal': another clip has '${name}' open: close it first`);

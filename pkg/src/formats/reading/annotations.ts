@@ -1,7 +1,15 @@
 // Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
 
 import { unzipSync } from 'fflate';
-import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, AnnotationNote, AnnotationOptions, Annotations, Levels } from '../../../types/formats.js';
+import type {
+  AnnotatedFrame,
+  AnnotationFile,
+  AnnotationFormat,
+  AnnotationNote,
+  AnnotationOptions,
+  Annotations,
+  Levels,
+} from '../../../types/formats.js';
 import {
   checkedBytes,
   entriesOf,
@@ -58,12 +66,16 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: Annot
   }
   const remarks = new Remarks();
   const context = contextOf(all, clip, remarks);
-  const read = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) => naming(source.name, () => read(context)));
+  const read = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) =>
+    naming(source.name, () => read(context)),
+  );
   const found = numbered(read);
   const notes = [...remarks.notes(), ...unknownIn(all, documents), ...found.notes];
   const { frames, boxes } = found;
-  if (frames.size + boxes.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
-  if (boxes.length > 0) notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${boxes.length})` });
+  if (frames.size + boxes.length === 0)
+    throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
+  if (boxes.length > 0)
+    notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${boxes.length})` });
   return { format: first.format, ...found, notes };
 }
 
@@ -92,7 +104,8 @@ function ofPictures(all: readonly Source[], clip: Clip): Annotations {
 /** Texts of YOLO that say that there is nothing: those without a line, beside others. */
 function blankIn(all: readonly Source[], documents: readonly Recognised[]): Recognised[] {
   const folders = new Set(documents.map(({ source }) => folderOf(source.name)));
-  const isBlank = ({ name, bytes }: Source) => /\.txt$/i.test(name) && folders.has(folderOf(name)) && bytes.every((byte) => BEFORE.includes(byte));
+  const isBlank = ({ name, bytes }: Source) =>
+    /\.txt$/i.test(name) && folders.has(folderOf(name)) && bytes.every((byte) => BEFORE.includes(byte));
   return all.filter(isBlank).map((source) => ({ source, format: 'yolo', read: (context) => [readYolo(source, '', context)] }));
 }
 
@@ -150,15 +163,18 @@ class Remarks {
 }
 
 function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, note }: Remarks): Context {
-  const lists = all.filter(({ name }) => NAMES.test(name)).map(({ name, bytes }) => ({
-    folder: folderOf(name),
-    names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
-  }));
+  const lists = all
+    .filter(({ name }) => NAMES.test(name))
+    .map(({ name, bytes }) => ({
+      folder: folderOf(name),
+      names: naming(name, () => (/\.ya?ml$/i.test(name) ? namesInYaml(textOf(bytes)) : textOf(bytes).trim().split(/\s*\n/))),
+    }));
   // The nearest one in a folder around the file.
   lists.sort((a, b) => b.folder.length - a.folder.length);
   const pictures = new Map<string, Source[]>();
   const stem = (name: string) => keyOf(name.replace(/^.*\//s, '').replace(/\.[^.]*$/s, ''));
-  for (const picture of all) if (/\.(png|jpe?g)$/i.test(picture.name)) pictures.set(stem(picture.name), [...(pictures.get(stem(picture.name)) ?? []), picture]);
+  for (const picture of all)
+    if (/\.(png|jpe?g)$/i.test(picture.name)) pictures.set(stem(picture.name), [...(pictures.get(stem(picture.name)) ?? []), picture]);
   return {
     namesOf: (file) => lists.find(({ folder, names }) => file.startsWith(folder) && names.length > 0)?.names ?? [],
     sizeOf(file) {
@@ -177,7 +193,11 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
     },
     classesOf({ name }) {
       const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);
-      return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
+      return list
+        ? textOf(list.bytes)
+            .split('\n')
+            .map((line) => line.trim())
+        : [];
     },
     leaveOut,
     note,
@@ -202,18 +222,22 @@ function recognisedJson(source: Source): Recognised[] {
   const { name, bytes } = source;
   const text = textOf(bytes);
   const document = parsed(text);
-  if (isListOf(document, isTask) && document.length > 0) return [{ source, format: 'label-studio', read: (context) => readLabelStudio(document, name, context) }];
+  if (isListOf(document, isTask) && document.length > 0)
+    return [{ source, format: 'label-studio', read: (context) => readLabelStudio(document, name, context) }];
   if (!isObject(document)) return [];
   const json = document;
   const found = (format: AnnotationFormat, read: (context: Context) => ReadFrame[]): Recognised[] => [{ source, format, read }];
-  if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
+  if ('annotations' in json && 'videos' in json && !('images' in json))
+    return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
   if ('annotations' in json && 'images' in json) return found('coco', (context) => readCoco(json, name, context));
   if (isTask(json)) return found('label-studio', (context) => readLabelStudio([json], name, context));
   return [];
 }
 
 function isTask(value: unknown): value is Record<string, unknown> {
-  return isObject(value) && isObject(value['data']) && ['annotations', 'completions', 'predictions'].some((name) => Array.isArray(value[name]));
+  return (
+    isObject(value) && isObject(value['data']) && ['annotations', 'completions', 'predictions'].some((name) => Array.isArray(value[name]))
+  );
 }
 
 /** JSON, also as Python writes it: what is no number there is nothing here. */
@@ -240,7 +264,8 @@ function nothingIn(files: readonly Pick<Source, 'name'>[]): string {
  */
 function numbered(read: readonly ReadFrame[]): Omit<Annotations, 'format'> {
   const objects = new Map<string, Known & { file: string }>();
-  for (const { file, objects: some } of read) for (const object of some) objects.set(object.key, { file, ...object, ...objects.get(object.key) });
+  for (const { file, objects: some } of read)
+    for (const object of some) objects.set(object.key, { file, ...object, ...objects.get(object.key) });
   const labels = new Map<string, number>();
   const taken = new Set<number>();
   const give = (key: string, label: number) => void (labels.set(key, label), taken.add(label));

@@ -56,7 +56,8 @@ export class Canvas {
       this.#spend(Math.max(0, right - left));
       for (let column = left; column < right; column++) {
         const [u, v] = [column + 0.5 - x, row + 0.5 - y];
-        if (((u * cosine + v * sine) / across) ** 2 + ((v * cosine - u * sine) / down) ** 2 <= 1) this.labels[row * this.width + column] = label;
+        if (((u * cosine + v * sine) / across) ** 2 + ((v * cosine - u * sine) / down) ** 2 <= 1)
+          this.labels[row * this.width + column] = label;
       }
     }
   }

@@ -8,7 +8,7 @@ const LONGEST = 6;
 /** Throws `invalid-input`. Whether the counts are those of a mask is for others to see. */
 export function decompressed(text: string): number[] {
   const counts: number[] = [];
-  for (let at = 0; at < text.length; ) {
+  for (let at = 0; at < text.length;) {
     let value = 0;
     for (let group = 0; ; group++) {
       const bits = text.charCodeAt(at++) - 48;

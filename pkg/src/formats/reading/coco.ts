@@ -68,7 +68,9 @@ export function readYouTubeVis(document: Json, file: string, context: Context): 
     const video = videos.get(of);
     if (!video) throw invalidInput(`annotation ${quoted(id)} is of the video ${quoted(of)}, and there is none`);
     if (!Array.isArray(segmentations) || segmentations.length !== video.names.length) {
-      throw invalidInput(`annotation ${quoted(id)}: "segmentations" must have an entry for each frame, null where the object is not to be seen`);
+      throw invalidInput(
+        `annotation ${quoted(id)}: "segmentations" must have an entry for each frame, null where the object is not to be seen`,
+      );
     }
     const name = categories.get(category);
     const key = isId(id) ? `${videos.size > 1 ? String(of) : ''} track ${id}` : unnumbered.keyOf(name);
@@ -117,7 +119,8 @@ function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, b
   const shape = (drawing: () => Drawing | LeftOut): Shape => placed(place, () => shapeOf(drawing(), objectOf));
   if (isObject(segmentation)) return [shape(() => ({ draw: (canvas, label) => columnsOf(canvas, segmentation, label) }))];
   // Some programs leave out the list around the only polygon, others write an empty one where there is a box alone.
-  const rings: unknown[] = !Array.isArray(segmentation) || segmentation.length === 0 ? [] : segmentation.every(isNumber) ? [segmentation] : segmentation;
+  const rings: unknown[] =
+    !Array.isArray(segmentation) || segmentation.length === 0 ? [] : segmentation.every(isNumber) ? [segmentation] : segmentation;
   const parts = rings.map((ring) =>
     shape(() => {
       if (Array.isArray(ring)) return polygonOf(ring);
@@ -125,7 +128,8 @@ function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, b
     }),
   );
   if (parts.some((part) => 'draw' in part)) return parts;
-  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0))) return [...parts, shape(() => ({ box: bbox.map(Number) }))];
+  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0)))
+    return [...parts, shape(() => ({ box: bbox.map(Number) }))];
   return parts.length > 0 ? parts : [{ leftOut: 'annotations without a mask' }];
 }
 

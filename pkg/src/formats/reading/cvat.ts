@@ -66,7 +66,11 @@ function framesOf(image: XmlElement, file: string, context: Context): ReadFrame[
     return [layered(`image ${quoted(name)}, shape ${at + 1}`, element, () => objectOf(element))];
   });
   if (shapes.length === 0) return [];
-  return [within(`image ${quoted(name)}`, () => frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes, context))];
+  return [
+    within(`image ${quoted(name)}`, () =>
+      frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes, context),
+    ),
+  ];
 }
 
 function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, context: Context): ReadFrame[] {
@@ -79,13 +83,16 @@ function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, 
     for (const element of childrenOf(track)) {
       if (element.attributes['outside'] === '1' || REMARKS.includes(element.name)) continue;
       const index = number(element.attributes['frame']);
-      if (!Number.isInteger(index) || index < 0) throw invalidInput(`track ${quoted(id)}: the frame of a shape must be a whole number from 0`);
+      if (!Number.isInteger(index) || index < 0)
+        throw invalidInput(`track ${quoted(id)}: the frame of a shape must be a whole number from 0`);
       const shapes = frames.get(index) ?? [];
       frames.set(index, shapes);
       shapes.push(layered(`track ${quoted(id)}, frame ${index}`, element, () => known(`track ${id}`, numberOr(id), label)));
     }
   }
-  return [...frames].sort(([a], [b]) => a - b).map(([index, shapes]) => frameOf({ name: context.nameOf(index), file, ...size }, shapes, context));
+  return [...frames]
+    .sort(([a], [b]) => a - b)
+    .map(([index, shapes]) => frameOf({ name: context.nameOf(index), file, ...size }, shapes, context));
 }
 
 /** Of a task, a job, or the tasks of a project. */
@@ -94,7 +101,11 @@ function descendantsOf(element: XmlElement, name: string): XmlElement[] {
 }
 
 function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly Layered[], context: Context): ReadFrame {
-  return frameOfShapes(frame, [...shapes].sort((a, b) => a.z - b.z), context);
+  return frameOfShapes(
+    frame,
+    [...shapes].sort((a, b) => a.z - b.z),
+    context,
+  );
 }
 
 function layered(place: string, element: XmlElement, objectOf: () => Known): Layered {
@@ -117,7 +128,12 @@ function drawing({ name, attributes }: XmlElement): Drawing | LeftOut {
 
 /** The box around one that may be turned, in degrees about its middle. */
 function boxOf(attributes: XmlElement['attributes']): number[] {
-  const [left, top, right, bottom] = ['xtl', 'ytl', 'xbr', 'ybr'].map((side) => number(attributes[side])) as [number, number, number, number];
+  const [left, top, right, bottom] = ['xtl', 'ytl', 'xbr', 'ybr'].map((side) => number(attributes[side])) as [
+    number,
+    number,
+    number,
+    number,
+  ];
   const angle = ((number(attributes['rotation']) || 0) * Math.PI) / 180;
   const [cosine, sine] = [Math.abs(Math.cos(angle)), Math.abs(Math.sin(angle))];
   const [width, height] = [right - left, bottom - top];

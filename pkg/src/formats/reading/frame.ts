@@ -79,7 +79,11 @@ export interface Context {
  * A frame of shapes, drawn one after another. Inside a box nothing is known of the ground, nor where a shape was not read: in the whole frame,
  * if that has no place.
  */
-export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes'>, shapes: readonly Shape[], { leaveOut }: Context): ReadFrame {
+export function frameOfShapes(
+  frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes'>,
+  shapes: readonly Shape[],
+  { leaveOut }: Context,
+): ReadFrame {
   const masks = shapes.filter((shape) => 'draw' in shape);
   const seen = new Set(masks.map(({ key }) => key));
   const whole: PixelBox = [0, 0, frame.width, frame.height];
@@ -106,7 +110,9 @@ export function frameOfShapes(frame: Omit<ReadFrame, 'objects' | 'draw' | 'boxes
   };
   const isOpen = masks.length === 0 && (open.length > 0 || shapes.some((shape) => 'leftOut' in shape));
   const isSeen = ({ key }: Known) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key);
-  const objects = shapes.flatMap((shape) => ('leftOut' in shape || !isSeen(shape) ? [] : [known(shape.key, shape.number, shape.name, shape.original)]));
+  const objects = shapes.flatMap((shape) =>
+    'leftOut' in shape || !isSeen(shape) ? [] : [known(shape.key, shape.number, shape.name, shape.original)],
+  );
   return { ...frame, objects, draw, ...(boxes.length > 0 && { boxes }), ...(isOpen && { isOpen }) };
 }
 
@@ -130,7 +136,10 @@ export function boxAround(points: readonly (readonly unknown[])[]): [number, num
 export function polygonOf(ring: readonly unknown[]): Drawing | LeftOut {
   if (ring.length > 4 || ring.length % 2 === 1) return { draw: (canvas, label) => canvas.polygon(ring, label) };
   const [x, y, width, height] = boxAround([ring.slice(0, 2), ring.slice(-2)]);
-  return { leftOut: 'polygons of fewer than three vertices', place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)] };
+  return {
+    leftOut: 'polygons of fewer than three vertices',
+    place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)],
+  };
 }
 
 /** The shape of a drawing; what is left out is of no object. */
@@ -163,7 +172,12 @@ export function quoted(value: unknown): string {
 /** An object that has the number in the file, or another name for it; what is neither a number nor text is none. */
 export function known(key: string, number: unknown, name: string | undefined, original: unknown = number): Known {
   const isCalled = typeof original === 'string' || Number.isFinite(original);
-  return { key, ...(isObjectNumber(number) && { number }), ...(isCalled && { original: original as number | string }), ...(name !== undefined && { name }) };
+  return {
+    key,
+    ...(isObjectNumber(number) && { number }),
+    ...(isCalled && { original: original as number | string }),
+    ...(name !== undefined && { name }),
+  };
 }
 
 /** Keys of objects without a number: the second car of one frame is the second car of another one. Made anew for each frame. */
@@ -220,8 +234,11 @@ export function stemOf(image: unknown): string {
 }
 
 export function checkSize(width: unknown, height: unknown, whose: string): { width: number; height: number } {
-  if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS) return { width, height };
-  throw invalidInput(`the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_LABEL_SIDE}, of ${MOST_LABELS} pixels at most`);
+  if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS)
+    return { width, height };
+  throw invalidInput(
+    `the width and height of ${whose} must be whole numbers from 1 to ${LONGEST_LABEL_SIDE}, of ${MOST_LABELS} pixels at most`,
+  );
 }
 
 /** A box inside the frame. */

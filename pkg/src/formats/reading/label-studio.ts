@@ -63,8 +63,13 @@ function resultsOf({ annotations, completions = annotations, predictions }: Json
 function imageOf({ data }: Json): string {
   const texts = Object.values(isObject(data) ? data : {}).filter((value) => typeof value === 'string');
   const path = texts.find((text) => /\.\w+$/.test(text)) ?? texts[0] ?? '';
-  const name = path.replace(/^.*[?&]d=/s, '').replace(/[?#].*$/s, '').replace(/^.*\//s, '');
-  return decoded(name).replace(/^.*\//s, '').replace(/^[0-9a-f]{8}-(?=.)/, '');
+  const name = path
+    .replace(/^.*[?&]d=/s, '')
+    .replace(/[?#].*$/s, '')
+    .replace(/^.*\//s, '');
+  return decoded(name)
+    .replace(/^.*\//s, '')
+    .replace(/^[0-9a-f]{8}-(?=.)/, '');
 }
 
 function decoded(text: string): string {
@@ -78,7 +83,11 @@ function decoded(text: string): string {
 function drawing(type: string, value: Json, { width, height }: { width: number; height: number }): Drawing | LeftOut {
   if (type === 'brushlabels') {
     const { rle } = value;
-    const bytes = isArrayOf(rle, 'Uint8Array') ? rle : isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255)) ? Uint8Array.from(rle) : undefined;
+    const bytes = isArrayOf(rle, 'Uint8Array')
+      ? rle
+      : isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255))
+        ? Uint8Array.from(rle)
+        : undefined;
     if (value['format'] !== 'rle' || !bytes) throw invalidInput('a brush must have run lengths');
     return { draw: (canvas, label) => canvas.stamp(unpacked(bytes as Uint8Array, width * height), label) };
   }
@@ -96,8 +105,15 @@ function drawing(type: string, value: Json, { width, height }: { width: number; 
   if (type !== 'rectanglelabels') return { leftOut: `results of type ${quoted(type)}` };
   const [cosine, sine] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
   // It is turned about its first corner.
-  const corners = [[0, 0], [across, 0], [across, down], [0, down]] as const;
-  return { box: angle === 0 ? [x, y, across, down] : boxAround(corners.map(([u, v]) => [x + u * cosine - v * sine, y + u * sine + v * cosine])) };
+  const corners = [
+    [0, 0],
+    [across, 0],
+    [across, down],
+    [0, down],
+  ] as const;
+  return {
+    box: angle === 0 ? [x, y, across, down] : boxAround(corners.map(([u, v]) => [x + u * cosine - v * sine, y + u * sine + v * cosine])),
+  };
 }
 
 /** The pixels that are not transparent, from runs of RGBA bytes as @thi.ng/rle-pack packs them. Throws `invalid-input`. */
@@ -114,7 +130,7 @@ function unpacked(bytes: Uint8Array, pixels: number): Uint8Array {
   const word = read(5) + 1;
   const lengths = [0, 1, 2, 3].map(() => read(4) + 1);
   const mask = new Uint8Array(pixels);
-  for (let k = 0; k < size; ) {
+  for (let k = 0; k < size;) {
     const isRun = read(1) === 1;
     const end = k + read(lengths[read(2)] as number) + 1;
     if (end > size) throw invalidInput('the run lengths of a brush are damaged');

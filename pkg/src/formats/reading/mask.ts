@@ -1,7 +1,17 @@
 // One mask in another form than labels: a PNG file, COCO's run lengths, or the pixels of a picture.
 
 import type { LabelImage, Levels, MaskSource } from '../../../types/formats.js';
-import { checkedBytes, entriesOf, invalidInput, invalidOption, isObject, isWhole, LONGEST_SIDE, reading, UNLABELLED } from '../../common/checks.js';
+import {
+  checkedBytes,
+  entriesOf,
+  invalidInput,
+  invalidOption,
+  isObject,
+  isWhole,
+  LONGEST_SIDE,
+  reading,
+  UNLABELLED,
+} from '../../common/checks.js';
 import { VeroneseError, veroneseError } from '../../common/errors.js';
 import { davisPalette } from '../../common/palette.js';
 import { decodeIndices } from '../png-reader.js';
@@ -48,13 +58,22 @@ export function labelsOfPixels(rgba: Uint8Array, width: unknown, height: unknown
     throw invalidInput('must have RGBA pixels that fill its width and height');
   }
   const byte = (p: number, channel: number) => rgba[4 * p + channel] as number;
-  const colours = Int32Array.from({ length: width * height }, (_, p) => (byte(p, 3) === 0 ? -1 : numberOf([byte(p, 0), byte(p, 1), byte(p, 2)])));
+  const colours = Int32Array.from({ length: width * height }, (_, p) =>
+    byte(p, 3) === 0 ? -1 : numberOf([byte(p, 0), byte(p, 1), byte(p, 2)]),
+  );
   const greys = Array.from({ length: 256 }, (_, level) => numberOf([level, level, level]));
   const isGrey = colours.every((colour) => colour === -1 || colour === greys[colour & 255]);
   // Of colours that the palette has twice the lower index counts.
   const palette = isGrey ? greys : davisPalette().map(numberOf);
-  if (isGrey && levels === undefined) checkCrisp(colours.map((colour) => Math.max(0, colour) & 255), { width, height }, { what: 'level', ground: 0, white: UNLABELLED });
-  const meaning = new Map(palette.map((colour, index) => [colour, isGrey && typeof levels === 'number' ? Number(index >= levels) : index] as const).reverse()).set(-1, UNLABELLED);
+  if (isGrey && levels === undefined)
+    checkCrisp(
+      colours.map((colour) => Math.max(0, colour) & 255),
+      { width, height },
+      { what: 'level', ground: 0, white: UNLABELLED },
+    );
+  const meaning = new Map(
+    palette.map((colour, index) => [colour, isGrey && typeof levels === 'number' ? Number(index >= levels) : index] as const).reverse(),
+  ).set(-1, UNLABELLED);
   const labels = Uint8Array.from(colours, (colour, p) => {
     const label = meaning.get(colour);
     if (label !== undefined) return label;
@@ -71,7 +90,8 @@ function numberOf([r, g, b]: readonly [number, number, number]): number {
 export function labelsOfRle(rle: unknown, id: number): LabelImage {
   const { size, counts } = Object(rle) as Record<string, unknown>;
   const [height, width] = Array.isArray(size) && size.length === 2 ? (size as unknown[]) : [];
-  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw invalidInput('must have an rle with a size, [height, width]');
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE))
+    throw invalidInput('must have an rle with a size, [height, width]');
   const labels = new Uint8Array(width * height);
   let at = 0;
   for (const [k, count] of runsOf(counts).entries()) {

@@ -41,11 +41,13 @@ interface Reading {
 
 /** Frames of masks, and what was assumed of the files. */
 export function readMasks(sources: readonly Source[], levels: Levels | undefined): { frames: ReadFrame[]; notes: AnnotationNote[] } {
-  const files = sources.map((source) => naming(source.name, (): MaskFile => {
-    const values = valuesOf(source, levels);
-    const { width, height } = values;
-    return { source, levels, width, height, ...readingOf(values, levels) };
-  }));
+  const files = sources.map((source) =>
+    naming(source.name, (): MaskFile => {
+      const values = valuesOf(source, levels);
+      const { width, height } = values;
+      return { source, levels, width, height, ...readingOf(values, levels) };
+    }),
+  );
   const folders = sources.map(({ name }) => /(?:^|\/)(\d+)\/[^/]+$/.exec(name)?.[1]);
   const isOne = ({ meaning }: MaskFile) => [...meaning.keys()].filter((value) => value !== 0).length <= 1;
   if (files.every(isOne) && folders.every((folder) => folder !== undefined)) {
@@ -68,7 +70,14 @@ interface MaskFile extends Reading {
 function closedOf(file: MaskFile): MaskFile {
   const [white] = [...file.meaning.keys()].filter((value) => value !== 0) as [number];
   const note = { code: 'mask-white', message: `${white} says nothing: there are numbers of objects in other files` };
-  return { ...file, meaning: new Map<number, typeof UNLABELLED | 0>([[0, 0], [white, UNLABELLED]]), note };
+  return {
+    ...file,
+    meaning: new Map<number, typeof UNLABELLED | 0>([
+      [0, 0],
+      [white, UNLABELLED],
+    ]),
+    note,
+  };
 }
 
 function frameOf({ source, levels, width, height, meaning }: MaskFile): ReadFrame {
@@ -139,24 +148,42 @@ function valuesOf({ bytes }: Source, levels: Levels | undefined): Values {
   if (typeof levels !== 'number') return found;
   const brightest = (colour: number) => Math.max(colour >> 16, (colour >> 8) & 255, colour & 255);
   const { kind, values } = found.seen;
-  return { ...found, isColour: false, white: UNLABELLED, values: values.map((value) => ((kind === 'level' ? value : brightest(value)) >= levels ? UNLABELLED : 0)) };
+  return {
+    ...found,
+    isColour: false,
+    white: UNLABELLED,
+    values: values.map((value) => ((kind === 'level' ? value : brightest(value)) >= levels ? UNLABELLED : 0)),
+  };
 }
 
 /** Transparent pixels are background; without any colours of its own, what is not transparent is one object. */
 function direct({ width, height, channels, depth, samples }: Samples): Values {
   const byte = (at: number) => Math.round((255 * (samples[at] as number)) / (2 ** depth - 1));
   let isGrey = true;
-  for (let at = 0; channels > 2 && isGrey && at < samples.length; at += channels) isGrey = samples[at] === samples[at + 1] && samples[at] === samples[at + 2];
+  for (let at = 0; channels > 2 && isGrey && at < samples.length; at += channels)
+    isGrey = samples[at] === samples[at + 1] && samples[at] === samples[at + 2];
   const colours = new Int32Array(width * height);
   for (let p = 0, at = 0; p < colours.length; p++, at += channels) {
     colours[p] = isGrey ? (samples[at] as number) : (byte(at) << 16) | (byte(at + 1) << 8) | byte(at + 2);
   }
   const alphaOf = (p: number) => (channels % 2 === 0 ? byte(channels * (p + 1) - 1) : UNLABELLED);
   // Of 8 bits, each byte is there twice.
-  const isRounded = !isGrey && depth === 16 && samples.some((value, at) => value % 257 !== 0 && at % channels < 3 && alphaOf(Math.floor(at / channels)) > 0);
+  const isRounded =
+    !isGrey &&
+    depth === 16 &&
+    samples.some((value, at) => value % 257 !== 0 && at % channels < 3 && alphaOf(Math.floor(at / channels)) > 0);
   const of = (values: Int32Array): Values => {
     const white = isGrey ? 2 ** Math.max(depth, 8) - 1 : WHITE;
-    return { isColour: !isGrey, values, seen: { kind: isGrey ? 'level' : 'colour', values }, isPlain: true, white, isRounded, width, height };
+    return {
+      isColour: !isGrey,
+      values,
+      seen: { kind: isGrey ? 'level' : 'colour', values },
+      isPlain: true,
+      white,
+      isRounded,
+      width,
+      height,
+    };
   };
   if (channels % 2 === 1) return of(colours);
   const alpha = colours.map((_, p) => alphaOf(p));
@@ -164,7 +191,14 @@ function direct({ width, height, channels, depth, samples }: Samples): Values {
   if (!alpha.includes(0) || opaque.size === 0) return of(colours);
   if (opaque.size > 1 && opaque.size <= OF_A_PICTURE) return of(colours.map((colour, p) => (alpha[p] === 0 ? BLACK : colour)));
   const note = { code: 'mask-alpha', message: 'what is not transparent is the object' };
-  return { ...of(alpha.map((level) => (level > 0 ? UNLABELLED : 0))), isColour: false, white: UNLABELLED, isRounded: false, seen: { kind: 'level', values: alpha }, note };
+  return {
+    ...of(alpha.map((level) => (level > 0 ? UNLABELLED : 0))),
+    isColour: false,
+    white: UNLABELLED,
+    isRounded: false,
+    seen: { kind: 'level', values: alpha },
+    note,
+  };
 }
 
 /** Indices are numbers of objects, 0 the background, unless black has another index. */
@@ -182,10 +216,21 @@ function indexed({ width, height, samples, alpha }: Samples, palette: Uint8Array
   if (isMoved) return { isColour: true, values: seen.values, seen, isPlain: true, white: WHITE, width, height };
   const isGrey = used.every((index) => colourOf(index) === (colourOf(index) & 255) * 0x010101);
   const values = indices.map((index) => (isClear(index) ? 0 : index));
-  return { isColour: false, values, seen: isGrey ? { kind: 'level', values: seen.values.map((colour) => colour & 255) } : seen, isPlain: isGrey, white: UNLABELLED, width, height };
+  return {
+    isColour: false,
+    values,
+    seen: isGrey ? { kind: 'level', values: seen.values.map((colour) => colour & 255) } : seen,
+    isPlain: isGrey,
+    white: UNLABELLED,
+    width,
+    height,
+  };
 }
 
-function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values, levels: Levels | undefined): Reading {
+function readingOf(
+  { isColour, isRounded, values, seen, isPlain, width, height, white, note }: Values,
+  levels: Levels | undefined,
+): Reading {
   if (isColour && isRounded) throw invalidInput('it has colours of 16 bits that 8 do not hold: save it with 8, or as grey levels');
   const all = [...valuesIn(values)];
   const ground = isColour && !all.includes(BLACK) ? WHITE : BLACK;
@@ -197,7 +242,10 @@ function readingOf({ isColour, isRounded, values, seen, isPlain, width, height, 
   const [object] = objects;
   if (objects.length === 1 && object === white && (all.includes(0) || typeof levels === 'number')) {
     const taken = { code: 'mask-white', message: `${white} is the object, number 1, and 0 the background` };
-    const meaning = new Map<number, Known | 0>([[0, 0], [white, known('number 1', 1, undefined)]]);
+    const meaning = new Map<number, Known | 0>([
+      [0, 0],
+      [white, known('number 1', 1, undefined)],
+    ]);
     return { meaning, ...(levels === undefined && { note: note ?? taken, isOpen: note === undefined }) };
   }
   const meaningOf = (value: number) => (value === 0 ? 0 : value === white ? UNLABELLED : known(`number ${value}`, value, undefined));

@@ -34,7 +34,8 @@ export function isMots(text: string): boolean {
 export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefined {
   if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return undefined;
   const seen = new Set<number>();
-  for (const { name, bytes } of pictures) for (const level of naming(name, () => decoding('it', () => decodePng(bytes))).samples) seen.add(level);
+  for (const { name, bytes } of pictures)
+    for (const level of naming(name, () => decoding('it', () => decodePng(bytes))).samples) seen.add(level);
   seen.delete(0);
   const [first] = seen;
   // White on black is no number, and what is ignored alone an object.
@@ -60,14 +61,19 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
     else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
   }
   if (firstFrame === undefined && !frames.has(0) && !frames.has(count ?? 0)) {
-    context.note({ code: 'first-frame-assumed', message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame` });
+    context.note({
+      code: 'first-frame-assumed',
+      message: `'${source.name}': nothing tells whether its first frame is 0 or 1, taken is 1: say with --first-frame`,
+    });
   }
   const first = frames.has(0) ? 0 : (firstFrame ?? 1);
-  return [...frames].sort(([a], [b]) => a - b).map(([frame, { shapes, ignored, ...size }]) => {
-    const read = frameOfShapes({ name: nameOf(frame - first), file: source.name, ...size }, shapes, context);
-    const draw: ReadFrame['draw'] = (canvas, labelOf) => (read.draw(canvas, labelOf), ignored.forEach((region) => region(canvas)));
-    return { ...read, draw };
-  });
+  return [...frames]
+    .sort(([a], [b]) => a - b)
+    .map(([frame, { shapes, ignored, ...size }]) => {
+      const read = frameOfShapes({ name: nameOf(frame - first), file: source.name, ...size }, shapes, context);
+      const draw: ReadFrame['draw'] = (canvas, labelOf) => (read.draw(canvas, labelOf), ignored.forEach((region) => region(canvas)));
+      return { ...read, draw };
+    });
 }
 
 export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {

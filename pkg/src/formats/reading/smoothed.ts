@@ -27,7 +27,9 @@ export function checkCrisp(values: Int32Array, grid: Grid, kind: Kind): void {
   const count = smoothedValues(values, grid, kind);
   if (count === 0) return;
   const found = `${count === MOST ? 'more than ' : ''}${count} ${kind.what}${count === 1 ? '' : 's'} only between others`;
-  throw invalidInput(`has ${found}, as smoothed edges or lossy compression give: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`);
+  throw invalidInput(
+    `has ${found}, as smoothed edges or lossy compression give: save it without, or say with --levels 128 that those from 128 on are the object, with --levels exact that each is one`,
+  );
 }
 
 /** Grey levels as labels: those from a level on are object 1 where that is given, else each is a number. Throws as {@link checkCrisp} does. */
@@ -42,14 +44,17 @@ export function crispLevels(levels: Uint8Array, grid: Grid, meaning: Levels | un
  */
 function smoothedValues(values: Int32Array, grid: Grid, { ground, white }: Kind): number {
   const inside = new Set([ground]);
-  for (let at = 0; at < values.length; at++) if (!inside.has(values[at] as number) && isInside(values, grid, at)) inside.add(values[at] as number);
+  for (let at = 0; at < values.length; at++)
+    if (!inside.has(values[at] as number) && isInside(values, grid, at)) inside.add(values[at] as number);
   const loose = new Set<number>();
   let [count, crowded, crisp] = [0, 0, 0];
   for (let at = 0; at < values.length; at++) {
     const value = values[at] as number;
     const isLoose = !inside.has(value);
     if (!isLoose && value === values[at - 1] && value === values[at + grid.width]) continue;
-    const others = around(grid, at).map((other) => values[other] as number).filter((other) => other !== value);
+    const others = around(grid, at)
+      .map((other) => values[other] as number)
+      .filter((other) => other !== value);
     if (!isLoose) {
       if (others.some((other) => inside.has(other))) crisp++;
       continue;
@@ -77,7 +82,8 @@ function around({ width, height }: Grid, at: number): number[] {
   const [x, y] = [at % width, Math.floor(at / width)];
   const all: number[] = [];
   for (let row = Math.max(0, y - 1); row <= Math.min(height - 1, y + 1); row++) {
-    for (let column = Math.max(0, x - 1); column <= Math.min(width - 1, x + 1); column++) if (row * width + column !== at) all.push(row * width + column);
+    for (let column = Math.max(0, x - 1); column <= Math.min(width - 1, x + 1); column++)
+      if (row * width + column !== at) all.push(row * width + column);
   }
   return all;
 }

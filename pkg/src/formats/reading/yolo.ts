@@ -2,7 +2,18 @@
 // text without lines says that there is nothing.
 
 import { invalidInput } from '../../common/checks.js';
-import { type Context, type Drawing, frameOfShapes, known, placed, type ReadFrame, type Shape, type Source, stemOf, Unnumbered } from './frame.js';
+import {
+  type Context,
+  type Drawing,
+  frameOfShapes,
+  known,
+  placed,
+  type ReadFrame,
+  type Shape,
+  type Source,
+  stemOf,
+  Unnumbered,
+} from './frame.js';
 
 /** How far outside a share may be: outlines are rounded, and moved. */
 const SLACK = 0.01;
@@ -23,7 +34,8 @@ export function readYolo({ name: file }: Source, text: string, context: Context)
       placed(`line ${at + 1}`, () => {
         const line = lineOf(written);
         if (!line) throw invalidInput('it must have the number of a class, then a box, or three vertices or more');
-        if (line.shares.some((share) => share < -SLACK || share > 1 + SLACK)) throw invalidInput('its numbers are no shares of the sides, from 0 to 1');
+        if (line.shares.some((share) => share < -SLACK || share > 1 + SLACK))
+          throw invalidInput('its numbers are no shares of the sides, from 0 to 1');
         const called = names[line.class] ?? `class-${line.class}`;
         const places = line.shares.map((share, k) => share * (k % 2 === 0 ? width : height)) as [number, number, number, number];
         return { ...known(unnumbered.keyOf(called), undefined, called), ...drawing(places) };
@@ -51,7 +63,9 @@ export function namesInYaml(text: string): string[] {
   const [, within = ''] = /^names[ \t]*:((?:.*[[{][^\]}]*)|(?:.*\n(?=[ \t\r\n#-]|\d+:))*.*)/m.exec(text) ?? [];
   const isFlow = /^\s*[[{]/.test(within);
   const names: string[] = [];
-  const entry = isFlow ? /(?:(\d+)\s*:\s*)?("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s,[{][^,]*)/g : /^[ \t]*(?:-|(\d+)[ \t]*:)[ \t]*("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s#][^#\r\n]*)/gm;
+  const entry = isFlow
+    ? /(?:(\d+)\s*:\s*)?("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s,[{][^,]*)/g
+    : /^[ \t]*(?:-|(\d+)[ \t]*:)[ \t]*("(?:\\.|[^"])*"|'(?:''|[^'])*'|[^\s#][^#\r\n]*)/gm;
   for (const [, number = names.length, name = ''] of within.matchAll(entry)) names[Number(number)] = plain(name.trim());
   return names;
 }
