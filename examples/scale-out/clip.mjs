@@ -99,7 +99,7 @@ export async function performClip(segmenter, { job, folder, out, options }) {
     if (!FINAL.has(error.code)) throw error;
     await writeWhole(join(place, 'clip.json'), recordOf(job, { error: { code: error.code, message: error.message } }));
   } finally {
-    clip.close();
+    await clip.close();
   }
   await rm(pairsPlaceOf(out, job), { recursive: true, force: true });
   return { did: true, known: Math.max(0, names.length - 1 - solved), solved };
