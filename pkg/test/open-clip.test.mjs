@@ -114,6 +114,14 @@ describe('a clip', () => {
     assert.equal((await clip.labels(1)).objects.find(({ id }) => id === 3).pixels, 36);
   });
 
+  test('gives numbers of new objects one after another', async (t) => {
+    const clip = await segmented(t);
+    const steps = [2, 12, 22].map((left) => clip.annotate({ frame: 1, object: clip.nextObject, mask: rectangle([left, 2, 6, 6], 1, 0), propagate: 'none' }));
+    assert.deepEqual([clip.nextObject, clip.steps.waiting], [5, 3]);
+    for (const step of steps) await step;
+    assert.deepEqual([clip.objects.map(({ number }) => number), clip.nextObject, clip.steps.waiting], [[1, 2, 3, 4], 5, 0]);
+  });
+
   test('does what each other command says, and undoes it', async (t) => {
     const clip = await segmented(t);
     const found = await labelsOf(clip);

@@ -319,8 +319,8 @@ export type ClipClick = readonly [x: number, y: number, sign: 1 | -1];
  *
  * - `strokes`, over earlier strokes of the object in the frame: 1 where the object is, 0 where it is not, 255 where that is left open.
  * - `mask`, in place of earlier strokes of the object in the frame: the same values.
- * - `labels`, a map of objects by number: 0 where none of those is that it names, 255 where that is left open. A map of 0 and 255 alone erases all
- *   objects at its zeros. `own`: the numbers are yours, and an object found automatically under one of them gets the lowest free number.
+ * - `labels`, a map of the frame: the number of an object, 0 for the background, 255 where that is left open. In other frames the objects that it
+ *   names follow, and no others. A map of 0 and 255 alone erases all objects at its zeros. `own`: the numbers are yours, and an object found automatically under one of them gets the lowest free number.
  * - `clicks` and `box`, which together point to one object: its mask is found. It needs a box or a click that is its own. Those that belong to it
  *   are in the box, if there is one. They take the place of earlier ones of the object in the frame; without any, those are taken back.
  *
@@ -448,7 +448,7 @@ export interface Clip {
   readonly frames: readonly ClipFrameStatus[];
   /** How many steps can be undone and redone, and how many have not taken effect. */
   readonly steps: { readonly undo: number; readonly redo: number; readonly waiting: number };
-  /** The lowest number that no object has had; 0 if none is left. */
+  /** The lowest number that no object has had, and none will have by what was given; 0 if none is left. */
   readonly nextObject: number;
   /** Whether a part of the journal could not be read: steps after it are lost. The journal's own copy of all of it is kept. */
   readonly isDamaged: boolean;

@@ -13,7 +13,7 @@ import type {
   Pixels,
   Segmentation,
 } from '../../../types/index.js';
-import { checkedBytes, entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../../common/checks.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading, UNLABELLED } from '../../common/checks.js';
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import { checkCount } from '../clip/frames.js';
 import { type Seen, Tracks, seenIn, sized } from '../clip/tracks.js';
@@ -173,11 +173,22 @@ export class OpenedClip implements Clip, StepClip {
   }
 
   get steps(): Clip['steps'] {
-    return this.#steps;
+    const { undo, redo, waiting } = this.#steps;
+    return { undo, redo, waiting: waiting + this.#unanswered().length };
+  }
+
+  /** The steps that the core does not have yet. */
+  #unanswered(): Step[] {
+    return [...this.#given].filter(({ number }) => number === 0);
   }
 
   get nextObject(): number {
-    return this.#status.nextObject;
+    const { nextObject, objects } = this.#status;
+    const coming = new Set(this.#unanswered().flatMap((step) => step.objects));
+    if (coming.size === 0) return nextObject;
+    const isFree = (number: number) => number >= nextObject && !coming.has(number) && !objects.some((object) => object.number === number);
+    const free = nextObject === 0 ? [] : Array.from({ length: UNLABELLED - 1 }, (_, k) => k + 1).filter(isFree);
+    return free[0] ?? 0;
   }
 
   segment(options?: Parameters<Clip['segment']>[0]): ClipStep {
@@ -413,13 +424,10 @@ export class OpenedClip implements Clip, StepClip {
       return this.#failed(thrown);
     }
     const step = new Step(this, { range, frame: commands.frameOfCommand(command) });
+    step.objects = commands.objectsOfCommand(command);
     this.#wake();
     // A copy: it is given again if the home is lost.
-    const task = (clip: number): ClipTask => ({
-      call: 'applyClip',
-      clip,
-      command: structuredClone(command.type === 'split' ? { ...command, new: this.nextObject } : command),
-    });
+    const task = (clip: number): ClipTask => ({ call: 'applyClip', clip, command: structuredClone(command) });
     this.#given.add(step);
     this.#send<ClipAnswer>(task).then(
       (answer) => {

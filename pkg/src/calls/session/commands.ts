@@ -161,6 +161,13 @@ export function frameOfCommand(command: ClipCommand): number | undefined {
   return command.type === 'clear' || command.type === 'split' ? command.frame : undefined;
 }
 
+/** The objects that a command may make. */
+export function objectsOfCommand(command: ClipCommand): number[] {
+  if (command.type === 'split') return [command.new];
+  const annotations = command.type === 'annotate' || command.type === 'replace' ? command.annotations : [];
+  return annotations.flatMap(({ object, labels }) => (object !== undefined ? [object] : [...new Set(labels)]));
+}
+
 export function frameOf({ length }: Pick<CommandTarget, 'length'>, option: string, frame: unknown): number {
   if (isWhole(frame, 0, length - 1)) return frame;
   const found = isNumber(frame) ? frame : `a value of type ${typeof frame}`;

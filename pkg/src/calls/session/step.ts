@@ -44,6 +44,8 @@ export class Step implements ClipStep {
   /** How many frames it has taken, if it annotates. */
   visits = 0;
   isCancelled = false;
+  /** The objects that it may make. */
+  objects: readonly number[] = [];
   readonly range: StepSubject['range'];
   readonly frame: StepSubject['frame'];
   readonly #clip: StepClip;
