@@ -425,7 +425,9 @@ describe('an interrupted clip', { skip: process.platform === 'win32' }, () => {
   test('goes on with them, and not with damaged ones, those of other options or of other frames', async () => {
     await same([copy('whole')], [path('straight')]);
     const damaged = copy('damaged');
-    writeFileSync(join(damaged, '.clip', 'log'), log(out).fill(7, log(out).length / 2, log(out).length / 2 + 9));
+    const content = log(out);
+    const middle = Math.floor(content.length / 2);
+    writeFileSync(join(damaged, '.clip', 'log'), content.fill(7, middle, middle + 9));
     await same([damaged], [path('straight')]);
     await same([copy('options'), '--motions', '2'], [path('straight-options'), '--motions', '2']);
     writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
