@@ -552,7 +552,16 @@ export function pixelsOf(page: Page, selector: string): Promise<CanvasPixels> {
 }
 
 async function pixelsIn(picture: Locator): Promise<CanvasPixels> {
-  const { width, height, base64 } = await picture.evaluate((source: HTMLCanvasElement | HTMLImageElement) => {
+  const { width, height, base64 } = await picture.evaluate(async (source: HTMLCanvasElement | HTMLImageElement) => {
+    // The page may give the image another file meanwhile.
+    for (let attempt = 0; source instanceof HTMLImageElement; attempt++) {
+      try {
+        await source.decode();
+        break;
+      } catch (error) {
+        if (attempt === 20) throw error;
+      }
+    }
     const { width, height } = source instanceof HTMLImageElement ? { width: source.naturalWidth, height: source.naturalHeight } : source;
     // Reads from a copy: frequent reads change how a browser stores a canvas.
     const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true })!;
@@ -564,7 +573,6 @@ async function pixelsIn(picture: Locator): Promise<CanvasPixels> {
 
 /** The RGBA bytes of an `<img>`. */
 export async function pixelsOfPicture(picture: Locator): Promise<Uint8Array> {
-  await picture.evaluate((image: HTMLImageElement) => image.decode());
   return (await pixelsIn(picture)).data;
 }
 
