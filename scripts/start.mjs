@@ -60,7 +60,8 @@ function parse(args) {
 /** Segments the real pair with the command line tool, as a user would. */
 async function segmentSample() {
   const frames = ['first.png', 'second.png'].map((name) => join(SAMPLE, name));
-  const args = ['pkg/bin/veronese.js', 'pair', ...frames, '--out', OUT, '--overlay'].map((arg) => relativeToRoot(arg));
+  // What another version has written there is replaced.
+  const args = ['pkg/bin/veronese.js', 'pair', ...frames, '--out', OUT, '--overlay', '--force'].map((arg) => relativeToRoot(arg));
   console.log(`\nnode ${args.join(' ')}`);
   const { code, text, stdout } = await run(process.execPath, args, { output: 'collect' });
   if (code !== 0) {
