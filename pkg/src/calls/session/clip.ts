@@ -106,6 +106,9 @@ export class OpenedClip implements Clip, StepClip {
   /** Whether one motion was asked for: then nobody asks why there is no object. */
   #isOneMotion = false;
   readonly #listeners = new Set<(event: ClipEvent) => void>();
+  /** Why the last home was lost. */
+  #lost: VeroneseError | undefined;
+  /** Why nothing more is taken, and why the clip is closed. */
   #closing: VeroneseError | undefined;
   #closed: VeroneseError | undefined;
   #journalClosed: Promise<void> = Promise.resolve();
@@ -514,9 +517,6 @@ export class OpenedClip implements Clip, StepClip {
       }
     }
   }
-
-  /** Why the last home was lost. */
-  #lost: VeroneseError | undefined;
 
   /** Opens the clip again, from its journal. Steps that had not taken effect go on. */
   async #revive(): Promise<{ home: Home; clip: number }> {
