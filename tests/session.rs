@@ -236,6 +236,54 @@ fn masks_are_those_of_annotations_of_a_segmented_clip() {
 }
 
 #[test]
+fn annotations_are_returned_as_they_were_given() {
+    for (name, command, _) in pairs_of_annotations() {
+        let Command::Annotate(given) = &command else { continue };
+        let mut clip = start();
+        settle(&mut clip, command.clone()).unwrap();
+        let Annotation { frame, content, spread } = &given[0];
+        let returned = match content {
+            Content::Mask { object, labels } => Content::Strokes { object: *object, labels: labels.clone() },
+            Content::Given(labels) => Content::Labels(labels.clone()),
+            other => other.clone(),
+        };
+        assert_eq!(clip.annotations(*frame), [Annotation { frame: *frame, content: returned, spread: *spread }], "{name}");
+        assert!((0..COUNT).all(|index| index == *frame || clip.annotations(index).is_empty()), "{name}");
+        settle(&mut clip, Command::Clear { frame: *frame, object: None }).unwrap();
+        assert!(clip.annotations(*frame).is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_saved_clip_is_taken_over_as_one_step() {
+    let annotated = |content| {
+        let mut clip = start();
+        settle(&mut clip, said(2, content)).unwrap();
+        clip
+    };
+    let mut other = annotated(Content::Mask { object: 9, labels: of_thing(2, 3, 1, 0) });
+    let mut clip = annotated(Content::Labels(in_box([20, 30, 24, 30], 0, 255)));
+    let (before, wanted) = (print(&mut clip), print(&mut other));
+    let steps = clip.steps()[0];
+    let mut journal = clip.save();
+    clip.take_events();
+    clip.restore(&other.save()).unwrap();
+    assert_eq!(clip.annotations(2), other.annotations(2));
+    assert_eq!((print(&mut clip), clip.steps()[0]), (wanted, steps + 1));
+    journal.extend(clip.take_events().records);
+    for mut of in [read(&clip.save()), clip] {
+        assert_eq!(print(&mut of), wanted);
+        of.undo();
+        assert_eq!(print(&mut of), before, "one step takes it back");
+        of.redo();
+        assert_eq!(print(&mut of), wanted);
+    }
+    let mut short = Clip::new(COUNT + 1, OpenOptions::default()).unwrap();
+    assert!(matches!(short.restore(&other.save()), Err(Error::InvalidOption { name: "saved", .. })));
+    assert!(start().restore(&journal[..journal.len() - 1]).is_err(), "what is cut off");
+}
+
+#[test]
 fn replacing_all_annotations_gives_the_masks_of_these_alone() {
     let strokes = in_box([62, 76, 14, 8], 1, 255);
     let given = numbered(4, [(3, 7), (1, 1)]);

@@ -39,7 +39,7 @@ const ONE_MASK = ['formats/png-reader.js', 'formats/reading/(?:mask|smoothed|coc
 /** Shared by all entries with calls, but for what they load with the first clip or picture. */
 const CALLS = [
   'module/',
-  'calls/(?!(?:clip/notes|segmented/(?!clip)[\\w-]+|session/(?!open|frames|frame-cache)[\\w-]+|nothing|pictures)\\.js)',
+  'calls/(?!(?:clip/notes|session/(?!open|frames|frame-cache)[\\w-]+|nothing|pictures)\\.js)',
   'pool/',
   'entries/package.js',
 ];

@@ -10,6 +10,7 @@ const CLIP_CALLS = [
   'moveClip',
   'takeClip',
   'lookAtClip',
+  'annotationsOfClip',
   'saveClip',
   'closeClip',
   'solvePair',
@@ -17,20 +18,7 @@ const CLIP_CALLS = [
   'pushStream',
   'finishStream',
 ];
-/** Of the page. */
-const SEGMENTED_CALLS = [
-  'beginClip',
-  'pushClip',
-  'previewClip',
-  'concludeClip',
-  'restoreClip',
-  'saveSegmented',
-  'clipFrame',
-  'annotateClip',
-  'takeAnnotations',
-  'endClip',
-];
-const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS, ...SEGMENTED_CALLS];
+const FRAME_CALLS = ['segmentPair', ...CLIP_CALLS];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [

@@ -465,7 +465,7 @@ export interface Clip {
   accept(frames: readonly number[] | 'all', on?: boolean): ClipStep;
   /** Locks objects, or unlocks them. */
   lock(objects: readonly number[], on?: boolean): ClipStep;
-  /** Replaces an object's name, class and colour. `coalesce`: part of the step before, if that described the same object. */
+  /** Replaces an object's name, class and colour. `coalesce`: part of the step before, unless that segmented a range. */
   describe(object: number, description: ClipDescription, options?: { coalesce?: boolean | undefined }): ClipStep;
   /** Merges objects under the number of the first. */
   merge(...objects: number[]): ClipStep;
@@ -475,6 +475,8 @@ export interface Clip {
   split(object: number, frame: number): ClipStep;
   /** Replaces everything that was annotated, described, merged, deleted and accepted. */
   replaceAnnotations(declaration: ClipDeclaration): ClipStep;
+  /** Takes over a clip from {@link save}, as one step: its masks, and everything that was annotated. Its own steps are left out. */
+  restore(saved: Uint8Array): ClipStep;
   /** Takes back what was given last. Resolves to whether there was something. */
   undo(): Promise<boolean>;
   /** Does again the step that was undone last. Resolves to whether there was one. */
@@ -485,6 +487,11 @@ export interface Clip {
   finish(): void;
   /** The labels of a frame as they are now; they come before all other work. Waits for a range that is coming to the frame. */
   labels(frame: number, options?: { signal?: AbortSignal | undefined }): Promise<ClipFrame>;
+  /**
+   * The annotations of a frame that have taken effect, as {@link annotate} takes them, under the current numbers of their objects. Strokes are one
+   * image for each object.
+   */
+  annotations(frame: number): Promise<ClipAnnotation[]>;
   /** The objects in all frames that have masks. */
   tracks(): Promise<ClipTracks>;
   /** The clip as bytes, for the option `saved`: its masks, annotations and steps, but no pixels of frames. */

@@ -52,7 +52,7 @@ pub enum Command {
         object: u8,
         /// What it is called, and how it is shown.
         description: Description,
-        /// Whether this is part of the step before, if that described the same object: one undo takes back both.
+        /// Whether this is part of the step before, unless that has segmented a range: one undo takes back both.
         coalesce: bool,
     },
     /// Merges objects under the number of the first.

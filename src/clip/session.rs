@@ -261,6 +261,30 @@ impl Clip {
         }
     }
 
+    /// Takes over a clip that was [saved](Self::save), as one step: its masks, and everything that was annotated. Its own steps are left out.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if the bytes are not those of a whole clip of as many frames, or if a command has not taken effect.
+    pub fn restore(&mut self, saved: &[u8]) -> Result<StepId> {
+        let invalid = |reason: String| Err(Error::InvalidOption { name: "saved", reason });
+        if self.is_under_way() || !self.waiting.is_empty() || !self.ranges.is_empty() {
+            return invalid("a command has not taken effect".into());
+        }
+        let Recovered { clip: mut other, used, .. } = Clip::read(saved, self.options)?;
+        if used < saved.len() {
+            return invalid("it is damaged or cut off".into());
+        }
+        if other.len() != self.len() {
+            return invalid(format!("it is of a clip of {} frames, not {}", other.len(), self.len()));
+        }
+        let step = self.next;
+        self.next += 1;
+        let State { clip, remembered, .. } = other.history.current_mut().clone();
+        self.remembered = remembered;
+        self.commit(Running::of_state(step, clip));
+        Ok(StepId(step))
+    }
+
     /// Takes back: the last command that waits, or else the one under way, or else the last step. Returns whether there was one. A range that is
     /// being segmented goes on: [`cancel`](Self::cancel) and [`finish`](Self::finish) end it.
     pub fn undo(&mut self) -> bool {
@@ -479,8 +503,7 @@ impl Clip {
         running.clip.mark_used();
         let changes = running.changes();
         let before = self.state();
-        let is_part = |(object, coalesce)| coalesce && before.describes == Some(object);
-        let joined = running.describes.is_some_and(is_part).then(|| self.history.before()).flatten();
+        let joined = (running.joins && before.is_open).then(|| self.history.before()).flatten();
         let parent = joined.unwrap_or(before);
         let is_same = Difference::between(&before.clip, &mut running.clip).is_empty();
         let (parent, difference) = (parent.step, Difference::between(&parent.clip, &mut running.clip));
@@ -493,11 +516,11 @@ impl Clip {
             self.log.append(Kind::Dropped, &(step as usize));
             self.history.current_mut().remembered = remembered;
         } else {
-            let describes = running.describes.map(|(object, _)| object);
-            let content = result(step, parent, &difference, describes, false);
+            let is_open = running.range.is_none();
+            let content = result(step, parent, &difference, is_open, false);
             let bytes = content.0.len();
             self.log.append(Kind::Result, &content);
-            self.history.push(parent, State::new(step, running.clip, remembered, describes, bytes));
+            self.history.push(parent, State::new(step, running.clip, remembered, is_open, bytes));
             self.history.forget(self.options.undo);
             self.add_changed(&before_clip);
         }

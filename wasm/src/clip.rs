@@ -54,10 +54,14 @@ pub fn open_clip(clip: u32, frames: usize, mark_unknown: bool, saved: Option<Vec
 /// A `VeroneseError` of code `invalid-option` or `object-locked`. Nothing has changed then.
 #[wasm_bindgen(js_name = applyClip)]
 pub fn apply_clip(clip: u32, given: &JsValue) -> Result<JsValue, JsValue> {
-    let mut command = Some(command(given)?);
+    let saved = bytes_in(given, "saved");
+    let mut command = if saved.is_none() { Some(command(given)?) } else { None };
     with(clip, &mut |clip| {
-        let Some(command) = command.take() else { return Ok(JsValue::NULL) };
-        let step = clip.apply(command)?;
+        let step = match (&saved, command.take()) {
+            (Some(saved), _) => clip.restore(saved)?,
+            (None, Some(command)) => clip.apply(command)?,
+            (None, None) => return Ok(JsValue::NULL),
+        };
         Ok(answer(Record::new().number("step", step_number(step)), clip, true))
     })
 }
@@ -119,6 +123,12 @@ pub fn look_at_clip(clip: u32, index: Option<usize>) -> Result<JsValue, JsValue>
         let record = if let Some(index) = index { with_labels(record, clip, index) } else { record };
         Ok(answer(record, clip, false))
     })
+}
+
+/// The annotations of a frame, as the package's `ClipAnnotation`.
+#[wasm_bindgen(js_name = annotationsOfClip)]
+pub fn annotations_of_clip(clip: u32, index: usize) -> Result<JsValue, JsValue> {
+    with(clip, &mut |clip| Ok(list(&clip.annotations(index), annotation_record)))
 }
 
 /// The bytes of a clip, for [`open_clip`].
@@ -295,6 +305,36 @@ fn command(value: &JsValue) -> Result<Command, Failure> {
             accepted: each(value, "accepted").iter().map(whole).collect(),
         }),
     })
+}
+
+fn annotation_record(annotation: &Annotation) -> JsValue {
+    let Annotation { frame, content, spread } = annotation;
+    let spread = match spread {
+        Spread::Both => "both",
+        Spread::Forward => "forward",
+        Spread::Backward => "backward",
+        Spread::None => "none",
+        Spread::Exact => "exact",
+    };
+    let record = Record::new().count("frame", *frame).text("propagate", spread);
+    match content {
+        Content::Labels(labels) | Content::Given(labels) => record.bytes("labels", labels),
+        Content::Strokes { object, labels } | Content::Mask { object, labels } => {
+            record.count("object", usize::from(*object)).bytes("strokes", labels)
+        }
+        Content::Prompt { object, clicks, within } => {
+            let click = |click: &Click| {
+                let [x, y] = click.at.map(|at| at as f64);
+                numbers(&[x, y, if click.inside { 1.0 } else { -1.0 }])
+            };
+            let record = record.count("object", usize::from(*object)).list("clicks", clicks, click);
+            match within {
+                Some(sides) => record.numbers("box", &sides.map(|side| side as f64)),
+                None => record,
+            }
+        }
+    }
+    .into_value()
 }
 
 fn description(value: &JsValue) -> Description {

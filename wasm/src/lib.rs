@@ -28,13 +28,11 @@ pub mod plain;
 #[cfg(feature = "points")]
 mod points;
 #[cfg(feature = "frames")]
-mod segmented;
-#[cfg(feature = "frames")]
 mod stream;
 
 #[cfg(feature = "frames")]
 pub use clip::{
-    apply_clip, close_clip, look_at_clip, move_clip, open_clip, save_clip, solve_pair_of_frames, take_clip,
+    annotations_of_clip, apply_clip, close_clip, look_at_clip, move_clip, open_clip, save_clip, solve_pair_of_frames, take_clip,
 };
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};
@@ -42,11 +40,6 @@ pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed
 pub use frames::segment_pair;
 #[cfg(feature = "points")]
 pub use points::fit_motions;
-#[cfg(feature = "frames")]
-pub use segmented::{
-    annotate_clip, begin_clip, conclude_clip, end_clip, frame_of_clip, preview_clip, push_clip, restore_clip,
-    save_segmented, take_annotations,
-};
 #[cfg(feature = "frames")]
 pub use stream::{begin_stream, finish_stream, push_stream};
 

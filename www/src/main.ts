@@ -74,7 +74,7 @@ mountSeveral(document, store, session);
 mountOptions(find(document, '#settings', HTMLFormElement), store, session);
 mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
-mountLeaving(window, store);
+mountLeaving(window, store, session);
 mountTitle(document, store);
 mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await imported(() => import('./views/panel.js'))).mountPanel(panel, store, session));
 mountEvidence(find(document, '#evidence', HTMLElement), store, session);

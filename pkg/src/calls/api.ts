@@ -6,7 +6,7 @@ import { cancelled } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import type { CallTask, ClipAnswer, ClipTask, Result, SegmentedTask, StreamTask } from './messages.js';
+import type { CallTask, ClipAnswer, ClipTask, Result, StreamTask } from './messages.js';
 import { FrameCache } from './session/frame-cache.js';
 import { fitCall, segmentCall, solveCall, start } from './tasks.js';
 
@@ -112,17 +112,9 @@ function nextTurn(): Promise<void> {
   });
 }
 
-function stepOf(glue: FramesGlue, task: ClipTask | StreamTask | SegmentedTask, cache: FrameCache): unknown {
+function stepOf(glue: FramesGlue, task: ClipTask | StreamTask, cache: FrameCache): unknown {
   if ('stream' in task) return streamStep(glue, task);
-  if (isOfClip(task)) return clipStep(glue, task, cache);
-  const { clip } = task;
-  if (task.call === 'beginClip') return glue.beginClip(clip, task.settings);
-  if (task.call === 'pushClip') return glue.pushClip(clip, task.frame, task.known);
-  if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
-  if (task.call === 'annotateClip') return glue.annotateClip(clip, task.annotations);
-  if (task.call === 'takeAnnotations') return glue.takeAnnotations(clip, task.frame);
-  if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);
-  return glue[task.call](clip);
+  return clipStep(glue, task, cache);
 }
 
 function streamStep(glue: FramesGlue, task: StreamTask): unknown {
@@ -131,14 +123,11 @@ function streamStep(glue: FramesGlue, task: StreamTask): unknown {
   return glue.finishStream(task.stream);
 }
 
-function isOfClip(task: ClipTask | SegmentedTask): task is ClipTask {
-  return ['openClip', 'applyClip', 'moveClip', 'takeClip', 'lookAtClip', 'saveClip', 'closeClip'].includes(task.call);
-}
-
 /** Frames that a clip takes stay in the cache. The result is undefined where one was expected there and is gone. */
 function clipStep(glue: FramesGlue, task: ClipTask, cache: FrameCache): unknown {
   const { clip } = task;
   if (task.call === 'saveClip') return glue.saveClip(clip);
+  if (task.call === 'annotationsOfClip') return glue.annotationsOfClip(clip, task.index);
   if (task.call === 'closeClip') {
     cache.forget(clip);
     return glue.closeClip(clip);

@@ -1,6 +1,7 @@
 // The messages between the page and its worker.
 
 import type {
+  ClipAnnotation,
   ClipChange,
   ClipEntry,
   ClipFrame,
@@ -12,7 +13,6 @@ import type {
   Segmentation,
 } from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
-import type { ClipPropagation } from './segmented/types.js';
 import { buffersOf } from './taking.js';
 
 /** Options as the core takes them, all plain values; it refuses those that it cannot use. */
@@ -26,8 +26,7 @@ export type CallTask =
   | { call: 'solvePair'; frames: Frames; settings: Settings }
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask
-  | StreamTask
-  | SegmentedTask;
+  | StreamTask;
 
 /** The calls on a clip, which `clip` numbers; wasm/src/clip.rs has what each returns. */
 export type ClipTask = { clip: number } & (
@@ -37,6 +36,7 @@ export type ClipTask = { clip: number } & (
   /** Without the frame if it is kept where the clip is. */
   | { call: 'takeClip'; index: number; frame: Pixels | undefined; solved: Uint8Array | undefined; draft: boolean }
   | { call: 'lookAtClip'; index: number | undefined }
+  | { call: 'annotationsOfClip'; index: number }
   | { call: 'saveClip' | 'closeClip' }
 );
 
@@ -50,7 +50,8 @@ export type ClipCommand =
   | ({ type: 'describe'; on: boolean } & DescriptionMessage)
   | { type: 'merge' | 'delete'; objects: Uint8Array }
   | { type: 'split'; object: number; frame: number; new: number }
-  | ({ type: 'replace' } & DeclarationMessage);
+  | ({ type: 'replace' } & DeclarationMessage)
+  | { type: 'restore'; saved: Uint8Array };
 
 /** An annotation, as the core's `Annotation`. */
 export interface AnnotationMessage {
@@ -147,18 +148,6 @@ export type StreamTask = { stream: number } & (
   | { call: 'finishStream' }
 );
 
-/** The calls on a clip whose states the caller keeps; wasm/src/segmented.rs has the results of each. */
-export type SegmentedStep =
-  | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
-  | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
-  | { call: 'annotateClip'; annotations: Annotations }
-  | { call: 'takeAnnotations'; frame: Pixels }
-  | { call: 'clipFrame'; index: number; frame: Pixels }
-  | { call: 'previewClip' | 'concludeClip' | 'saveSegmented' | 'endClip' };
-
-/** `clip` is its number. */
-export type SegmentedTask = { clip: number } & (SegmentedStep | { call: 'beginClip'; settings: Settings });
-
 /** A warm-up gives way to any other task. */
 export type Task = CallTask | { call: 'warmUp' };
 
@@ -171,54 +160,6 @@ export interface StreamEnd {
   dropped: number;
 }
 
-/** A clip of which every frame is known. */
-export interface ClipSummary {
-  length: number;
-  width: number;
-  height: number;
-  dropped: number;
-}
-
-/** Annotations of a clip that are given together; those that are undefined are as before. */
-export interface Annotations {
-  masks: readonly Painted[];
-  corrections: readonly Painted[];
-  prompts: readonly Pointed[];
-  accepted: readonly { frame: number; labels?: Uint8Array | undefined }[] | undefined;
-  locked: Uint8Array | undefined;
-  named: Uint8Array | undefined;
-  /** Objects and the numbers that they get, in turn. */
-  numbers: Uint8Array;
-}
-
-/** Labels of a frame: of one object, or a map. */
-export interface Painted {
-  frame: number;
-  object?: number | undefined;
-  labels: Uint8Array;
-  propagate?: ClipPropagation | undefined;
-}
-
-/** Clicks and a box that point to an object in a frame. */
-export interface Pointed {
-  frame: number;
-  object: number;
-  /** Column, row and 1 for each pixel that is the object's, 0 for one that is not. */
-  clicks: readonly number[];
-  /** Empty, or four sides. */
-  box: readonly number[];
-  propagate?: ClipPropagation | undefined;
-}
-
-/** The changes by annotations since the step before, the frame that they want next, and when they want none all that they have changed. */
-export interface Annotating {
-  wanted?: number;
-  changed: number[];
-  changes?: ClipChange[];
-  /** All objects, by their numbers before any edit. */
-  objects?: number[];
-}
-
 /** The result of a task; null if its clip no longer exists. */
 export type Result =
   | Segmentation
@@ -226,8 +167,7 @@ export type Result =
   | LabelledFrame
   | ClipAnswer
   | StreamEnd
-  | ClipSummary
-  | Annotating
+  | ClipAnnotation[]
   | Uint8Array
   | null
   | undefined;
@@ -246,16 +186,11 @@ export type Reply<R = Result> =
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
   if ('frames' in task && typeof task.frames === 'object') return buffersOf(task.frames.map(({ data }) => data));
-  const { frame, known, solved, saved, state, annotations, command } = task as Partial<{
-    [name in 'known' | 'solved' | 'saved' | 'state']: Uint8Array;
-  }> & { frame?: Pixels; annotations?: Annotations; command?: Partial<{ annotations: readonly AnnotationMessage[] }> };
-  const { masks = [], corrections = [], accepted = [] } = annotations ?? {};
-  return buffersOf([
-    frame?.data,
-    known,
-    solved,
-    saved,
-    state,
-    ...[...masks, ...corrections, ...accepted, ...(command?.annotations ?? [])].map(({ labels }) => labels),
-  ]);
+  const { frame, solved, saved, command } = task as Partial<{
+    frame: Pixels;
+    solved: Uint8Array;
+    saved: Uint8Array;
+    command: Partial<{ annotations: readonly AnnotationMessage[]; saved: Uint8Array }>;
+  }>;
+  return buffersOf([frame?.data, solved, saved, command?.saved, ...(command?.annotations ?? []).map(({ labels }) => labels)]);
 }

@@ -14,23 +14,13 @@ export interface FramesGlue extends Glue {
   moveClip(clip: number, what: string, step: number): unknown;
   takeClip(clip: number, index: number, frame: unknown, solved: Uint8Array | undefined, draft: boolean): unknown;
   lookAtClip(clip: number, index?: number): unknown;
+  annotationsOfClip(clip: number, index: number): unknown;
   saveClip(clip: number): unknown;
   closeClip(clip: number): void;
 
   beginStream(stream: number, options: unknown): void;
   pushStream(stream: number, frame: unknown): unknown;
   finishStream(stream: number): unknown;
-
-  beginClip(clip: number, options: unknown): void;
-  pushClip(clip: number, frame: unknown, known?: Uint8Array): unknown;
-  previewClip(clip: number): unknown;
-  concludeClip(clip: number): unknown;
-  restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;
-  saveSegmented(clip: number): unknown;
-  clipFrame(clip: number, index: number, frame: unknown): unknown;
-  annotateClip(clip: number, annotations: unknown): unknown;
-  takeAnnotations(clip: number, frame: unknown): unknown;
-  endClip(clip: number): void;
 }
 
 export const glue: FramesGlue;

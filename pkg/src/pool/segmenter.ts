@@ -26,8 +26,6 @@ import type {
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
 import type { PairCall } from '../calls/places.js';
-import { segmentedClip } from '../calls/segmented/clip.js';
-import type { ClipOptions, ClipSource, SegmentedClip } from '../calls/segmented/types.js';
 import type { House } from '../calls/session/clip.js';
 import { type ClipHost, openedClip } from '../calls/session/open.js';
 import { streamOf } from '../calls/stream.js';
@@ -93,11 +91,6 @@ export function segmenters(host: Host) {
 
     segmentStream(frames: StreamSource, options?: StreamOptions): ClipStream {
       return streamOf(frames, options, this.#house, host.places);
-    }
-
-    /** For the page. */
-    segmentClip(frames: ClipSource, options?: ClipOptions): SegmentedClip {
-      return segmentedClip(frames, options, this.#house, host.places);
     }
 
     async warmUp(): Promise<void> {

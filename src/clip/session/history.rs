@@ -22,8 +22,8 @@ pub(super) struct State {
     pub(super) clip: SegmentedClip,
     /// The labels of frames as they are shown.
     pub(super) remembered: ByFrame<Shown>,
-    /// The object that the step described, if it did nothing else.
-    pub(super) describes: Option<u8>,
+    /// Whether a description can be part of the step, which has segmented no range.
+    pub(super) is_open: bool,
     /// Bytes of what differs from the state before.
     bytes: usize,
 }
@@ -40,7 +40,7 @@ impl History {
     /// The clip as it was opened.
     pub(super) fn new(clip: SegmentedClip) -> History {
         let remembered = vec![None; clip.len()];
-        let opened = State { step: 0, clip, remembered, describes: None, bytes: 0 };
+        let opened = State { step: 0, clip, remembered, is_open: false, bytes: 0 };
         History { states: vec![opened], current: 0 }
     }
 
@@ -135,12 +135,12 @@ impl State {
         step: u32,
         clip: SegmentedClip,
         remembered: ByFrame<Shown>,
-        describes: Option<u8>,
+        is_open: bool,
         bytes: usize,
     ) -> State {
         // A state holds pointers to its parts.
         let bytes = bytes + size_of_val(&clip.frames[..]);
-        State { step, clip, remembered, describes, bytes }
+        State { step, clip, remembered, is_open, bytes }
     }
 }
 

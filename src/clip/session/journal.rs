@@ -80,15 +80,14 @@ impl Clip {
             }
             Kind::Result => {
                 let ([step, parent], difference): ([usize; 2], Difference) = Saved::read(bytes)?;
-                let (describes, is_first): (u8, bool) = Saved::read(bytes)?;
+                let [is_open, is_first]: [bool; 2] = Saved::read(bytes)?;
                 let parent = if is_first { 0 } else { parent as u32 };
                 (is_first || self.history.after(step as u32).is_none()).then_some(())?;
                 let before = self.history.after(parent)?;
                 let remembered = before.remembered.clone();
                 let segmented: Vec<usize> = difference.segmented().collect();
                 let clip = difference.applied(&before.clip)?;
-                let describes = Some(describes).filter(|&object| object > 0);
-                let state = State::new(step as u32, clip, remembered, describes, content.len());
+                let state = State::new(step as u32, clip, remembered, is_open, content.len());
                 self.forget_waiting(step as u32);
                 segmented.iter().for_each(|&frame| self.pairs[frame] = None);
                 self.note_step(step)?;
@@ -163,7 +162,7 @@ impl Clip {
         let mut before = (0, &empty);
         for (k, state) in self.history.states().iter().enumerate() {
             let difference = Difference::between(before.1, &mut state.clip.clone());
-            log.append(Kind::Result, &result(state.step, before.0, &difference, state.describes, k == 0));
+            log.append(Kind::Result, &result(state.step, before.0, &difference, state.is_open, k == 0));
             before = (state.step, &state.clip);
         }
         let current = self.state();

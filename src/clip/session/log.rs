@@ -196,13 +196,13 @@ pub(super) fn result(
     step: u32,
     parent: u32,
     difference: &Difference,
-    describes: Option<u8>,
+    is_open: bool,
     is_first: bool,
 ) -> Written {
     let mut bytes = Vec::new();
     [step as usize, parent as usize].write(&mut bytes);
     difference.write(&mut bytes);
-    (describes.unwrap_or(0), is_first).write(&mut bytes);
+    [is_open, is_first].write(&mut bytes);
     Written(bytes)
 }
 

@@ -21,8 +21,8 @@ use crate::frame::Frame;
 pub(super) struct Running {
     pub(super) step: u32,
     pub(super) clip: SegmentedClip,
-    /// The object that the command describes, and whether it is then part of the step before.
-    pub(super) describes: Option<(u8, bool)>,
+    /// Whether it is part of the step before.
+    pub(super) joins: bool,
     /// The frames of the range that it puts in its place.
     pub(super) range: Option<Range<usize>>,
     phases: VecDeque<Phase>,
@@ -38,12 +38,9 @@ impl Running {
     /// [`Error::InvalidOption`], [`Error::ObjectLocked`].
     pub(super) fn new(step: u32, before: &SegmentedClip, command: Command) -> Result<Running> {
         let mut clip = before.clone();
-        let describes = match &command {
-            Command::Describe { object, coalesce, .. } => Some((before.objects.current(*object)?, *coalesce)),
-            _ => None,
-        };
+        let joins = matches!(command, Command::Describe { coalesce: true, .. });
         let phases = phases(&mut clip, command)?;
-        Running { step, clip, describes, range: None, phases, job: None, changes: Changes::default() }.advanced()
+        Running { step, clip, joins, range: None, phases, job: None, changes: Changes::default() }.advanced()
     }
 
     /// Puts a segmented range in its place, and applies the annotations of its scenes again.
@@ -54,8 +51,14 @@ impl Running {
         let (step, frames) = (range.step, range.frames.clone());
         let (mut clip, scenes) = range.conclude(before)?;
         let phases = repeated(before, &mut clip, scenes).into();
-        Running { step, clip, describes: None, range: Some(frames), phases, job: None, changes: Changes::default() }
+        Running { step, clip, joins: false, range: Some(frames), phases, job: None, changes: Changes::default() }
             .advanced()
+    }
+
+    /// A state that takes the place of the one before.
+    pub(super) fn of_state(step: u32, clip: SegmentedClip) -> Running {
+        let phases = VecDeque::new();
+        Running { step, clip, joins: false, range: None, phases, job: None, changes: Changes::default() }
     }
 
     /// The frame to [`take`](Self::take) next; `None` when the command has taken effect.

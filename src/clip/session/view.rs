@@ -6,6 +6,8 @@ use super::Clip;
 use super::log::Kind;
 use super::shown::Shown;
 use crate::answer::UNLABELLED;
+use crate::clip::annotation::Spread;
+use crate::clip::command::{Annotation, Content};
 use crate::clip::description::ClipFrame;
 use crate::clip::objects::{Description, Objects};
 use crate::clip::segmented_clip::SegmentedClip;
@@ -82,6 +84,35 @@ impl Clip {
     /// `None` if it was returned already.
     pub fn preview(&mut self) -> Option<ClipFrame> {
         self.ranges.front_mut()?.preview()
+    }
+
+    /// The annotations of a frame, under the current numbers of their objects: label maps and strokes, then what was drawn exactly, then prompts.
+    pub fn annotations(&self, index: usize) -> Vec<Annotation> {
+        let clip = &self.state().clip;
+        let Some(frame) = clip.frames.get(index) else { return Vec::new() };
+        let (painted, prompts) = frame.annotation.as_ref().map(|of| of.given(index)).unwrap_or_default();
+        let number = |object: u8| if object == UNLABELLED { object } else { clip.objects.number(object) };
+        let renumbered = |labels: &[u8]| labels.iter().map(|&label| number(label)).collect();
+        let mut all = Vec::new();
+        for of in painted {
+            let content = match of.object {
+                None => Content::Labels(renumbered(&of.labels)),
+                Some(object) => {
+                    let labels = of.labels.iter().map(|&label| if label == object { 1 } else { label }).collect();
+                    Content::Strokes { object: number(object), labels }
+                }
+            };
+            all.push(Annotation { frame: index, content, spread: of.spread });
+        }
+        if let Some(exact) = &frame.exact {
+            let content = Content::Labels(renumbered(&exact.values()));
+            all.push(Annotation { frame: index, content, spread: Spread::Exact });
+        }
+        for of in prompts {
+            let content = Content::Prompt { object: number(of.object), clicks: of.clicks, within: of.within };
+            all.push(Annotation { frame: index, content, spread: of.spread });
+        }
+        all
     }
 
     /// What is known of each frame.

@@ -3,10 +3,10 @@
 import type { LabelFrame, Metadata } from 'veronese/formats';
 import type { Clip } from '../clips/clip.js';
 import { inFileNames } from '../common/naming.js';
-import { UNLABELLED, keyOf } from '../result/masks.js';
+import { UNLABELLED } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
 import type { State } from '../state/state.js';
-import { type Life, type Tracked, livesOf } from '../state/tracked.js';
+import { type Life, type Tracked, livesOf, objectsOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
 
 /** The class of objects that have neither a class nor a name, as of `veronese convert`. */
@@ -109,9 +109,9 @@ function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: r
 }
 
 /** Without a class, the name of an object is its category. */
-function classOf({ classes, names }: Tracked, id: number): string {
-  const key = keyOf('objects', id);
-  return classes[key] ?? names[key] ?? CLASS;
+function classOf(tracked: Tracked, id: number): string {
+  const { class: named = '', name = '' } = objectsOf(tracked).get(id) ?? {};
+  return named || name || CLASS;
 }
 
 function stemOf(name: string): string {

@@ -1,56 +1,48 @@
-//! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. Only what watches is loaded with
-//! the page.
+//! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. The work itself is the journal of the clip,
+//! which the clip writes; here is what is kept beside it, and where.
 
-import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
+import type { ClipJournal } from 'veronese';
+import { PageError, codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { inFileNames } from '../common/naming.js';
 import { strings } from '../common/strings.js';
+import type { Clip } from '../clips/clip.js';
 import { type Sample, sampleCalled } from '../frames/samples.js';
+import type { Keeper, Living, Remembered } from '../session/clip/living.js';
 import { type FramePair, timelineOf } from '../state/pair.js';
 import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
-import { type SolvedPairs, isUnsavedClip } from '../state/tracked.js';
-import type { Project } from './project.js';
+import { isAnnotated } from '../state/tracked.js';
+import { isNothingKept } from './database.js';
+import type { Header, Project } from './file.js';
+import type { PageJournal } from './journal.js';
 import type { Listed } from './shelf.js';
 
-/** How long a change waits for others, milliseconds; and one by a run while it goes on, which changes all the time. */
+/** How long a change of what is beside the journal waits for others, milliseconds. */
 const SOON = 500;
-const LATER = 10_000;
-
-/** The parts of a clip that a person changes, and those that runs change. */
-const BY_PERSON = ['names', 'classes', 'colours', 'locked', 'accepted', 'exact', 'range', 'past', 'future', 'pending'] as const;
-const BY_RUNS = ['frames', 'spans', 'solved', 'run'] as const;
 
 type Shelf = typeof import('./shelf.js');
 
 export class Projects {
   readonly #store: Store;
-  /** The solved pairs of clips, by fingerprint: they are not in the state. */
-  readonly #pairs: Map<string, SolvedPairs>;
-  /** Clips whose changes are not written yet, by fingerprint. */
-  readonly #changed = new Set<string>();
+  /** The journals of clips that were open, by fingerprint. */
+  readonly #journals = new Map<string, Promise<PageJournal>>();
+  /** What is known of clips that were open, or of a project that is about to be. */
+  readonly #headers = new Map<string, Header>();
   /** Projects of files, until their frames are opened. */
   readonly #opened = new Map<string, Project>();
-  /** Clips that need not be looked for again. */
-  readonly #known = new Set<string>();
   /** The files that the frames of each were opened from. */
   readonly #files = new Map<string, readonly File[]>();
   /** Whether the work on each is kept. That on what is open is in the state. */
   readonly #keeping = new Map<string, Keeping>();
-  /** The last picture of each. */
-  readonly #thumbnails = new Map<string, string>();
-  /** When the project of each was looked for, as an ISO 8601 date. What is saved later is another tab's. */
-  readonly #lookedFor = new Map<string, string>();
-  /** Loaded when it is needed. */
-  #shelf: Shelf | null = null;
+  #shelf: Promise<Shelf> | null = null;
   #timer = 0;
-  #due = Infinity;
-  #writing = false;
   /** Ends when all is written, with the copies of frames. */
   #written: Promise<unknown> = Promise.resolve();
+  /** The clip that is open. */
+  living: () => Living | null = () => null;
 
-  constructor(store: Store, pairs: Map<string, SolvedPairs>) {
+  constructor(store: Store) {
     this.#store = store;
-    this.#pairs = pairs;
     store.subscribe((now, before) => this.#watch(now, before));
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') this.#writeNow();
@@ -68,46 +60,44 @@ export class Projects {
     try {
       const { framesOf, isOwned, list } = await this.#load();
       const [newest] = await list();
-      const header = newest?.header ?? null;
-      if (newest === undefined || header === null || (await isOwned(header.of))) return null;
-      if (header.sample !== undefined) return sampleCalled(header.sample);
-      return newest.hasFrames ? await framesOf(newest.file) : null;
+      if (newest === undefined || (await isOwned(newest.header.of))) return null;
+      if (newest.header.sample !== undefined) return sampleCalled(newest.header.sample);
+      return newest.hasFrames ? await framesOf(newest.header.of) : null;
     } catch {
       return null;
     }
   }
 
   /** Opens a project's file. Throws a `PageError`. */
-  async open(file: File): Promise<Project> {
+  async open(file: File): Promise<Header> {
     const { projectFromFile } = await this.#load();
     const project = await projectFromFile(file, file.name);
-    this.#opened.set(project.of, project);
-    return project;
+    this.#opened.set(project.header.of, project);
+    return project.header;
   }
 
-  /** The open clip was opened from these files. */
+  /** The open clip was opened from these files. It is kept from the first moment, so that a reload finds it. */
   comeFrom(files: readonly File[]): void {
     const of = openIn(this.#store.get());
     if (of === undefined) return;
     this.#files.set(of, files);
-    // It is kept from the first moment, so that a reload finds it.
-    this.#touch(of, SOON);
+    this.#keep(of);
   }
 
-  /** The project of these frames, if it is not in the state already. */
-  async find(pair: FramePair): Promise<Project | null> {
+  /** The project of these frames, if they are not open already, or are of a file. */
+  async find(pair: FramePair): Promise<Header | null> {
     const clip = timelineOf(pair)?.clip;
+    const { tracked } = this.#store.get();
     if (clip === undefined) return null;
     const { fingerprint: of, name, count } = clip;
-    const opened = this.#opened.get(of);
-    if (opened === undefined && this.#known.has(of)) return null;
-    this.#lookedFor.set(of, new Date().toISOString());
-    if (opened === undefined && (await isNothingKept())) return null;
+    const opened = this.#opened.get(of)?.header ?? null;
+    if (opened === null && tracked?.clip === clip) return null;
+    if (opened === null && !this.#headers.has(of) && (await isNothingKept())) return null;
     try {
-      const project = opened ?? (await (await this.#load()).get(of, name));
+      const header = opened ?? this.#headers.get(of) ?? (await (await this.#load()).headerOf(of));
       // Browsers that read a video approximately may count other frames.
-      if (project === null || project.frames === count) return project;
-      this.#store.say(strings.projects.otherFrames(name, project.frames, count), 'frame-count-mismatch');
+      if (header === null || header.frames === count) return header;
+      this.#store.say(strings.projects.otherFrames(name, header.frames, count), 'frame-count-mismatch');
     } catch (error) {
       const code = codeOf(error);
       // What has no code comes from the browser.
@@ -117,150 +107,131 @@ export class Projects {
     return null;
   }
 
-  /** Puts what was found for these frames, which are about to be shown, into the state. */
-  restore(project: Project | null, pair: FramePair): void {
-    const clip = timelineOf(pair)?.clip;
-    if (clip !== undefined) this.#known.add(clip.fingerprint);
-    if (project === null || this.#shelf === null) return;
-    const { withProject } = this.#shelf;
-    const isOfFile = this.#opened.delete(project.of);
-    if (project.thumbnail !== undefined) this.#thumbnails.set(project.of, project.thumbnail);
-    if (project.clip.solved) this.#pairs.set(project.of, project.clip.solved);
-    this.#store.set(withProject(this.#store.get(), project, pair));
-    // Of a file it is not known yet whether the browser keeps it.
-    if (!isOfFile) this.#keeps(project.of);
-    this.#touch(project.of, SOON);
+  /** What is remembered of a clip that is about to be opened. Work of a file becomes its own, or if it has some already, one more step of it. */
+  async remembered({ fingerprint: of }: Clip): Promise<Remembered> {
+    const shelf = await this.#load();
+    const project = this.#opened.get(of);
+    this.#opened.delete(of);
+    const journal = await this.#journalOf(of, project?.header.name ?? of);
+    const hasOwn = (await journal.read().catch(() => undefined)) !== undefined;
+    if (project !== undefined && hasOwn) return { restored: project.journal, found: this.#headers.get(of)?.found ?? 0 };
+    if (project !== undefined) {
+      await journal.replace(project.journal);
+      return { found: project.header.found };
+    }
+    const header = this.#headers.get(of) ?? (await shelf.headerOf(of).catch(() => null));
+    return { known: await shelf.masksOf(of).catch(() => null), found: header?.found ?? 0 };
+  }
+
+  /** Puts what is known beside the journal into the state, with the clip of this pair. */
+  restore(header: Header): void {
+    const { of, settings, classList: saved, range } = header;
+    const { classList, tracked } = this.#store.get();
+    this.#headers.set(of, header);
+    // The project's classes keep their numbers.
+    this.#store.set({ settings, classList: [...new Set([...saved, ...classList])] });
+    if (tracked?.clip.fingerprint === of) this.#store.clip({ range });
+    this.#keep(of);
+  }
+
+  /** Where a clip is kept. */
+  keeperOf({ fingerprint: of, name }: Clip): Keeper {
+    return {
+      journal: new LateJournal(() => this.#journalOf(of, name)),
+      said: () => {
+        this.#keep(of);
+        const keeping = this.#keeping.get(of);
+        if (keeping?.is === 'kept') this.#tell(of, { ...keeping, waits: true });
+      },
+      kept: () => this.#keeps(of),
+      refused: (error) => this.#refuse(of, error),
+    };
+  }
+
+  /** The work on a clip that is being left. */
+  leave(living: Living): void {
+    this.#remember(living);
+    this.#writeNow();
   }
 
   /** The work on what is open, as a file; `null` if there is none. */
   async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
-    const shelf = await this.#load();
-    const { fileOf, withSaved } = shelf;
-    const project = await this.#projectOf(openIn(this.#store.get()) ?? '', shelf);
-    if (project === null) return null;
-    const content = await fileOf(project, new Date());
-    this.#store.set(withSaved(this.#store.get(), project));
-    return { name: `${inFileNames(project.name)}.veronese`, content };
+    const { fileOf } = await this.#load();
+    const living = this.living();
+    const header = await this.#headerNow();
+    if (living === null || header === null || this.#store.get().tracked?.status.some(({ hasMasks }) => hasMasks) !== true) return null;
+    const journal = await living.save();
+    return { name: `${inFileNames(header.name)}.veronese`, content: await fileOf({ header: { ...header, bytes: journal.length }, journal }) };
   }
 
-  /** The work on this clip, with a new picture if it is on screen. */
-  async #projectOf(of: string, { projectFrom, thumbnailOf }: Shelf): Promise<Project | null> {
-    const state = this.#store.get();
-    const project = projectFrom(state, of, this.#pairs);
-    if (project === null) return null;
-    const seen = openIn(state) === of ? await thumbnailOf(state).catch(() => null) : null;
-    const thumbnail = seen ?? this.#thumbnails.get(of);
-    if (thumbnail !== undefined) this.#thumbnails.set(of, thumbnail);
-    return { ...project, thumbnail };
-  }
-
-  /** Removes a project that the browser keeps, also what is about to be written of it. The work itself stays until the page is left. */
-  async forget({ file, header }: Listed): Promise<void> {
-    if (header !== null) this.#changed.delete(header.of);
+  /** Removes a project that the browser keeps. The work itself stays until the page is left. */
+  async forget({ header: { of } }: Listed): Promise<void> {
     await this.#written;
-    const { remove, withoutSaved } = await this.#load();
-    await remove(file);
-    if (header === null) return;
-    this.#store.set(withoutSaved(this.#store.get(), header.of));
-    this.#tell(header.of, NOTHING_KEPT);
+    const { remove } = await this.#load();
+    const journal = await this.#journals.get(of);
+    const living = this.living();
+    if (journal !== undefined && living?.clip.fingerprint === of) await journal.forgotten(await living.save());
+    else this.#journals.delete(of);
+    this.#headers.delete(of);
+    await remove(of);
+    this.#tell(of, NOTHING_KEPT);
+  }
+
+  /** Whether leaving the page would lose what a person did. */
+  get isUnsaved(): boolean {
+    const { tracked, keeping } = this.#store.get();
+    return tracked !== null && keeping.is === 'refused' && isAnnotated(tracked);
   }
 
   async #load(): Promise<Shelf> {
-    return (this.#shelf ??= await loaded(() => import('./shelf.js')));
+    this.#shelf ??= loaded(() => import('./shelf.js'));
+    this.#shelf.catch(() => (this.#shelf = null));
+    return this.#shelf;
+  }
+
+  #journalOf(of: string, name: string): Promise<PageJournal> {
+    const journal = this.#journals.get(of) ?? this.#load().then(({ PageJournal }) => new PageJournal(of, name));
+    this.#journals.set(of, journal);
+    journal.catch(() => this.#journals.delete(of));
+    return journal;
   }
 
   #watch(now: State, before: State): void {
-    const keeping = openIn(now) === openIn(before) ? now.keeping : (this.#keeping.get(openIn(now) ?? '') ?? NOTHING_KEPT);
+    const of = openIn(now);
+    const keeping = of === openIn(before) ? now.keeping : (this.#keeping.get(of ?? '') ?? NOTHING_KEPT);
     if (keeping !== now.keeping) this.#store.set({ keeping });
     const [clip, clipBefore] = [now.tracked, before.tracked];
-    if (clip === null || clip.clip !== clipBefore?.clip) return;
+    if (of === undefined || clip?.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
-    const listed = now.classList !== before.classList;
-    const byPerson = ticked || listed || BY_PERSON.some((part) => clip[part] !== clipBefore[part]);
-    // While corrections are carried, what is written is what was said.
-    const byRun = clip.pending === null && BY_RUNS.some((part) => clip[part] !== clipBefore[part]);
-    if (!byPerson && !byRun) return;
-    // The page segments a sample by itself: that is not kept.
-    if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, byPerson || clip.run.phase !== 'working' ? SOON : LATER);
+    const isOther = ticked || now.classList !== before.classList || clip?.range !== clipBefore?.range;
+    if (isOther && this.#keeping.get(of)?.is === 'kept') this.#touch();
   }
 
-  #touch(of: string, delay: number): void {
-    this.#changed.add(of);
-    const keeping = this.#keeping.get(of);
-    if (keeping?.is === 'kept' && !keeping.waits) this.#tell(of, { ...keeping, waits: true });
-    const due = performance.now() + delay;
-    if (due >= this.#due) return;
-    clearTimeout(this.#timer);
-    this.#due = due;
-    this.#timer = window.setTimeout(() => this.#writeNow(), delay);
-  }
-
-  #writeNow(): void {
-    this.#written = Promise.all([this.#written, this.#write()]);
-  }
-
-  /** The clips that can be written: not one between two states, whose masks do not belong together. */
-  #ready(): string[] {
-    const { tracked } = this.#store.get();
-    const between = tracked !== null && tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0;
-    return [...this.#changed].filter((of) => !between || of !== tracked.clip.fingerprint);
-  }
-
-  async #write(): Promise<void> {
-    clearTimeout(this.#timer);
-    this.#due = Infinity;
-    if (this.#writing || this.#ready().length === 0) return;
-    this.#writing = true;
-    const written: Project[] = [];
-    for (const of of this.#ready()) {
-      this.#changed.delete(of);
-      try {
-        const project = await this.#put(of);
-        if (project !== null) written.push(project);
-      } catch (error) {
-        const full = isStorageFull(error);
-        this.#refuse(of, full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
-      }
-    }
-    this.#writing = false;
-    const [next] = this.#ready();
-    if (next !== undefined) this.#touch(next, SOON);
-    await Promise.all(written.map((project) => this.#keepFrames(project)));
-  }
-
-  /** Writes the project of this clip and returns it; `null` if there is none, or another tab keeps it. */
-  async #put(of: string): Promise<Project | null> {
-    const shelf = await this.#load();
-    const { owns, put, savedAt, withSaved } = shelf;
-    const project = await this.#projectOf(of, shelf);
-    if (project === null) return null;
-    if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
-      this.#refuse(of, strings.projects.elsewhere(project.name), 'open-elsewhere');
-      return null;
-    }
-    await put(project);
-    this.#store.set(withSaved(this.#store.get(), project));
-    this.#keeps(of);
-    return project;
-  }
-
-  /** Keeps a copy of the frames. A sample needs none. */
-  async #keepFrames({ of, sample }: Project): Promise<void> {
-    const { putFrames } = await this.#load();
-    const files = this.#files.get(of);
-    const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
-    const keeping = this.#keeping.get(of);
-    if (keeping?.is === 'kept' && keeping.without === kept) this.#tell(of, { ...keeping, without: !kept });
+  /** From now on the work on this clip is kept. */
+  #keep(of: string): void {
+    const keep = async (): Promise<void> => {
+      const journal = await this.#journalOf(of, this.#store.get().tracked?.clip.name ?? of);
+      await journal.keep();
+      if (this.#keeping.get(of)?.is !== 'kept') this.#keeps(of);
+    };
+    keep().catch((error: unknown) => this.#refuse(of, error));
   }
 
   #keeps(of: string): void {
-    const before = this.#keeping.get(of);
-    this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without, waits: this.#changed.has(of) });
+    void this.#journals.get(of)?.then((journal) => {
+      if (!journal.isKept) return;
+      const before = this.#keeping.get(of);
+      this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without, waits: false });
+      this.#touch();
+    });
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
-  #refuse(of: string, sentence: string, code: Refusal): void {
+  #refuse(of: string, error: unknown): void {
     if (this.#keeping.get(of)?.is === 'refused') return;
+    const isElsewhere = codeOf(error) === 'open-elsewhere';
+    const code: Refusal = isElsewhere ? 'open-elsewhere' : isStorageFull(error) ? 'storage-full' : 'storage-refused';
+    const sentence = error instanceof PageError ? error.message : code === 'storage-full' ? strings.projects.full : strings.projects.refused;
     this.#tell(of, { is: 'refused', code });
     this.#store.say(sentence, code);
   }
@@ -269,20 +240,91 @@ export class Projects {
     this.#keeping.set(of, keeping);
     if (openIn(this.#store.get()) === of) this.#store.set({ keeping });
   }
+
+  /** What is beside the journal is written soon. */
+  #touch(): void {
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => this.#writeNow(), SOON);
+  }
+
+  #writeNow(): void {
+    clearTimeout(this.#timer);
+    const living = this.living();
+    if (living !== null) this.#remember(living);
+    this.#written = this.#written.then(() => this.#write()).catch(() => undefined);
+  }
+
+  async #write(): Promise<void> {
+    const header = await this.#headerNow();
+    if (header === null || this.#keeping.get(header.of)?.is !== 'kept') return;
+    const { put, putFrames } = await this.#load();
+    await put(header);
+    const { of, sample } = header;
+    const files = this.#files.get(of);
+    const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
+    const keeping = this.#keeping.get(of);
+    if (keeping?.is === 'kept' && keeping.without === kept) this.#tell(of, { ...keeping, without: !kept });
+  }
+
+  /** Masks that are known, so that they need not be made again. */
+  #remember({ masks, clip: { fingerprint: of } }: Living): void {
+    if (this.#keeping.get(of)?.is !== 'kept') return;
+    const put = async (): Promise<void> => (await this.#load()).putMasks(of, masks);
+    this.#written = Promise.all([this.#written, put().catch(() => undefined)]);
+  }
+
+  /** What is known of the clip that is open; `null` if there is none. */
+  async #headerNow(): Promise<Header | null> {
+    const { headerFrom, thumbnailOf } = await this.#load();
+    const state = this.#store.get();
+    const { tracked, settings, classList, timeline, look } = state;
+    if (tracked === null) return null;
+    const { fingerprint: of, name, count: frames, sample } = tracked.clip;
+    const journal = await this.#journalOf(of, name);
+    const thumbnail = (await thumbnailOf(state).catch(() => null)) ?? this.#headers.get(of)?.thumbnail;
+    const hidden = look.kind === 'objects' ? [...look.hidden] : [];
+    const header = headerFrom({
+      of,
+      name,
+      frames,
+      ...(sample && { sample: sample.id }),
+      saved: new Date().toISOString(),
+      thumbnail,
+      settings,
+      classList,
+      range: tracked.range,
+      at: timeline?.first ?? 0,
+      hidden,
+      found: this.living()?.found ?? 0,
+      bytes: journal.bytes,
+    });
+    this.#headers.set(of, header);
+    return header;
+  }
+}
+
+/** A journal that is loaded when it is first used. */
+class LateJournal implements ClipJournal {
+  constructor(readonly journal: () => Promise<PageJournal>) {}
+
+  async read(): Promise<Uint8Array | undefined> {
+    return (await this.journal()).read();
+  }
+
+  async append(records: Uint8Array): Promise<void> {
+    await (await this.journal()).append(records);
+  }
+
+  async replace(saved: Uint8Array): Promise<void> {
+    await (await this.journal()).replace(saved);
+  }
+
+  async keepDamaged(content: Uint8Array): Promise<void> {
+    await (await this.journal()).keepDamaged(content);
+  }
 }
 
 /** The fingerprint of the clip that is open. */
 function openIn({ tracked }: State): string | undefined {
   return tracked?.clip.fingerprint;
-}
-
-/** Whether nothing can be found, so that a first visit need not look. */
-async function isNothingKept(): Promise<boolean> {
-  try {
-    if (!('createWritable' in FileSystemFileHandle.prototype)) return false; // what is kept is in a database
-    await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
-    return false;
-  } catch (error) {
-    return error instanceof Error && error.name === 'NotFoundError';
-  }
 }

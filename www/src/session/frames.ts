@@ -3,11 +3,11 @@
 
 import type { Clip } from '../clips/clip.js';
 import { WHOLE } from '../drawing/viewport.js';
-import type { Project, ProjectClip } from '../projects/project.js';
+import type { Header } from '../projects/file.js';
 import type { Projects } from '../projects/projects.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import { FRESH, type Look, type Store } from '../state/state.js';
-import { correctedIn, isSeen, largestChanges, livesOf } from '../state/tracked.js';
+import { isSeen, largestChanges, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
 import type { Objects } from './clip/objects.js';
@@ -86,7 +86,7 @@ export class Frames {
   goToCorrected(by: 1 | -1): void {
     const { tracked, timeline } = this.#store.get();
     const at = timeline?.first ?? 0;
-    const corrected = (tracked === null ? [] : correctedIn(tracked)).map(([index]) => index).sort((one, other) => by * (one - other));
+    const corrected = [...(tracked?.annotated.keys() ?? [])].sort((one, other) => by * (one - other));
     const next = corrected.find((index) => by * (index - at) > 0);
     if (next !== undefined) void this.goTo(next);
   }
@@ -112,15 +112,17 @@ export class Frames {
   open(
     load: (signal: AbortSignal) => Promise<readonly LoadedFrame[]>,
     place: (frames: readonly LoadedFrame[], pair: FramePair) => FramePair,
-    then: (found: Project | null) => void = () => undefined,
+    then: (found: Header | null) => void = () => undefined,
     as?: number | 'step',
   ): Promise<void> {
-    const { opening, worker, camera, objects, projects } = this.#parts;
+    const { opening, worker, camera, clip, objects, projects } = this.#parts;
     worker.prepare();
     return opening.open(
       async (signal) => {
         const frames = await load(signal);
         const project = await projects.find(place(frames, this.#store.get().pair));
+        const opened = timelineOf(place(frames, this.#store.get().pair))?.clip;
+        if (project !== null && opened !== undefined) await clip.prepare(opened);
         // What was begun on the frame that is still on screen is of that frame.
         if (as === 'step') await objects.drawn();
         return { frames, project };
@@ -129,9 +131,9 @@ export class Frames {
         const pair = place(frames, this.#store.get().pair);
         if (frames.length > 0) camera.stop();
         if (project !== null) objects.finishStroke();
-        projects.restore(project, pair);
         if (frames.length > 0 || project !== null) this.#setPair(pair);
-        if (project !== null) this.#continue(project.clip);
+        if (project !== null) projects.restore(project);
+        if (project !== null) this.#continue(project);
         then(project);
       },
       ({ frames }) => {
@@ -182,7 +184,7 @@ export class Frames {
   }
 
   /** Goes to where the work on a clip was left. */
-  #continue({ at, hidden }: ProjectClip): void {
+  #continue({ at, hidden }: Header): void {
     this.#parts.shown.kind('objects');
     if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
     void this.goTo(at);
@@ -209,7 +211,6 @@ export class Frames {
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && !sameClip) left.clip.close();
-    objects.carrying.resume();
   }
 }
 

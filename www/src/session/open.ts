@@ -10,11 +10,11 @@ import { strings } from '../common/strings.js';
 import { type ImageFolder, foldersOf, likelyFrames, selectOpenable, withPath } from '../frames/files.js';
 import { fetchImage, filesOf, frameFromFile } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
-import type { Project } from '../projects/project.js';
+import type { Header } from '../projects/file.js';
 import type { Projects } from '../projects/projects.js';
 import type { FramePair, LoadedFrame, Slot } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { lengthOf, masksIn } from '../state/tracked.js';
+import { lengthOf } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import { importClasses } from './class-list.js';
@@ -102,7 +102,7 @@ export class Open {
   }
 
   #frames(files: readonly File[], slot: Slot | null, ticket: number): Promise<void> {
-    let opened: Project | null = null;
+    let opened: Header | null = null;
     let leftOut = '';
     let clip: Clip | null = null;
     let source: readonly File[] = [];
@@ -151,7 +151,9 @@ export class Open {
   /** Segments the clip that was opened, or goes on with it. */
   #begin(): void {
     const { automatic, tracked } = this.#store.get();
-    if (automatic && tracked !== null && lengthOf(tracked.range) > 1 && masksIn(tracked.frames, tracked.range) < lengthOf(tracked.range)) void this.#parts.clip.segment();
+    if (!automatic || tracked === null || lengthOf(tracked.range) < 2) return;
+    const { first, last } = tracked.range;
+    if (!tracked.status.slice(first, last + 1).every(({ hasMasks }) => hasMasks) || tracked.status.length === 0) void this.#parts.clip.segment();
   }
 
   /** The images of the folder that the person chooses, or all; `null` if none. */

@@ -3,11 +3,8 @@
 import { Projects } from '../projects/projects.js';
 import type { Store } from '../state/state.js';
 import { Camera } from './camera/camera.js';
-import { Carrying } from './clip/carrying.js';
 import { Objects } from './clip/objects.js';
-import { ClipRuns } from './clip/runs.js';
 import { ClipSegmenting } from './clip/segmenting.js';
-import { Spans } from './clip/spans.js';
 import { Frames } from './frames.js';
 import { Open } from './open.js';
 import { Opening } from './opening.js';
@@ -41,11 +38,10 @@ export function sessionOf(store: Store): Session {
   const worker = new PairWorker();
   const pair = new PairSegmenting(store, worker);
   const shown = new Shown(store, pair);
-  const runs = new ClipRuns(store);
-  const spans = new Spans(store, runs.segmenter);
-  const clip = new ClipSegmenting(store, runs, spans, shown);
-  const objects = new Objects(store, new Carrying(store, runs, spans, shown));
-  const projects = new Projects(store, clip.solvedPairs);
+  const projects = new Projects(store);
+  const clip = new ClipSegmenting(store, shown, projects);
+  projects.living = () => clip.living;
+  const objects = new Objects(store, clip);
   const opening = new Opening(store);
   const camera = new Camera(store, { opening, pair, clip, objects, openLast: () => open.pair() });
   const frames = new Frames(store, { opening, worker, camera, clip, pair, objects, shown, projects });
@@ -62,11 +58,11 @@ export function sessionOf(store: Store): Session {
     projects,
     undo: () => {
       shown.choose('objects');
-      objects.carrying.undo();
+      void clip.living?.undo();
     },
     redo: () => {
       shown.choose('objects');
-      objects.carrying.redo();
+      void clip.living?.redo();
     },
     cancel: () => {
       const { run } = store.get();

@@ -5,7 +5,7 @@ import type { Kind } from '../result/masks.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import type { FramePair } from '../state/pair.js';
 import { FRESH, type Look, type Run, type State, type Store, isPassing } from '../state/state.js';
-import { type ClipRun, type Pending, type Tracked, type Version, isDrafting, isSeen, versionOf } from '../state/tracked.js';
+import { type Tracked, describedIn, isDrafting, isSeen } from '../state/tracked.js';
 import { type PairSegmenting, STARTING } from './pair/segmenting.js';
 
 export class Shown {
@@ -52,9 +52,8 @@ export class Shown {
     if (left !== null && tracked?.clip !== left.clip) this.#chosen = false;
     this.#segmenting.stop();
     if (look.kind === 'objects' && tracked !== null) {
-      const { names, classes, colours } = tracked;
       const result = resultOf(tracked, pair);
-      this.#store.set({ ...others, pair, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, classes, colours } });
+      this.#store.set({ ...others, pair, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, ...describedIn(tracked) } });
       return;
     }
     const passing = isPassing({ playing, scrubbing });
@@ -64,21 +63,26 @@ export class Shown {
     if (!passing) void this.#segmenting.segment();
   }
 
-  /** Shows another version of the clip's masks. */
-  version(version: Version, run: ClipRun, pending: Pending | null = null): void {
-    const { tracked, look } = this.#store.get();
-    if (tracked === null) return;
-    const { names, classes, colours, became } = version;
-    const into = became.get(look.selected ?? 0);
-    const selected = into === undefined ? look.selected : into === 0 ? null : into;
+  /** Takes what has changed of the clip, and shows its masks if there are some of a frame on screen. */
+  clip(change: Partial<Tracked>): void {
+    const { tracked: before, look } = this.#store.get();
+    if (before === null) return;
+    const tracked = { ...before, ...change };
+    const described = change.objects === undefined || change.objects === before.objects ? {} : this.#described(tracked, look);
     // At once, so that the focus goes on from a row that is gone to the one that is selected.
-    this.#store.set({ tracked: { ...tracked, ...versionOf(version), run, pending }, look: { ...look, selected, ...(look.kind === 'objects' && { names, classes, colours }) } });
-    if (tracked.spans.length === 0 && !this.#chosen) this.kind('objects');
-    this.objects(tracked);
+    this.#store.set({ tracked, look: { ...look, ...described } });
+    this.#objects(before);
+  }
+
+  /** Names and colours of objects, and what became of the one that is selected. */
+  #described(tracked: Tracked, { kind, selected }: Look): Partial<Look> {
+    const into = tracked.objects.find(({ number }) => number === selected)?.became;
+    const now = into === undefined ? selected : into === 0 ? null : into;
+    return { selected: now, ...(kind === 'objects' && describedIn(tracked)) };
   }
 
   /** Shows the masks of the clip as soon as there are some of a frame on screen, and whenever these change. `before`: what there was. */
-  objects(before: Tracked): void {
+  #objects(before: Tracked): void {
     const { look, pair, tracked } = this.#store.get();
     if (tracked === null) return;
     const frames = [pair.first, pair.second].filter((frame) => frame !== null);

@@ -1,7 +1,6 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
-import type { Segmentation } from 'veronese';
-import type { ClipPropagation } from '../segmented.js';
+import type { ClipAnnotation, Segmentation } from 'veronese';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { ImageFolder } from '../frames/files.js';
@@ -65,7 +64,7 @@ export interface Tool {
   /** Whether what is drawn is kept pixel for pixel, and nothing follows. */
   readonly exact: boolean;
   /** Where an annotation of a clip's frame spreads otherwise. */
-  readonly spread: ClipPropagation;
+  readonly spread: Exclude<ClipAnnotation['propagate'], 'exact' | undefined>;
   readonly pointing: Pointing;
 }
 
@@ -149,8 +148,6 @@ interface PairState {
 interface ClipState {
   /** Those of the open clip. */
   readonly tracked: Tracked | null;
-  /** Other clips that were segmented, by fingerprint. */
-  readonly keptClips: ReadonlyMap<string, Tracked>;
   /** The classes that objects can have, in the order of their numbers in files. */
   readonly classList: readonly string[];
 }
@@ -200,7 +197,6 @@ export const INITIAL: State = {
   pair: { first: null, second: null },
   timeline: null,
   tracked: null,
-  keptClips: new Map(),
   classList: [],
   playing: false,
   speed: 1,

@@ -1,11 +1,10 @@
-//! The objects of a whole clip: how far their segmentation is, the masks of each frame, and a person's annotations.
+//! The objects of a whole clip: how far their segmentation is, the masks of each frame, and what is known of frames and objects.
 
-import type { ClipFrame, Note } from 'veronese';
-import type { ClipOptions, ClipProgress } from '../segmented.js';
+import type { ClipClick, ClipEntry, ClipFrame, ClipFrameStatus, Note } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import { type Runs, differingPixels } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
-import type { Annotation } from './annotation.js';
+import { UNLABELLED, keyOf } from '../result/masks.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -19,16 +18,20 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
   readonly runs: Runs;
 }
 
-type ChangeCause = 'corrected' | 'undone' | 'redone';
+/** The masks of all frames by index; `null` for frames without masks. */
+export type Masks = readonly (TrackedFrame | null)[];
+
+/** Why a run on the clip is done. */
+export type DoneCause = 'found' | 'same' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | 'corrected' | 'undone' | 'redone';
 
 /** The run on the clip as a whole. */
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. `kept`: of accepted ones that a correction came to and left as they are. `notes`: why nothing was found, or what is likely to be wrong. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number; readonly kept?: number; readonly notes?: readonly Note[] }
+  | { readonly phase: 'done'; readonly cause: DoneCause; readonly changed: number; readonly kept?: number; readonly notes?: readonly Note[] }
   | {
       readonly phase: 'working';
-      readonly stage: ClipProgress['stage'];
+      readonly stage: 'pairs' | 'labels' | 'corrections';
       /** Time left until all masks are there, seconds; `null` until it is known. */
       readonly left: number | null;
       /** Number of frames that are labelled, or that a correction has come through, and of those that it may reach. */
@@ -36,168 +39,117 @@ export type ClipRun =
       readonly of?: number;
     };
 
-/** The solved pairs of each frame, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
-export interface SolvedPairs {
-  /** The settings they were solved with, as text. */
-  readonly settings: string;
-  /** By index of the frame. */
-  readonly pairs: Map<number, Blob>;
+/** First column, first row, width and height, pixels of the masks. */
+export type Box = readonly [x: number, y: number, width: number, height: number];
+
+/** Clicks and a box that point to an object in a frame. */
+export interface Prompt {
+  readonly object: number;
+  readonly clicks: readonly ClipClick[];
+  readonly box: Box | null;
 }
 
-/** Frames that were segmented together. */
-export interface Span {
-  readonly range: Range;
-  /** The package's state of these frames, in a blob, which browsers can move to disk. */
-  readonly state: Blob;
-  /** The numbers of their objects here by those of the package, which counts anew in each run. */
-  readonly numbers: ReadonlyMap<number, number>;
-}
-
-/** The masks of all frames and what they follow from: one step of undo and redo. Frames that do not change are shared between steps. */
-export interface Version {
-  /** By index; `null` for frames without masks. */
-  readonly frames: readonly (TrackedFrame | null)[];
-  /** The package's states of these frames. Where spans overlap, the masks are of the last. There are none until the first masks are complete. */
-  readonly spans: readonly Span[];
-  /** Longer side of the frames as they were segmented, pixels. */
-  readonly longestSide: number;
-  /** The masks before corrections, by index: they tell which object of another run is which. */
-  readonly found: readonly (Runs | null)[];
-  /** The annotations of objects in frames, in the order in which they were given. */
-  readonly annotations: readonly Annotation[];
-  /** Labels drawn exactly in frames, by index: their masks have them, whatever else is annotated; 255 where nothing was drawn. */
-  readonly exact: ReadonlyMap<number, Runs>;
-  /** The fate of objects that were merged or deleted: the number of another object, or 0. */
-  readonly became: ReadonlyMap<number, number>;
-  /** The objects that nothing changes until a person unlocks them. */
-  readonly locked: ReadonlySet<number>;
-  /** The masks that a person has accepted. Masks that change are others, and are not. */
-  readonly accepted: ReadonlySet<TrackedFrame>;
-  /** Names, classes and colours that a person gave to objects, by `keyOf`. */
-  readonly names: Readonly<Record<string, string>>;
-  readonly classes: Readonly<Record<string, string>>;
-  readonly colours: Readonly<Record<string, Colour>>;
-  /** The largest number that an object ever had. Numbers are not used again. */
-  readonly largest: number;
-  /** Of an earlier version: what was said of it and carried together, without the last; undoing that one carries these. */
-  readonly together?: readonly Correction[] | undefined;
-}
-
-/** An annotation: of objects in frames, of whole objects, pixels drawn exactly, or notes, which change no masks. */
-export type Correction = (Annotated | { readonly edits: NonNullable<ClipOptions['edits']> } | Drawn | Noted) & Partial<Noted>;
-
+/** What a person has annotated in a frame. */
 export interface Annotated {
-  readonly annotations: readonly Annotation[];
+  /** The objects that are painted, outlined or pointed to. */
+  readonly objects: readonly number[];
+  readonly prompts: readonly Prompt[];
 }
 
-/** Labels drawn exactly in frames, by index. */
-export interface Drawn {
-  readonly drawn: ReadonlyMap<number, Runs>;
+/** What a clip says of its frames and objects, with what a person has told it that has not taken effect yet. */
+export interface ClipState {
+  readonly frames: Masks;
+  /** What is known of each frame; empty until the clip is open. */
+  readonly status: readonly ClipFrameStatus[];
+  /** All objects that there are and were. */
+  readonly objects: readonly ClipEntry[];
+  /** By index of the frame. */
+  readonly annotated: ReadonlyMap<number, Annotated>;
 }
 
-/** Notes in the place of those before: they change no masks. */
-export interface Noted {
-  readonly notes: Partial<Notes>;
-}
-
-/** What was said and has not been carried through the clip as a whole, in its order, and the masks before it. */
-export interface Pending {
-  readonly settled: Version;
-  readonly corrections: readonly Correction[];
-}
-
-/** The parts of a version that change no masks. */
-export type Notes = Pick<Version, 'locked' | 'accepted' | 'names' | 'classes' | 'colours'>;
-
-export interface Tracked extends Version {
+export interface Tracked extends ClipState {
   readonly clip: Clip;
   readonly run: ClipRun;
-  /** While corrections are carried: the masks are those before these, as far as these have changed them. `null` if there are none. */
-  readonly pending: Pending | null;
   /** The frames to segment, from the in point to the out point. */
   readonly range: Range;
-  /**
-   * What is shown while the first masks are being found, by index: drafts, and the masks that take their place. Drafts are no work of anyone,
-   * and go when a run ends.
-   */
-  readonly previews: Version['frames'];
+  /** What is shown while the first masks are being found, by index: drafts. They go when a run ends. */
+  readonly previews: Masks;
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
-  /** Earlier versions, and later ones that were undone; the nearest is last. */
-  readonly past: readonly Version[];
-  readonly future: readonly Version[];
+  /** The masks before the last command that has changed some. */
+  readonly before: Masks;
+  /** The lowest number that no object has had; 0 if none is left. */
+  readonly nextObject: number;
+  /** How many steps can be undone and redone. */
+  readonly steps: { readonly undo: number; readonly redo: number };
   /** The frames at which a person looked because an object is least certain there, by its number. */
   readonly checked: ReadonlyMap<number, number>;
-  /** The last masks that were exported, kept as a project, or found by themselves. */
-  readonly saved: Saved;
 }
-
-type Saved = Notes & Pick<Version, 'frames'> & { readonly corrections?: Pending['corrections'] | undefined };
-
-const NO_NOTES: Notes = { locked: new Set(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 export function untracked(clip: Clip): Tracked {
   const frames = Array.from({ length: clip.count }, () => null);
   return {
     clip,
     run: { phase: 'idle' },
-    pending: null,
     range: { first: 0, last: clip.count - 1 },
     previews: frames,
     solved: 0,
     frames,
-    spans: [],
-    longestSide: Infinity,
-    found: frames,
-    annotations: [],
-    exact: new Map(),
-    became: new Map(),
-    ...NO_NOTES,
-    largest: 0,
-    past: [],
-    future: [],
+    before: frames,
+    status: [],
+    objects: [],
+    annotated: new Map(),
+    nextObject: 1,
+    steps: { undo: 0, redo: 0 },
     checked: new Map(),
-    saved: { frames, ...NO_NOTES },
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, annotations, exact, became, largest, ...others }: Version): Version {
-  return { frames, spans, longestSide, found, annotations, exact, became, largest, ...notesOf(others) };
+/** Whether the first masks are complete, so that the clip takes corrections. */
+export function isReady(tracked: Tracked | null): tracked is Tracked {
+  return tracked !== null && tracked.status.some(({ hasMasks }) => hasMasks);
 }
 
-export function notesOf({ locked, accepted, names, classes, colours }: Notes): Notes {
-  return { locked, accepted, names, classes, colours };
+/** Whether a frame takes corrections. */
+export function takesCorrections({ status }: Pick<Tracked, 'status'>, index: number): boolean {
+  return status[index]?.hasMasks === true;
 }
 
-/** The record of a clip that is kept or exported as it is. */
-export function savedOf({ frames, corrections, ...others }: Saved): Saved {
-  return { frames, corrections, ...notesOf(others) };
+/** The objects that there are, by number. */
+export function objectsOf({ objects }: Pick<Tracked, 'objects'>): ReadonlyMap<number, ClipEntry> {
+  return new Map(objects.filter(({ number, became }) => number === became).map((object) => [object.number, object]));
 }
 
-/** The frames that a person corrected, by index, and of which objects. A frame may be there several times. */
-export function correctedIn({ annotations, exact }: Pick<Version, 'annotations' | 'exact'>): (readonly [number, readonly number[]])[] {
-  const ofObjects = annotations.map((one) => [one.frame, one.object === 0 && 'labels' in one ? [...one.labels.labels] : [one.object]] as const);
-  return [...ofObjects, ...[...exact].map(([index, { labels }]) => [index, [...labels]] as const)];
+/** The objects that nothing changes until a person unlocks them. */
+export function lockedIn({ objects }: Pick<Tracked, 'objects'>): ReadonlySet<number> {
+  return new Set(objects.filter(({ locked }) => locked).map(({ number }) => number));
 }
 
-/** A version with the frames of one before where their labels are the same, so that they are not others. */
-export function unchanged<V extends Pick<Version, 'frames'>>(before: Pick<Version, 'frames'>, now: V): V {
+/** Names, classes and colours that a person gave to objects, by `keyOf`. */
+export interface Described {
+  readonly names: Readonly<Record<string, string>>;
+  readonly classes: Readonly<Record<string, string>>;
+  readonly colours: Readonly<Record<string, Colour>>;
+}
+
+export function describedIn(tracked: Pick<Tracked, 'objects'>): Described {
+  const given = <T>(what: (object: ClipEntry) => T | undefined): Record<string, T> =>
+    Object.fromEntries([...objectsOf(tracked).values()].flatMap((object) => {
+      const value = what(object);
+      return value === undefined ? [] : [[keyOf('objects', object.number), value]];
+    }));
+  return { names: given(({ name }) => name || undefined), classes: given((object) => object.class || undefined), colours: given(({ colour }) => colour) };
+}
+
+/** The frame, or the one before if its labels are the same, so that it is not another. */
+export function unchanged(before: TrackedFrame | null | undefined, now: TrackedFrame): TrackedFrame {
   const isSame = (one: ArrayLike<number>, other: ArrayLike<number>): boolean => one.length === other.length && Array.prototype.every.call(one, (value, k) => value === other[k]);
-  const frames = now.frames.map((frame, index) => {
-    const [was, is] = [before.frames[index]?.runs, frame?.runs];
-    return was && is && isSame(was.ends, is.ends) && isSame(was.labels, is.labels) ? before.frames[index]! : frame;
-  });
-  const isAll = (all: Version['frames']): boolean => frames.every((frame, index) => frame === all[index]);
-  return isAll(now.frames) ? now : { ...now, frames: isAll(before.frames) ? before.frames : frames };
+  return before && isSame(before.runs.ends, now.runs.ends) && isSame(before.runs.labels, now.runs.labels) ? before : now;
 }
 
-/** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ saved, past, future, pending, ...others }: Tracked): boolean {
-  const settled = pending?.settled ?? others;
-  // An undone step is a correction as well: the next visit would have it still.
-  const corrected = past.length > 0 || future.length > 0;
-  const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => settled[part] !== saved[part]);
-  return noted || pending?.corrections !== saved.corrections || (settled.frames !== saved.frames && corrected);
+/** Whether a person has done anything with the clip. */
+export function isAnnotated({ status, objects }: Pick<Tracked, 'status' | 'objects'>): boolean {
+  return status.some(({ annotated, accepted }) => annotated || accepted) || objects.some(({ number, name, class: named, colour, locked, became }) => number !== became || locked || colour !== undefined || name !== '' || named !== '');
 }
 
 /** Whether a correction is being carried through the clip. */
@@ -235,7 +187,7 @@ export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
 }
 
 /** The objects that a frame does not show although the one before or after it shows them clear of its border: they cannot have left in between. */
-function lostIn(frames: Tracked['frames'], index: number): number[] {
+function lostIn(frames: Masks, index: number): number[] {
   const frame = frames[index];
   if (frame == null) return [];
   const clear = [frames[index - 1], frames[index + 1]].flatMap((beside) => (beside == null ? [] : beside.objects.filter(({ bbox: [x, y, width, height] }) =>
@@ -244,16 +196,16 @@ function lostIn(frames: Tracked['frames'], index: number): number[] {
 }
 
 /** The frames whose masks a person has accepted, by index. */
-export function acceptedIn({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>): number[] {
-  return [...frames.keys()].filter((index) => frames[index] != null && accepted.has(frames[index]));
+export function acceptedIn({ status }: Pick<Tracked, 'status'>): number[] {
+  return [...status.keys()].filter((index) => status[index]!.accepted);
 }
 
 /**
  * The frame that most needs a look: of those with masks that are not accepted, one that lost an object, or with the least certain one, and of
  * several the next after frame `from`; `null` if none is left.
  */
-export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>, from: number): number | null {
-  const left = [...frames.keys()].filter((index) => frames[index] != null && !accepted.has(frames[index]));
+export function toReview({ frames, status }: Pick<Tracked, 'frames' | 'status'>, from: number): number | null {
+  const left = [...frames.keys()].filter((index) => frames[index] != null && status[index]?.accepted !== true);
   const certainty = (index: number): number =>
     Math.min(lostIn(frames, index).length > 0 ? 0 : 1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
   const ahead = (index: number): number => (index - from - 1 + frames.length) % frames.length;
@@ -262,9 +214,11 @@ export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepte
 }
 
 /** The frames whose masks are others than before the last change of masks, by index, with how they were. Those that are accepted are done with. */
-export function changedIn({ frames, past, accepted }: Pick<Tracked, 'frames' | 'past' | 'accepted'>): Map<number, TrackedFrame> {
-  const before = past.findLast((version) => version.frames !== frames)?.frames ?? frames;
-  return new Map(frames.flatMap((frame, index) => (frame === null || before[index] == null || frame === before[index] || accepted.has(frame) ? [] : [[index, before[index]] as const])));
+export function changedIn({ frames, before, status }: Pick<Tracked, 'frames' | 'before' | 'status'>): Map<number, TrackedFrame> {
+  return new Map(frames.flatMap((frame, index) => {
+    const was = before[index];
+    return frame === null || was == null || frame === was || status[index]?.accepted ? [] : [[index, was] as const];
+  }));
 }
 
 /** These frames, those first of which most pixels have changed. */
@@ -274,7 +228,7 @@ export function largestChanges(tracked: Tracked): number[] {
 }
 
 /** From the first frame that has masks to the last; `null` if there are none. */
-export function rangeOf(frames: Version['frames']): Range | null {
+export function rangeOf(frames: Masks): Range | null {
   const first = frames.findIndex((frame) => frame !== null);
   return first < 0 ? null : { first, last: frames.findLastIndex((frame) => frame !== null) };
 }
@@ -284,8 +238,12 @@ export function lengthOf({ first, last }: Range): number {
   return last - first + 1;
 }
 
+export function contains({ first, last }: Range, index: number): boolean {
+  return first <= index && index <= last;
+}
+
 /** Number of frames in the range that have masks. */
-export function masksIn(frames: Version['frames'], { first, last }: Range): number {
+export function masksIn(frames: Masks, { first, last }: Range): number {
   return frames.slice(first, last + 1).filter((frame) => frame !== null).length;
 }
 
@@ -295,10 +253,11 @@ export function isTracked(tracked: Tracked | null): tracked is Tracked {
 }
 
 /** The masks that are on screen: those of the clip, or until the first ones are complete also drafts. */
-export function shownFrames(tracked: Tracked | null): Version['frames'] {
+export function shownFrames(tracked: Tracked | null): Masks {
   if (tracked === null) return [];
-  const { frames, previews, run, spans } = tracked;
-  return run.phase === 'working' && spans.length === 0 ? previews : frames;
+  const { frames, previews, run, before } = tracked;
+  const isFirst = before.every((frame) => frame === null);
+  return run.phase === 'working' && run.stage !== 'corrections' && isFirst ? previews : frames;
 }
 
 /** Whether there are drafts on screen, whose objects have other numbers than those of the masks will have. */
@@ -316,7 +275,7 @@ export function isSeen(tracked: Tracked | null): tracked is Tracked {
   return shownFrames(tracked).some((frame) => frame !== null);
 }
 
-/** Whether all frames to segment have their masks, and take corrections. */
-export function isComplete({ frames, spans, range }: Pick<Tracked, 'frames' | 'spans' | 'range'>): boolean {
-  return spans.length > 0 && masksIn(frames, range) === lengthOf(range);
+/** The number of a label that names an object. */
+export function isObject(label: number): boolean {
+  return label !== 0 && label !== UNLABELLED;
 }

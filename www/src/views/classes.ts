@@ -3,10 +3,10 @@
 import { sentenceOf } from '../common/errors.js';
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
-import { keyOf } from '../result/masks.js';
 import { importClasses, keepClasses, namesIn } from '../session/class-list.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
+import { objectsOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClasses(root: ParentNode, store: Store, session: Session): void {
@@ -24,13 +24,14 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
       offered.replaceChildren(...classList.map((name) => new Option(name)));
       text.value = classList.join('\n');
     }
+    const objects = tracked === null ? new Map() : objectsOf(tracked);
     for (const row of list.querySelectorAll<HTMLElement>(':scope > li')) {
       const id = Number(row.dataset.mask);
       const field = find(row, '.class', HTMLInputElement);
-      if (!connected.has(field)) onClass(field, (name) => session.objects.setClass([id], name));
+      if (!connected.has(field)) onClass(field, (name) => session.objects.setClasses(new Map([[id, name]])));
       connected.add(field);
       field.setAttribute('aria-label', strings.classOf(nameOf(look, id)));
-      if (document.activeElement !== field) field.value = tracked?.classes[keyOf('objects', id)] ?? '';
+      if (document.activeElement !== field) field.value = objects.get(id)?.class ?? '';
     }
   };
   store.subscribe((now, before) => {

@@ -4,7 +4,6 @@ import { strings } from '../common/strings.js';
 import { type ClipFormat, exportOfClip } from '../export/clip-export.js';
 import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
-import { clipExported } from '../session/exported.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { isDrafting } from '../state/tracked.js';
@@ -31,7 +30,6 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
       const exported = exportOfClip(tracked, store.get(), (done, of) => (status.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
-      clipExported(store, tracked);
       status.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
       status.textContent = '';

@@ -8,8 +8,6 @@ import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 import { showRows } from './rows.js';
 
-type Whole = Listed & { readonly header: NonNullable<Listed['header']> };
-
 export function mountContinuing(root: HTMLElement, store: Store, session: Session): void {
   const title = find(root, 'summary', HTMLElement);
   const words = find(root, '.beginning > p', HTMLElement);
@@ -20,7 +18,7 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
 
   const update = async (): Promise<void> => {
     const listed = await list().catch((): Listed[] => []);
-    const rows = listed.filter((one): one is Whole => one.header !== null && one.header.of !== open()).map((one) => rowOf(one, session));
+    const rows = listed.filter(({ header }) => header.of !== open()).map((one) => rowOf(one, session));
     const nothing = rows.length === 0;
     title.textContent = nothing ? strings.projects.welcome : strings.projects.continue;
     words.hidden = !nothing;
@@ -42,7 +40,7 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
   refresh();
 }
 
-function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFrames }: Whole, session: Session): HTMLElement {
+function rowOf({ header: { of, name, frames, saved, sample, thumbnail }, hasFrames }: Listed, session: Session): HTMLElement {
   const known = sample === undefined ? null : sampleCalled(sample);
   const facts = strings.projects.left(frames, new Date(saved), known !== null || hasFrames);
   const button = element('button', '', 'work');
@@ -57,12 +55,12 @@ function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFr
   button.append(picture, text);
   button.addEventListener('click', () => {
     if (known !== null) void session.open.sample(known);
-    else if (hasFrames) void session.open.files(framesOf(file));
+    else if (hasFrames) void session.open.files(framesOf(of));
     // Their project is found when they are opened.
     else find(document, '#open-pair', HTMLInputElement).click();
   });
   const row = element('li');
-  row.dataset['file'] = file;
+  row.dataset['of'] = of;
   row.append(button);
   return row;
 }

@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, correctedIn, isDraft, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, type Tracked, isDraft, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -40,7 +40,7 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     const { tracked, look } = now;
     const frames = shownFrames(tracked);
     const sameFrames = frames === shownFrames(before.tracked);
-    const same = sameFrames && tracked?.annotations === before.tracked?.annotations && tracked?.exact === before.tracked?.exact;
+    const same = sameFrames && tracked?.annotated === before.tracked?.annotated;
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
@@ -89,8 +89,8 @@ function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[
     }
   });
   context.globalAlpha = 1;
-  for (const [index, ids] of correctedIn(tracked)) {
-    for (const [id, place] of places) if (ids.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
+  for (const [index, { objects }] of tracked.annotated) {
+    for (const [id, place] of places) if (objects.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
   }
 }
 

@@ -1,14 +1,14 @@
 //! Asks before the page is left with unsaved corrections. Without them there is no listener, because it would keep the page out of the
 //! back/forward cache.
 
+import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { isUnsavedClip } from '../state/tracked.js';
 
-export function mountLeaving(page: Window, store: Store): void {
+export function mountLeaving(page: Window, store: Store, session: Session): void {
   const ask = (event: BeforeUnloadEvent): void => event.preventDefault();
   store.subscribe((now, before) => {
-    if (now.tracked === before.tracked && now.keptClips === before.keptClips) return;
-    if ([now.tracked, ...now.keptClips.values()].some((clip) => clip !== null && isUnsavedClip(clip))) page.addEventListener('beforeunload', ask);
+    if (now.tracked === before.tracked && now.keeping === before.keeping) return;
+    if (session.projects.isUnsaved) page.addEventListener('beforeunload', ask);
     else page.removeEventListener('beforeunload', ask);
   });
 }

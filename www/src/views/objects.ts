@@ -3,10 +3,9 @@
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { colourFromHex } from '../drawing/palette.js';
-import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Look, Result, State, Store } from '../state/state.js';
-import { type Life, isDrafting, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, isDrafting, isObject, isReady, livesOf, lockedIn, shownFrames } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, rename } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
@@ -33,13 +32,13 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     list.hidden = look.kind !== 'objects' || tracked === null;
     if (tracked === null) return;
     foot.hidden = list.hidden;
-    add.disabled = tracked.spans.length === 0;
+    add.disabled = !isReady(tracked);
     if (list.hidden) return;
     const lives = livesOf({ frames: shownFrames(tracked) });
     list.inert = isDrafting(tracked);
     const ids = [0, ...lives.map(({ id }) => id)];
     // A new object that is selected but not painted yet.
-    if (look.selected !== null && look.selected > tracked.largest && look.selected !== UNLABELLED) ids.push(look.selected);
+    if (look.selected !== null && isObject(look.selected) && !tracked.objects.some(({ number }) => number === look.selected)) ids.push(look.selected);
     // Rows that stay are left alone: a press may have begun in one, or a name be typed.
     const held = heldRow(list);
     for (const [id, { element }] of rows) {
@@ -110,14 +109,14 @@ function rowOf(id: number, store: Store, session: Session): Row {
     // Where it is not in sight, it looks as it did.
     if (result !== null && result !== drawn) drawThumbnail(thumbnail, (drawn = result), [id]);
     facts.textContent = factsOf(life, here === undefined && result !== null);
-    const ready = life !== null && tracked !== null && tracked.spans.length > 0;
+    const ready = life !== null && isReady(tracked);
     for (const control of [lock, split, remove]) control.disabled = !ready;
     const alone = !ids.some((other) => other !== 0 && other !== id);
     for (const { what, button } of aboutOthers) {
       button.disabled = alone || (!ready && what !== 'hide');
       button.setAttribute('aria-label', strings.othersOf(button.textContent, called));
     }
-    lock.setAttribute('aria-pressed', String(tracked !== null && tracked.locked.has(id)));
+    lock.setAttribute('aria-pressed', String(tracked !== null && lockedIn(tracked).has(id)));
     lock.setAttribute('aria-label', strings.lockOf(called));
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
     doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;

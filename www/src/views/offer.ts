@@ -3,6 +3,7 @@
 
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
+import { isReady } from '../state/tracked.js';
 import { find } from './markup.js';
 import { chooseTool } from './tools.js';
 
@@ -43,5 +44,5 @@ export class Offer {
 
 /** Whether the background of a clip is selected, which takes corrections. */
 function isNotFound({ look, tracked }: State): boolean {
-  return look.kind === 'objects' && look.selected === 0 && tracked !== null && tracked.spans.length > 0 && tracked.run.phase !== 'working';
+  return look.kind === 'objects' && look.selected === 0 && isReady(tracked) && tracked.run.phase !== 'working';
 }

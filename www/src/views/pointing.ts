@@ -2,7 +2,7 @@
 
 import { promptOf } from '../session/clip/drawing.js';
 import { type Pointing, type State, type Store, seenIn } from '../state/state.js';
-import type { Prompt } from '../state/annotation.js';
+import type { Prompt } from '../state/tracked.js';
 import { drawn, find } from './markup.js';
 
 /** Radius of a disc, and half the length of the lines in it, pixels of the screen. */
@@ -37,7 +37,7 @@ export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store
     }
     const isShown = now.tool.name === 'box' && prompt !== null;
     help.textContent = isShown ? HELP[now.tool.pointing] : '';
-    const masks = isShown ? now.tracked?.frames[prompt.frame]?.runs : undefined;
+    const masks = isShown ? now.tracked?.frames[seenIn(now)?.index ?? -1]?.runs : undefined;
     const unit = 1 / (marks.ownerSVGElement?.getScreenCTM()?.a ?? 1);
     marks.replaceChildren(...(isShown && masks ? marksOf(prompt, (now.pair.first?.width ?? masks.width) / masks.width, unit) : []));
   };

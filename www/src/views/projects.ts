@@ -31,7 +31,7 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const forget = async (listed: Listed): Promise<void> => {
     try {
       await session.projects.forget(listed);
-      session.say(strings.projects.forgotten(listed.header?.name ?? listed.file));
+      session.say(strings.projects.forgotten(listed.header.name));
     } catch (error) {
       session.say(sentenceOf(error), codeOf(error));
     }
@@ -52,13 +52,11 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   void refresh();
 }
 
-function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement {
+function rowOf({ header: { of, name, frames, saved }, bytes }: Listed, forget: () => void): HTMLElement {
   const row = element('li');
-  row.dataset['file'] = file;
+  row.dataset['of'] = of;
   const text = element('div');
-  const name = header?.name ?? file;
-  text.append(element('strong', header === null ? strings.projects.damagedFile : name));
-  text.append(element('span', header === null ? file : strings.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
+  text.append(element('strong', name), element('span', strings.projects.facts(frames, bytes, new Date(saved)), 'faint'));
   const button = element('button', strings.projects.forget, 'button small quiet');
   button.type = 'button';
   button.setAttribute('aria-label', strings.projects.forgetOf(name));

@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { type Store, seenIn } from '../state/state.js';
-import { acceptedIn, changedIn, isTracked, masksIn } from '../state/tracked.js';
+import { acceptedIn, changedIn, isReady, isTracked, masksIn } from '../state/tracked.js';
 import { contextOf, find } from './markup.js';
 
 /** The colours of frames in the bar. */
@@ -23,7 +23,7 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
   store.subscribe((now, before) => {
     const { tracked, look, pair } = now;
     if (tracked === before.tracked && look === before.look && pair === before.pair) return;
-    box.hidden = bar.hidden = !isTracked(tracked) || tracked.spans.length === 0 || look.kind !== 'objects';
+    box.hidden = bar.hidden = !isTracked(tracked) || !isReady(tracked) || look.kind !== 'objects';
     if (box.hidden || tracked === null) return;
     const { frames, clip } = tracked;
     const accepted = acceptedIn(tracked);

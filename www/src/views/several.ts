@@ -2,10 +2,9 @@
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
-import { keyOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, selectedIn } from '../state/state.js';
-import { livesOf } from '../state/tracked.js';
+import { isReady, livesOf, lockedIn, objectsOf } from '../state/tracked.js';
 import { onClass } from './classes.js';
 import { takesText } from './focused.js';
 import { find } from './markup.js';
@@ -136,7 +135,7 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
     find(document, '#open-export', HTMLElement).focus();
     find(document, '#export', HTMLElement).showPopover();
   });
-  onClass(field, (name) => session.objects.setClass(chosen(), name));
+  onClass(field, (name) => session.objects.setClasses(new Map(chosen().map((id) => [id, name]))));
 
   const render = ({ look, tracked }: State): void => {
     const { among } = look;
@@ -160,12 +159,13 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
     // Those that are gone leave the selection.
     if (ids.length < among.size) return choose(ids);
     status.textContent = strings.selected(ids.length);
-    const ready = tracked.spans.length > 0;
+    const ready = isReady(tracked);
+    const [locked, entries] = [lockedIn(tracked), objectsOf(tracked)];
     merge.disabled = !ready || ids.length < 2;
     for (const control of actions) control.disabled = !ready || ids.length === 0;
     field.disabled = ids.length === 0;
-    lock.setAttribute('aria-pressed', String(ids.length > 0 && ids.every((id) => tracked.locked.has(id))));
-    const classes = new Set(ids.map((id) => tracked.classes[keyOf('objects', id)] ?? ''));
+    lock.setAttribute('aria-pressed', String(ids.length > 0 && ids.every((id) => locked.has(id))));
+    const classes = new Set(ids.map((id) => entries.get(id)?.class ?? ''));
     if (document.activeElement !== field) field.value = classes.size === 1 ? [...classes][0]! : '';
   };
   store.subscribe((now, before) => {

@@ -1,12 +1,10 @@
 //! The tools: view, brush, eraser, polygon, box; the size of the brush, what follows, whether drawing is exact; undo and redo.
 
-import type { ClipPropagation } from '../segmented.js';
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
-import { spanAt } from '../state/spans.js';
-import { type State, type Store, type ToolName, seenIn } from '../state/state.js';
-import { isCorrecting, isDrafting } from '../state/tracked.js';
+import { type State, type Store, type Tool, type ToolName, seenIn } from '../state/state.js';
+import { isDrafting, isReady, lockedIn, takesCorrections } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -25,7 +23,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   form.addEventListener('submit', (event) => event.preventDefault());
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, session, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
-  spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as ClipPropagation } }));
+  spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as Tool['spread'] } }));
   exact.addEventListener('change', () => store.set({ tool: { ...store.get().tool, exact: exact.checked } }));
   undo.addEventListener('click', () => session.undo());
   redo.addEventListener('click', () => session.redo());
@@ -49,8 +47,8 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0, whyNot(store.get(), name));
       help.classList.toggle('away', tool.name !== name);
     }
-    undo.disabled = tracked === null || (tracked.past.length === 0 && !isCorrecting(tracked.run));
-    redo.disabled = tracked === null || tracked.future.length === 0;
+    undo.disabled = tracked === null || tracked.steps.undo === 0;
+    redo.disabled = tracked === null || tracked.steps.redo === 0;
   };
   store.subscribe((now, before) => {
     const same = (['tool', 'result', 'live', 'tracked', 'pair'] as const).every((part) => now[part] === before[part]);
@@ -62,12 +60,12 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
 /** Why nothing can be drawn with a tool on the frame that is seen; `null` if something can. */
 function whyNot(state: State, tool: ToolName): string | null {
   const { tracked, look } = state;
-  if (tracked === null || look.kind !== 'objects' || tracked.spans.length === 0) return isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady;
+  if (look.kind !== 'objects' || !isReady(tracked) || isDrafting(tracked)) return isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady;
   const seen = seenIn(state);
-  if (seen !== null && spanAt(tracked.spans, seen.index) === null) return strings.notTracked;
+  if (seen !== null && !takesCorrections(tracked, seen.index)) return strings.notTracked;
   if (tool === 'box') return null;
   if (look.selected === null) return strings.notices.chooseMask;
-  return tracked.locked.has(look.selected) ? strings.notices.isLocked(nameOf(look, look.selected)) : null;
+  return lockedIn(tracked).has(look.selected) ? strings.notices.isLocked(nameOf(look, look.selected)) : null;
 }
 
 /** Selects a tool. For drawing it shows the first frame and the objects of the clip, and selects one if none is. */

@@ -3,6 +3,7 @@
 
 import type {
   Clip,
+  ClipAnnotation,
   ClipEntry,
   ClipEvent,
   ClipFrame,
@@ -18,6 +19,7 @@ import { cancelled, VeroneseError } from '../../common/errors.js';
 import { checkCount } from '../clip/frames.js';
 import { type Seen, Tracks, seenIn, sized } from '../clip/tracks.js';
 import type { ClipAnswer, ClipCommand, ClipStatus, ClipTask, LabelledFrame, SettledStep, WantedFrame } from '../messages.js';
+import { taken } from '../taking.js';
 import { type Perform, parted } from '../tasks.js';
 import { Ahead, type Solve, type Solved } from './ahead.js';
 import * as commands from './commands.js';
@@ -269,6 +271,10 @@ export class OpenedClip implements Clip, StepClip {
     return this.#apply(() => commands.replaceCommand(this, declaration));
   }
 
+  restore(saved: Uint8Array): ClipStep {
+    return this.#apply(() => ({ type: 'restore', saved: taken([checkedBytes('what was saved', saved)], false)[0] as Uint8Array }));
+  }
+
   undo(): Promise<boolean> {
     return this.#move('undo');
   }
@@ -321,6 +327,11 @@ export class OpenedClip implements Clip, StepClip {
     if (step.frame === undefined) throw invalidInput('the step is about no frame of its own');
     await Promise.race([step, step.changed]);
     return this.labels(step.frame);
+  }
+
+  async annotations(index: number): Promise<ClipAnnotation[]> {
+    commands.frameOf(this, 'frame', index);
+    return this.#send((clip) => ({ call: 'annotationsOfClip', clip, index }));
   }
 
   async tracks(): Promise<ClipTracks> {

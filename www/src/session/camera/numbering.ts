@@ -3,7 +3,9 @@
 
 import type { ClipFrame } from 'veronese';
 import { UNLABELLED } from '../../result/masks.js';
-import { MOST_OBJECTS } from '../../state/spans.js';
+
+/** The largest number of an object. */
+const MOST_OBJECTS = 254;
 
 type Numbered = Pick<ClipFrame, 'labels' | 'objects' | 'background'>;
 

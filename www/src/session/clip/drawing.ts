@@ -1,17 +1,14 @@
-//! Drawing objects of a clip: strokes, boxes and clicks, masks copied to other frames, objects split. It becomes annotations of objects in
-//! frames, in pixels of the masks. Loaded when something is drawn.
+//! Drawing objects of a clip: strokes, boxes and clicks, masks copied to other frames. It becomes annotations of objects in frames, in pixels of
+//! the masks. Loaded when something is drawn.
 
-import type { ClipPropagation } from '../../segmented.js';
+import type { ClipAnnotation, ClipClick } from 'veronese';
 import { strings } from '../../common/strings.js';
-import { smallerPieces } from '../../correction/pieces.js';
 import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
 import { type Path, type StrokeTool, eachPixel } from '../../correction/strokes.js';
-import { UNLABELLED, keyOf, maskOf } from '../../result/masks.js';
-import { type Spread, seenOf } from '../../state/correction.js';
-import { spanAt } from '../../state/spans.js';
-import { type Pointing, type Store, seenIn } from '../../state/state.js';
-import { type Box, type Click, type Painted, type Prompt, isPrompt, namesObjects, paintedOf, points } from '../../state/annotation.js';
-import type { Version } from '../../state/tracked.js';
+import { UNLABELLED, maskOf } from '../../result/masks.js';
+import { painted, prompted } from '../../state/said.js';
+import type { Pointing, Store } from '../../state/state.js';
+import { type Box, type Prompt, type Tracked, acceptedIn, lockedIn, objectsOf, takesCorrections } from '../../state/tracked.js';
 import type { Objects } from './objects.js';
 
 /** A box with both sides below this share of the frame's width is a click. */
@@ -46,16 +43,21 @@ export class Drawing {
       const scale = masks.width / frame.width;
       const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
       // A polygon is the object: around it there is none. What is drawn exactly changes nothing around it.
-      const isOutline = drawn.filled === true && tool === 'brush' && own !== 0 && this.#spread() !== 'exact';
+      const isOutline = drawn.filled === true && tool === 'brush' && own !== 0 && this.#propagate() !== 'exact';
       const [shown, labels] = [unpacked(masks), nothing(masks)];
       if (isOutline) labels.fill(0);
       // An object with a name is changed by its own strokes alone.
-      const stays = (id: number): boolean => now.locked.has(id) || (id !== own && keyOf('objects', id) in now.names);
+      const [locked, objects] = [lockedIn(now), objectsOf(now)];
+      const stays = (id: number): boolean => locked.has(id) || (id !== own && (objects.get(id)?.name ?? '') !== '');
+      const is = tool === 'eraser' || own === 0 ? 0 : 1;
+      let isAny = false;
       eachPixel(path, masks.width, masks.height, (p) => {
-        if (!stays(shown[p]!)) labels[p] = tool === 'eraser' ? 0 : own;
+        if (stays(shown[p]!)) return;
+        labels[p] = is;
+        isAny = true;
       });
-      if (tool === 'brush' && !labels.includes(own)) return void this.#objects.refuse(strings.notices.locked);
-      this.#paint(index, [[own, labels]]);
+      if (tool === 'brush' && !isAny) return void this.#objects.refuse(strings.notices.locked);
+      this.#paint(index, own, labels);
     };
   }
 
@@ -82,15 +84,13 @@ export class Drawing {
       const isClick = pointing === 'remove' || Math.max(width, height) <= Math.max(STILL * masks.width, 1);
       const isBeside = Math.min(x, y) < -0.5 || x >= frame.width - 0.5 || y >= frame.height - 0.5;
       if (isClick && isBeside) return;
-      const spread = this.#spread();
-      const prompt: Prompt = { clicks: [], box: null, ...before, frame: index, object, propagate: spread === 'exact' ? 'none' : spread };
-      const now = refined(prompt, isClick ? [columns[0]!, rows[0]!, pointing === 'remove' ? -1 : 1] : [left, top, width, height]);
-      if (!points(now)) return void this.#objects.refuse(strings.notices.nothingThere);
+      const now = refined(before ?? { object, clicks: [], box: null }, isClick ? [columns[0]!, rows[0]!, pointing === 'remove' ? -1 : 1] : [left, top, width, height]);
+      if (now.box === null && !now.clicks.some(([, , sign]) => sign > 0)) return void this.#objects.refuse(strings.notices.nothingThere);
       if (before === null) {
         this.#store.look({ selected: object });
         this.#store.set({ tool: { ...this.#store.get().tool, pointing: 'new' } });
       }
-      void this.#objects.carrying.correct({ annotations: [now] });
+      void this.#point(index, now);
     };
   }
 
@@ -104,10 +104,9 @@ export class Drawing {
     if (this.#objects.areLocked(own)) return null;
     const to = at.index + by;
     const [here, there] = [tracked.frames[at.index]?.runs, tracked.frames[to]?.runs];
-    if (here === undefined || there === undefined || spanAt(tracked.spans, to) === null) return this.#objects.refuse(strings.notices.noFrameThere);
-    const [mask, before] = [unpacked(here), unpacked(there)];
-    const labels = before.map((label, p) => (mask[p] !== own ? 0 : tracked.locked.has(label) ? UNLABELLED : own));
-    this.#paint(to, [[own, labels]]);
+    if (here === undefined || there === undefined || !takesCorrections(tracked, to)) return this.#objects.refuse(strings.notices.noFrameThere);
+    const [mask, before, locked] = [unpacked(here), unpacked(there), lockedIn(tracked)];
+    this.#paint(to, own, before.map((label, p) => (mask[p] !== own ? 0 : locked.has(label) ? UNLABELLED : 1)));
     return to;
   }
 
@@ -120,79 +119,58 @@ export class Drawing {
     if (at === null || number === null || result === null || masks === undefined) return null;
     const { segmentation } = result;
     const found = unpacked(resized(packed(segmentation.labels, segmentation.width, segmentation.height), masks));
-    this.#paint(at.index, [[number, found.map((label) => (maskOf(label, segmentation, look.kind) === mask ? number : 0))]]);
+    this.#paint(at.index, number, found.map((label) => (maskOf(label, segmentation, look.kind) === mask ? 1 : 0)));
     return number;
   }
 
-  /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
-  split(id: number): void {
-    const { tracked } = this.#store.get();
-    const frame = seenIn(this.#store.get())?.index ?? null;
-    const masks = frame === null ? undefined : tracked?.frames[frame]?.runs;
-    if (!this.#objects.takesCorrections() || masks === undefined || !tracked || frame === null || this.#objects.areLocked(id)) return;
-    const pieces = smallerPieces(unpacked(masks), masks.width, id);
-    const number = this.#objects.newNumber();
-    if (pieces.length === 0) return void this.#objects.refuse(strings.notices.onePiece);
-    if (number === null) return;
-    const [is, isNot] = [nothing(masks), nothing(masks)];
-    for (const p of pieces) [is[p], isNot[p]] = [number, 0];
-    // An automatic object gives way by itself.
-    const isOwn = keyOf('objects', id) in tracked.names || tracked.annotations.some((one) => one.object === id || (!isPrompt(one) && one.labels.labels.includes(id)));
-    this.#paint(frame, [...(isOwn ? [[id, isNot] as const] : []), [number, is]]);
+  /** Paints an object in a frame: 1 where it is, 0 where it is not, 255 where that is left open. Of 0: there is no object where the labels are 0. */
+  #paint(frame: number, object: number, labels: Uint8Array): void {
+    const propagate = this.#propagate();
+    const annotation: ClipAnnotation = object === 0 ? { frame, propagate, labels } : { frame, propagate, object, strokes: labels };
+    void this.#objects.living.say((clip) => clip.annotate(annotation), painted(frame, object, labels), { cause: 'corrected', frames: [frame], ...this.#reach(frame) });
   }
 
-  /** Paints objects in a frame, each by its number: where it is, where it is not, and 255 where that is left open. */
-  #paint(frame: number, all: readonly (readonly [number, Uint8Array])[]): void {
-    const { tracked } = this.#store.get();
-    const spread = this.#spread();
-    if (tracked === null) return;
-    if (spread !== 'exact') return void this.#objects.carrying.correct({ annotations: all.flatMap(([object, labels]) => painted(tracked, frame, object, labels, spread)) });
-    const seen = all.map(([object, labels]) => seenOf(tracked, frame, object, labels));
-    this.#objects.carrying.draw(new Map([[frame, seen[0]!.map((label, p) => seen.findLast((labels) => labels[p] !== UNLABELLED)?.[p] ?? label)]]));
+  async #point(frame: number, prompt: Prompt): Promise<void> {
+    const { object, clicks, box } = prompt;
+    const spread = this.#propagate();
+    const annotation: ClipAnnotation = { frame, propagate: spread === 'exact' ? 'none' : spread, object, clicks, ...(box && { box }) };
+    const { living } = this.#objects;
+    const isDone = await living.say((clip) => clip.annotate(annotation), prompted(frame, prompt), { cause: 'corrected', frames: [frame], ...this.#reach(frame) });
+    if (!isDone || (await living.shows(frame, object))) return;
+    this.#store.say(strings.notices.nothingThere);
+    await living.undo();
   }
 
-  #spread(): Spread {
+  #propagate(): ClipAnnotation['propagate'] & string {
     const { exact, spread } = this.#store.get().tool;
     return exact ? 'exact' : spread;
   }
-}
 
-/**
- * The annotations of an object painted in a frame: its number, 0 where it is not, 255 where that is left open. What was merged into the object
- * is part of it. Of the background: that all unlocked objects there are not.
- */
-export function painted(version: Version, frame: number, object: number, labels: Uint8Array, propagate: ClipPropagation): Painted[] {
-  const masks = version.frames[frame]?.runs;
-  if (masks === undefined) return [];
-  const runsOf = (all: Uint8Array): Runs => packed(all, masks.width, masks.height);
-  const isNot = runsOf(labels.map((label) => (label === 0 ? 0 : UNLABELLED)));
-  const not = (other: number): Painted => ({ frame, object: other, propagate, labels: isNot });
-  if (object !== 0) {
-    const merged = labels.includes(0) ? [...version.became].filter(([, into]) => into === object).map(([other]) => not(other)) : [];
-    return [...merged, { frame, object, propagate, labels: runsOf(labels) }];
+  /** The number of frames that an annotation of a frame may reach, and of those that are accepted. */
+  #reach(frame: number): { readonly reach: number; readonly kept: number } {
+    const { tracked } = this.#store.get();
+    const spread = this.#propagate();
+    const reaches = (index: number): boolean => index === frame || spread === 'both' || spread === (index < frame ? 'backward' : 'forward');
+    const count = (indices: readonly number[]): number => indices.filter(reaches).length;
+    if (tracked === null) return { reach: 1, kept: 0 };
+    return { reach: count([...tracked.status.keys()].filter((index) => takesCorrections(tracked, index))), kept: count(acceptedIn(tracked).filter((index) => index !== frame)) };
   }
-  const map = paintedOf(version.annotations, frame, 0);
-  const isOfMasks = map !== null && namesObjects(map);
-  const under = isOfMasks ? unpacked(masks).filter((_, p) => labels[p] === 0) : [];
-  const stroked = version.annotations.filter((one) => one.frame === frame && !isPrompt(one)).map(({ object: other }) => other);
-  const others = [...new Set([...under, ...stroked])].filter((other) => other !== 0 && other !== UNLABELLED && !version.locked.has(other));
-  return [...(isOfMasks ? [] : [not(0)]), ...others.map(not)];
 }
 
-/** The prompt of an object in a frame, which may have been merged into this one; `null` if there is none. */
-export function promptOf({ annotations, became }: Pick<Version, 'annotations' | 'became'>, frame: number | null, id: number | null): Prompt | null {
-  return annotations.findLast((one): one is Prompt => isPrompt(one) && one.frame === frame && (became.get(one.object) ?? one.object) === id) ?? null;
+/** The prompt of an object in a frame; `null` if there is none. */
+export function promptOf({ annotated }: Pick<Tracked, 'annotated'>, frame: number | null, id: number | null): Prompt | null {
+  return annotated.get(frame ?? -1)?.prompts.find(({ object }) => object === id) ?? null;
 }
 
 /** A prompt with another click, or with a box. A box has all clicks that are the object's. */
-export function refined(prompt: Prompt, more: Click | Box): Prompt {
+export function refined(prompt: Prompt, more: ClipClick | Box): Prompt {
   const clicks = more.length === 3 ? [...prompt.clicks.filter(([x, y]) => x !== more[0] || y !== more[1]), more] : prompt.clicks;
   const box = more.length === 4 ? more : prompt.box;
   const inside = clicks.filter(([, , sign]) => sign > 0);
   return { ...prompt, clicks, box: box && inside.reduce(grown, box) };
 }
 
-function grown([left, top, width, height]: Box, [x, y]: Click): Box {
+function grown([left, top, width, height]: Box, [x, y]: ClipClick): Box {
   const [x0, y0] = [Math.min(left, x), Math.min(top, y)];
   return [x0, y0, Math.max(left + width, x + 1) - x0, Math.max(top + height, y + 1) - y0];
 }

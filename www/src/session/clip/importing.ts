@@ -1,15 +1,14 @@
 //! Masks from files of annotation tools, taken as corrections of the frames that they are of. Loaded on first use, with its texts.
 
+import type { ClipAnnotation } from 'veronese';
 import { type AnnotationNote, type AnnotationOptions, readAnnotations } from 'veronese/formats';
 import { PageError, codeOf, sentenceOf } from '../../common/errors.js';
 import { strings, withNotes } from '../../common/strings.js';
 import { packed, resized, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
-import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Choice, State, Store } from '../../state/state.js';
-import type { Annotation, Prompt } from '../../state/annotation.js';
-import type { Tracked } from '../../state/tracked.js';
+import { type Tracked, isReady, lockedIn, takesCorrections } from '../../state/tracked.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
 import type { Objects } from './objects.js';
@@ -70,7 +69,7 @@ export async function importMasks(files: readonly File[], store: Store, objects:
   const choice = (label: string, more: Said) => ({ label, choose: () => void importMasks(files, store, objects, shown, { ...said, ...more }) });
   const ask = (sentence: string, code: string | null, choices: readonly Choice[]) => store.say(sentence.replace(OPTIONS, ''), code, choices);
   const { tracked } = store.get();
-  if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
+  if (!isReady(tracked)) return store.say(strings.notices.notReady);
   try {
     const imported = await masksFrom(files, tracked, said);
     const { painted, prompts, classes, left, notes } = imported;
@@ -78,7 +77,11 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     const unknown = notes.find(({ code }) => code === 'first-frame-assumed');
     if (unknown) return ask(unknown.message, null, ([1, 0] as const).map((firstFrame) => choice(texts.first + firstFrame, { firstFrame })));
     shown.kind('objects');
-    void objects.carrying.correct({ annotations: annotationsOf(imported, tracked), notes: objects.withClasses(classes) });
+    const annotations = annotationsOf(imported, tracked);
+    const frames = [...new Set(annotations.map(({ frame }) => frame))];
+    const reach = tracked.status.filter(({ hasMasks }) => hasMasks).length;
+    // One step of undo.
+    void objects.living.say((clip) => clip.annotate(...annotations), (clip) => clip, { cause: 'corrected', frames, reach }).then((isDone) => isDone && objects.setClasses(classes, true));
     const taken = new Set([...painted.keys(), ...prompts.map(({ frame }) => frame)]).size;
     const sentence = withNotes(left.length > 0 ? texts.taken(taken, left) : '', notes).trim();
     if (sentence !== '') store.say(sentence);
@@ -90,19 +93,17 @@ export async function importMasks(files: readonly File[], store: Store, objects:
 }
 
 /** Label maps and boxes of frames, without what is locked. */
-function annotationsOf({ painted, prompts }: Imported, { frames, locked }: Tracked): Annotation[] {
-  const maps = [...painted].map(([frame, all]): Annotation => {
-    const { width, height } = frames[frame]!.runs;
-    return { frame, object: 0, propagate: 'both', labels: packed(all.map((label) => (locked.has(label) ? UNLABELLED : label)), width, height) };
-  });
-  return [...maps, ...prompts.filter(({ object }) => !locked.has(object))];
+function annotationsOf({ painted, prompts }: Imported, tracked: Tracked): ClipAnnotation[] {
+  const locked = lockedIn(tracked);
+  const maps = [...painted].map(([frame, all]): ClipAnnotation => ({ frame, labels: all.map((label) => (locked.has(label) ? UNLABELLED : label)) }));
+  return [...maps, ...prompts.filter((one) => 'object' in one && !locked.has(one.object))];
 }
 
 interface Imported {
   /** Labels by index of the frame: numbers of objects here, and 255 where that is left open. */
   readonly painted: ReadonlyMap<number, Uint8Array>;
   /** Boxes of objects that have no mask there. */
-  readonly prompts: readonly Prompt[];
+  readonly prompts: readonly ClipAnnotation[];
   readonly classes: ReadonlyMap<number, string>;
   /** Frames of the files that have no masks here, by name. */
   readonly left: readonly string[];
@@ -112,7 +113,7 @@ interface Imported {
 
 /** Throws the package's errors, or a {@link PageError} if no frame is one of the clip's or the sizes differ. */
 async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): Promise<Imported> {
-  const { clip, frames, spans } = tracked;
+  const { clip, frames } = tracked;
   const read = async (file: File) => ({ name: pathOf(file).join('/'), bytes: new Uint8Array(await file.arrayBuffer()) });
   const stems = stemsOf(tracked);
   const found = readAnnotations(await Promise.all(files.map(read)), { frames: stems, size: { width: clip.width, height: clip.height }, ...said });
@@ -120,7 +121,7 @@ async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): 
   const masked = (name: string) => {
     const index = indices.get(keyOf(name)) ?? -1;
     const runs = frames[index]?.runs;
-    return runs === undefined || spanAt(spans, index) === null ? null : { index, runs };
+    return runs === undefined || !takesCorrections(tracked, index) ? null : { index, runs };
   };
   const numbers = numbersFor(tracked);
   const [painted, left] = [new Map<number, Uint8Array>(), new Set<string>()];
@@ -138,7 +139,7 @@ async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): 
     // The page stays responsive between frames.
     await new Promise((resolve) => setTimeout(resolve));
   }
-  const prompts = found.boxes.flatMap(({ frame, object, box: [x, y, width, height] }): Prompt[] => {
+  const prompts = found.boxes.flatMap(({ frame, object, box: [x, y, width, height] }): ClipAnnotation[] => {
     const here = masked(frame);
     if (here === null) return left.add(frame) && [];
     // Masks can be smaller than frames; a box has at least a pixel of theirs.
@@ -146,7 +147,7 @@ async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): 
     const [column, row] = [Math.floor(x * scale), Math.floor(y * scale)];
     const [right, bottom] = [Math.min(Math.ceil((x + width) * scale), here.runs.width), Math.min(Math.ceil((y + height) * scale), here.runs.height)];
     const box = [column, row, right - column, bottom - row] as const;
-    return [{ frame: here.index, object: numbers[object]!, propagate: 'both', clicks: [], box }];
+    return [{ frame: here.index, object: numbers[object]!, box }];
   });
   if (painted.size === 0 && prompts.length === 0) throw new PageError('invalid-input', texts.none([...left]));
   const given = Object.entries(found.names).filter(([, name]) => name !== CLASS);
@@ -154,10 +155,10 @@ async function masksFrom(files: readonly File[], tracked: Tracked, said: Said): 
 }
 
 /** The number of an object here by that in a file. One that was merged goes on in the other; one that was deleted is a new object. */
-function numbersFor({ became, largest }: Tracked): Uint8Array {
-  const numbers = Uint8Array.from({ length: 256 }, (_, label) => became.get(label) ?? label);
-  let next = largest;
-  for (const [id, into] of became) if (into === 0 && next < MOST_OBJECTS) numbers[id] = ++next;
+function numbersFor({ objects }: Tracked): Uint8Array {
+  const numbers = Uint8Array.from({ length: 256 }, (_, label) => label);
+  let next = Math.max(0, ...objects.map(({ number }) => number));
+  for (const { number, became } of objects) numbers[number] = became === 0 && next < UNLABELLED - 1 ? ++next : became;
   return numbers;
 }
 

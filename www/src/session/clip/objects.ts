@@ -1,28 +1,27 @@
 //! The edits of a clip's objects: merging and deleting, locks, names, classes and colours; and with `drawing.ts` strokes, boxes
-//! and clicks. Each becomes an annotation of objects, which is then carried through the clip.
+//! and clicks. Each becomes a command of the clip.
 
-import type { ClipOptions } from '../../segmented.js';
+import type { ClipEntry, Clip as PackageClip } from 'veronese';
 import { nameOf } from '../../common/naming.js';
 import { strings } from '../../common/strings.js';
 import type { Colour } from '../../drawing/palette.js';
-import { keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
-import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
+import { about, accepted, becoming } from '../../state/said.js';
 import { type Store, seenIn } from '../../state/state.js';
-import { type Notes, isDrafting, toReview } from '../../state/tracked.js';
-import type { Carrying } from './carrying.js';
+import { type Tracked, isDrafting, isReady, lockedIn, objectsOf, takesCorrections, toReview } from '../../state/tracked.js';
+import type { Living } from './living.js';
+import type { ClipSegmenting } from './segmenting.js';
 
 /** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}, {@link Objects.take}, {@link Objects.point}. */
 interface Drawing {
   take(mask: number): number | null;
   copyMask(by: 1 | -1): number | null;
-  split(id: number): void;
   beginPrompt(pointing: 'new'): ((path: { readonly points: readonly number[] }) => void) | null;
 }
 
 export class Objects {
   readonly #store: Store;
-  readonly carrying: Carrying;
+  readonly #clip: ClipSegmenting;
   /** Draws; loaded when it is used, and `null`, with a notice, if it cannot be. Set by the brush. */
   drawing: () => Promise<Drawing | null> = () => Promise.resolve(null);
   /** Ends the stroke that is being drawn, before other frames are shown. Set by the brush. */
@@ -30,24 +29,33 @@ export class Objects {
   /** Ends when nothing is being drawn. Set by the brush. */
   drawn: () => Promise<void> = () => Promise.resolve();
 
-  constructor(store: Store, carrying: Carrying) {
+  constructor(store: Store, clip: ClipSegmenting) {
     this.#store = store;
-    this.carrying = carrying;
+    this.#clip = clip;
+  }
+
+  /** The clip that takes corrections. There is one whenever the state says that it does. */
+  get living(): Living {
+    return this.#clip.living!;
   }
 
   /** Objects become one, under the smallest of their numbers and with the class of the first that has one. */
   merge(...ids: readonly number[]): void {
-    const group = this.#known(ids).sort((one, other) => one - other);
-    const { tracked } = this.#store.get();
-    if (group.length < 2 || tracked === null || this.areLocked(...group)) return;
-    const [name] = group.flatMap((id) => tracked.classes[keyOf('objects', id)] ?? []);
-    this.#edit({ merge: [group] }, name === undefined ? {} : this.withClasses(new Map([[group[0]!, name]])));
+    const [into, ...others] = this.#known(ids).sort((one, other) => one - other);
+    const tracked = this.#corrected();
+    if (into === undefined || others.length === 0 || tracked === null || this.areLocked(into, ...others)) return;
+    const objects = objectsOf(tracked);
+    const [name] = [into, ...others].flatMap((id) => objects.get(id)?.class || []);
+    const became = new Map(others.map((id) => [id, into]));
+    void this.living.say((clip) => clip.merge(into, ...others), becoming(became), { cause: 'corrected', reach: 1 });
+    if (name !== undefined && objects.get(into)?.class === '') this.#describe([into], () => ({ class: name }), true);
   }
 
   /** The objects become background in the whole clip. */
   remove(...ids: readonly number[]): void {
     const known = this.#known(ids);
-    if (known.length > 0 && !this.areLocked(...known)) this.#edit({ delete: known });
+    if (known.length === 0 || this.#corrected() === null || this.areLocked(...known)) return;
+    void this.living.say((clip) => clip.delete(...known), becoming(new Map(known.map((id) => [id, 0]))), { cause: 'corrected', reach: 1 });
   }
 
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
@@ -68,25 +76,27 @@ export class Objects {
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
-  async split(id: number): Promise<void> {
-    (await this.drawing())?.split(id);
+  split(id: number): void {
+    const at = this.frameToCorrect();
+    if (at === null || this.areLocked(id) || this.newNumber() === null) return;
+    const { index } = at;
+    void this.living.say((clip) => clip.split(id, index), (clip) => clip, { cause: 'corrected', frames: [index], reach: this.#length(), refusal: strings.notices.onePiece });
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */
   addObject(): boolean {
-    const number = this.takesCorrections() ? this.newNumber() : null;
+    const number = this.#corrected() === null ? null : this.newNumber();
     if (number !== null) this.#store.look({ selected: number });
     return number !== null;
   }
 
   /** Locks the objects, or unlocks them if all are locked: nothing changes what is locked. */
   toggleLock(...ids: readonly number[]): void {
-    const { tracked } = this.#store.get();
     const known = this.#known(ids);
-    if (tracked === null || known.length === 0 || !this.takesCorrections()) return;
-    const { locked } = tracked;
-    const unlocks = known.every((id) => locked.has(id));
-    this.carrying.note({ locked: new Set(unlocks ? [...locked].filter((id) => !known.includes(id)) : [...locked, ...known]) }, unlocks ? 'unlocked' : 'locked');
+    const tracked = this.#corrected();
+    if (known.length === 0 || tracked === null) return;
+    const locked = !known.every((id) => lockedIn(tracked).has(id));
+    void this.living.say((clip) => clip.lock(known, locked), about(known, () => ({ locked })), { cause: locked ? 'locked' : 'unlocked' });
   }
 
   /**
@@ -94,79 +104,86 @@ export class Objects {
    * nothing could be accepted.
    */
   accept(which: 'shown' | 'all'): number | null {
-    const { tracked } = this.#store.get();
-    if (!this.takesCorrections() || tracked === null) return null;
-    const { frames, accepted } = tracked;
+    const tracked = this.#corrected();
+    if (tracked === null) return null;
     const at = seenIn(this.#store.get())?.index ?? -1;
-    const masks = (which === 'all' ? frames : [frames[at] ?? null]).filter((frame) => frame !== null);
-    if (masks.length === 0) return this.refuse(strings.notTracked);
-    const now = new Set([...frames.filter((frame) => frame !== null && accepted.has(frame)), ...masks].filter((frame) => frame !== null));
-    if (masks.some((frame) => !accepted.has(frame))) this.carrying.note({ accepted: now }, 'accepted');
-    return toReview({ frames, accepted: now }, at);
+    const frames = (which === 'all' ? [...tracked.status.keys()] : [at]).filter((index) => takesCorrections(tracked, index));
+    if (frames.length === 0) return this.refuse(strings.notTracked);
+    if (frames.some((index) => !tracked.status[index]!.accepted)) {
+      void this.living.say((clip) => clip.accept(frames), accepted(frames), { cause: 'accepted' });
+    }
+    return toReview(accepted(frames)(tracked), at);
   }
 
   /** Sets the name or colour of an object. An empty name restores the default. `goesOn`: in the same step of undo as the last one. */
   setAppearance(id: number, what: { name: string } | { colour: Colour }, goesOn = false): void {
     const { tracked } = this.#store.get();
-    if (tracked === null) return;
-    const key = keyOf('objects', id);
-    if ('colour' in what) return this.carrying.note({ colours: { ...tracked.colours, [key]: what.colour } }, 'described', goesOn);
-    const { [key]: given = '', ...others } = tracked.names;
-    if (what.name !== given) this.carrying.note({ names: what.name === '' ? others : { ...others, [key]: what.name } }, 'described');
+    const before = tracked === null ? undefined : objectsOf(tracked).get(id);
+    if (before !== undefined && !('name' in what && what.name === before.name)) this.#describe([id], () => ('name' in what ? what : { colour: [...what.colour] }), goesOn);
   }
 
   /** Those that are objects: the unlabelled pixels are none, nor is what is about to be painted. */
   #known(ids: readonly number[]): number[] {
-    const { largest = 0 } = this.#store.get().tracked ?? {};
-    return [...new Set(ids)].filter((id) => id > 0 && id <= largest);
-  }
-
-  /** Gives objects a class, which is in the list from then on; an empty text takes it away. */
-  setClass(ids: readonly number[], name: string): void {
     const { tracked } = this.#store.get();
-    const others = ids.filter((id) => (tracked?.classes[keyOf('objects', id)] ?? '') !== name);
-    if (others.length > 0) this.carrying.note(this.withClasses(new Map(others.map((id) => [id, name]))), 'described');
+    const objects = tracked === null ? new Map() : objectsOf(tracked);
+    return [...new Set(ids)].filter((id) => objects.has(id));
   }
 
-  withClasses(given: ReadonlyMap<number, string>): Partial<Notes> {
+  /** Gives objects a class, which is in the list from then on; an empty text takes it away. `goesOn`: in the same step of undo as the last one. */
+  setClasses(given: ReadonlyMap<number, string>, goesOn = false): void {
     const { tracked, classList } = this.#store.get();
-    const added = [...given.values()].filter((name) => name !== '');
-    if (added.some((name) => !classList.includes(name))) this.#store.set({ classList: [...new Set([...classList, ...added])] });
-    const all = [...Object.entries(tracked?.classes ?? {}), ...[...given].map(([id, name]) => [keyOf('objects', id), name] as const)];
-    return { classes: Object.fromEntries([...new Map(all)].filter(([, name]) => name !== '')) };
+    const objects = tracked === null ? new Map() : objectsOf(tracked);
+    const others = this.#known([...given.keys()]).filter((id) => objects.get(id)!.class !== given.get(id));
+    const added = others.map((id) => given.get(id)!).filter((name) => name !== '' && !classList.includes(name));
+    if (added.length > 0) this.#store.set({ classList: [...new Set([...classList, ...added])] });
+    this.#describe(others, (id) => ({ class: given.get(id)! }), goesOn);
   }
 
-  #edit(edits: NonNullable<ClipOptions['edits']>, notes: Partial<Notes> = {}): void {
-    if (this.takesCorrections()) void this.carrying.correct({ edits, notes });
+  /** One step of undo, or part of the one before. */
+  #describe(ids: readonly number[], what: (id: number) => Partial<Pick<ClipEntry, 'name' | 'class' | 'colour'>>, goesOn: boolean): void {
+    ids.forEach((id, k) => {
+      const { tracked } = this.#store.get();
+      const before = tracked === null ? undefined : objectsOf(tracked).get(id);
+      if (before === undefined) return;
+      const { name, class: named, colour } = before;
+      const now = { name, class: named, ...(colour && { colour }), ...what(id) };
+      const command = (clip: PackageClip) => clip.describe(id, now, { coalesce: goesOn || k > 0 });
+      void this.living.say(command, about([id], () => now), { cause: 'described' });
+    });
   }
 
   /** Whether one of the objects is locked, with a notice. */
   areLocked(...ids: readonly number[]): boolean {
     const { tracked, look } = this.#store.get();
-    const id = ids.find((one) => tracked?.locked.has(one));
+    const locked = tracked === null ? new Set() : lockedIn(tracked);
+    const id = ids.find((one) => locked.has(one));
     if (id !== undefined) this.refuse(strings.notices.isLocked(nameOf(look, id)));
     return id !== undefined;
   }
 
   /** The frame on screen and its index; `null`, with a notice, if it takes no corrections. */
   frameToCorrect(): { readonly index: number; readonly frame: LoadedFrame } | null {
-    const { tracked } = this.#store.get();
+    const tracked = this.#corrected();
     const seen = seenIn(this.#store.get());
-    if (!this.takesCorrections() || tracked === null || seen === null) return null;
-    return spanAt(tracked.spans, seen.index) === null ? this.refuse(strings.notTracked) : seen;
+    if (tracked === null || seen === null) return null;
+    return takesCorrections(tracked, seen.index) ? seen : this.refuse(strings.notTracked);
   }
 
-  takesCorrections(): boolean {
+  /** The clip that takes corrections; `null`, with a notice, if it does not. */
+  #corrected(): Tracked | null {
     const { tracked } = this.#store.get();
-    const ready = tracked !== null && tracked.spans.length > 0;
-    if (!ready) this.refuse(isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady);
-    return ready;
+    if (isReady(tracked) && !isDrafting(tracked)) return tracked;
+    return this.refuse(isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady);
   }
 
   newNumber(): number | null {
-    const { tracked } = this.#store.get();
-    const number = (tracked?.largest ?? 0) + 1;
-    return number > MOST_OBJECTS ? this.refuse(strings.notices.tooMany) : number;
+    const { nextObject = 0 } = this.#store.get().tracked ?? {};
+    return nextObject === 0 ? this.refuse(strings.notices.tooMany) : nextObject;
+  }
+
+  /** Number of frames that a correction may reach. */
+  #length(): number {
+    return this.#store.get().tracked?.status.filter(({ hasMasks }) => hasMasks).length ?? 0;
   }
 
   refuse(sentence: string): null {

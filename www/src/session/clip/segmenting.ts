@@ -1,50 +1,62 @@
-//! Segmenting a clip from its in point to its out point, and going on with it. What is done stays when a run is cancelled or fails. The
-//! clip itself, the in point and the masks are in the state.
+//! The clip that is open: its in point and out point, segmenting it, and the living clip of the package behind it.
 
-import type { ClipFrame } from 'veronese';
+import { SegmenterPool } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
-import type { Settings } from '../../state/settings.js';
-import { exactly } from '../../state/exact.js';
-import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
+import type { Projects } from '../../projects/projects.js';
 import type { Store } from '../../state/state.js';
-import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, acceptedIn, isTracked, notesOf, savedOf, unchanged, untracked, versionOf } from '../../state/tracked.js';
+import type { Range, Tracked } from '../../state/tracked.js';
+import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
-import { draft } from './drafts.js';
-import { ClipFrames, STOPPED, blobOf, bytesOf, masksOf } from './frames.js';
-import type { Change, ClipRuns } from './runs.js';
-import type { Spans } from './spans.js';
-import { TimeLeft } from './time-left.js';
+import { Living } from './living.js';
 
-/** Masks are shown at most this often while they come, milliseconds. */
-const OFTEN = 100;
+/** More workers than this are not worth their memory. */
+const MOST_WORKERS = 8;
+
+/** Of more than two processors one is left for the page, which needs a part of one. */
+function workersFor(processors: number): number {
+  return Math.min(processors > 2 ? processors - 1 : processors, MOST_WORKERS);
+}
 
 export class ClipSegmenting {
-  /** The solved pairs of clips, by their fingerprints, for runs that go on. They are large, and no view shows them. */
-  readonly solvedPairs = new Map<string, SolvedPairs>();
   readonly #store: Store;
-  readonly #runs: ClipRuns;
-  readonly #spans: Spans;
   readonly #shown: Shown;
+  readonly #projects: Projects;
+  readonly #segmenter = new SegmenterPool({ jobs: workersFor(navigator.hardwareConcurrency || 1) });
+  #living: Living | null = null;
+  /** A clip that is about to be shown. */
+  #next: Living | null = null;
 
-  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
+  constructor(store: Store, shown: Shown, projects: Projects) {
     this.#store = store;
-    this.#runs = runs;
-    this.#spans = spans;
     this.#shown = shown;
+    this.#projects = projects;
+    store.subscribe(({ settings }, before) => {
+      if (settings.markUnknown !== before.settings.markUnknown) void this.#again();
+    });
   }
 
-  /** The objects of this clip, also from when it was open before. A run on another one ends. */
+  get living(): Living | null {
+    return this.#living;
+  }
+
+  /** Opens a clip that is about to be shown, with the work on it. */
+  async prepare(clip: Clip): Promise<void> {
+    this.#forgetNext();
+    const next = (this.#next = await this.#open(clip));
+    await next.opened;
+  }
+
+  /** The objects of this clip, which comes to the screen. */
   of(clip: Clip | null): Tracked | null {
     const { tracked } = this.#store.get();
-    if (clip !== null && tracked?.clip === clip) return tracked;
-    this.#runs.stop();
-    const { tracked: left, keptClips } = this.#store.get();
-    const kept = new Map(keptClips);
-    if (left !== null && left.solved > 0) kept.set(left.clip.fingerprint, left);
-    const known = clip === null ? undefined : kept.get(clip.fingerprint);
-    if (clip !== null) kept.delete(clip.fingerprint);
-    this.#store.set({ keptClips: kept });
-    return clip === null ? null : known === undefined ? untracked(clip) : { ...known, clip };
+    if (this.#next === null && clip !== null && tracked?.clip === clip) return tracked;
+    const left = this.#living;
+    if (left !== null && left !== this.#next) void this.#leave(left);
+    const next = this.#next?.clip === clip ? this.#next : null;
+    if (next === null) this.#forgetNext();
+    this.#next = null;
+    this.#living = clip === null ? null : (next ?? this.#new(clip, {}));
+    return this.#living?.tracked ?? null;
   }
 
   /** Moves the in point or the out point of the open clip. The other one makes way. */
@@ -58,158 +70,53 @@ export class ClipSegmenting {
     this.#store.clip({ range });
   }
 
-  /**
-   * Segments the open clip from its in point to its out point, or continues with it. Masks that there are stay until all new ones are
-   * there; what is outside stays, and corrections are applied again.
-   */
+  /** Segments the open clip from its in point to its out point, or goes on with it. Corrections are applied again. */
   async segment(): Promise<void> {
-    const { tracked, settings: own } = this.#store.get();
-    if (tracked === null) return;
-    const { clip, range } = tracked;
-    const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
-    const settings = { ...own, longestSide: alone ? own.longestSide : tracked.longestSide };
-    const { longestSide, ...options } = settings;
-    const { pairs } = this.#knownOf(clip, range, settings);
-    const frames = new ClipFrames(clip, longestSide, range);
-    const drafting = new AbortController();
-    const cancel = (): void => {
-      drafting.abort();
-      this.#finish(frames);
-    };
-    const ends = { cancel, stopped: () => this.#store.clip({ run: { phase: 'cancelled' } }) };
-    await this.#runs.run(ends, async (signal, set) => {
-      const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
-      const time = new TimeLeft(solved(), frames.length);
-      const solving = (): void => {
-        if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()), labelled: 0 }, solved: solved() });
-      };
-      set({ previews: tracked.frames });
-      solving();
-      const preview = (read: ClipFrames) => (frame: ClipFrame) => this.#preview(frame, read, set);
-      const fresh = !isTracked(tracked);
-      const drafts = fresh && settings.quality === 'best' && solved() < frames.length ? new ClipFrames(clip, longestSide, range) : null;
-      if (drafts !== null) void draft(drafts, { ...options, signal: drafting.signal }, preview(drafts));
-      const found = this.#runs.segmenter.segmentClip(frames, {
-        ...options,
-        signal,
-        transfer: true,
-        knownPairs: (index) => {
-          const known = pairs.get(index);
-          return known && bytesOf(known);
-        },
-        onPairs: (index, bytes) => {
-          pairs.set(index, blobOf(bytes));
-          solving();
-        },
-        onPreview: fresh && drafts === null ? preview(frames) : undefined,
-      });
-      const masks: TrackedFrame[] = [];
-      let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
-      try {
-        await this.#take(found, frames, masks, set);
-        run = frames.same ? { ...run, cause: 'same' } : { ...run, notes: found.tracks().notes ?? [] };
-      } catch (error) {
-        if (error !== STOPPED) throw error;
-        run = { phase: 'cancelled' };
-      }
-      const state = masks.length === 0 ? undefined : await found.state();
-      const { tracked: before } = this.#store.get();
-      if (signal.aborted || before === null) return;
-      // A run that was cancelled early has less than there was.
-      const covered = before.frames.every((frame, index) => frame === null || !contains(range, index) || index < range.first + masks.length);
-      if (state === undefined || !covered) return set({ run });
-      await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
-    });
-    drafting.abort();
-    this.#shown.ended();
+    try {
+      await this.#living?.segment();
+    } catch (error) {
+      this.#store.clip({ run: { phase: 'failed' } });
+      report(this.#store, error);
+    }
   }
 
   /** Cancels the run on the clip. A correction under way is taken back. */
   cancel(): void {
-    this.#runs.cancel();
+    this.#living?.cancel();
   }
 
-  /** Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. */
-  #finish(frames: ClipFrames): void {
+  /** Opens the clip again, as another option makes it another one. */
+  async #again(): Promise<void> {
+    const living = this.#living;
     const { tracked } = this.#store.get();
-    if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs') return this.#runs.stop();
-    frames.stop();
-    this.#store.clip({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
+    if (living === null || tracked?.clip !== living.clip) return;
+    this.#living = this.#new(living.clip, { found: living.found }, this.#leave(living));
+    await this.#living.opened;
   }
 
-  /** Shows a draft of a frame that has no masks yet. */
-  #preview(frame: ClipFrame, { range, size }: ClipFrames, set: Change): void {
-    const { tracked } = this.#store.get();
-    const index = range.first + frame.index;
-    if (tracked === null || tracked.frames[index] !== null) return;
-    set({ previews: tracked.previews.with(index, masksOf(frame, size)) });
-    this.#shown.objects(tracked);
+  /** The same work may still be being left. */
+  async #open(clip: Clip): Promise<Living> {
+    const isSame = this.#living?.clip.fingerprint === clip.fingerprint;
+    const left = isSame && this.#living !== null ? this.#leave(this.#living) : Promise.resolve();
+    await left;
+    return this.#new(clip, await this.#projects.remembered(clip));
   }
 
-  /** Takes the labelled frames as they come, and shows them if there are no masks yet. */
-  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, range, size }: ClipFrames, masks: TrackedFrame[], set: Change): Promise<void> {
-    const { tracked } = this.#store.get();
-    const fresh = !isTracked(tracked);
-    let shown = 0;
-    const show = (): void => {
-      const { tracked: before } = this.#store.get();
-      if (before === null) return;
-      shown = performance.now();
-      set({ run: { phase: 'working', stage: 'labels', left: null, labelled: masks.length } });
-      if (!fresh) return;
-      const frames = untracked(clip).frames.map((_, index) => masks[index - range.first] ?? null);
-      const previews = before.previews.map((shown, index) => frames[index] ?? shown);
-      set({ frames, previews, largest: largestOf(frames), longestSide, saved: savedOf({ ...before, frames }) });
-      this.#shown.objects(before);
-    };
-    try {
-      for await (const frame of found) {
-        masks.push(masksOf(frame, size));
-        if (performance.now() - shown >= OFTEN) show();
-      }
-    } finally {
-      if (masks.length > 0) show();
-    }
+  #new(clip: Clip, remembered: ConstructorParameters<typeof Living>[2], after: Promise<unknown> = this.#left): Living {
+    const parts = { store: this.#store, shown: this.#shown, segmenter: this.#segmenter, keeper: this.#projects.keeperOf(clip) };
+    return new Living(clip, parts, remembered, after);
   }
 
-  /** Puts the masks of a run in the place of those before, under the same numbers, and corrects them as those were corrected. */
-  async #replace(
-    before: Tracked,
-    masks: readonly TrackedFrame[],
-    range: Range,
-    { state, longestSide, run }: { readonly state: Uint8Array; readonly longestSide: number; readonly run: ClipRun },
-    signal: AbortSignal,
-    set: Change,
-  ): Promise<void> {
-    const { annotations, became } = before;
-    const isFirst = before.found.every((runs) => runs === null);
-    const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
-    let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
-    const corrected = annotations.some(({ frame }) => contains(range, frame)) || became.size > 0;
-    if (corrected || acceptedIn(before).some((index) => contains(range, index))) version = await this.#spans.repeated(before, version, signal);
-    const { tracked: now } = this.#store.get();
-    if (signal.aborted || now === null) return;
-    version = unchanged(now, version);
-    // A person's corrections can be brought back.
-    if (now.past.length > 0) set({ past: [...now.past, versionOf(now)] });
-    else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
-    set({ future: [] });
-    // Notes, and pixels that were drawn exactly meanwhile, stay.
-    const meanwhile = { ...version, ...notesOf(now), exact: atSize(now.exact, version.frames), largest: Math.max(version.largest, now.largest) };
-    this.#shown.version(exactly(meanwhile), corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
+  /** Settled when all clips that were left are closed. */
+  #left: Promise<unknown> = Promise.resolve();
+
+  #leave(living: Living): Promise<unknown> {
+    this.#projects.leave(living);
+    return (this.#left = Promise.all([this.#left, living.close()]));
   }
 
-  /** The pairs that were solved with these settings: other settings and another first frame begin anew. */
-  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
-    const key = JSON.stringify([first, settings.motions, settings.quality, settings.subject, settings.longestSide]);
-    const before = this.solvedPairs.get(fingerprint);
-    const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
-    this.solvedPairs.set(fingerprint, known);
-    return known;
+  #forgetNext(): void {
+    if (this.#next !== null) void this.#leave(this.#next);
+    this.#next = null;
   }
-}
-
-/** The largest number of an object in these frames. */
-function largestOf(frames: Version['frames']): number {
-  return frames.reduce((most, frame) => (frame?.objects ?? []).reduce((larger, { id }) => Math.max(larger, id), most), 0);
 }

@@ -1,0 +1,470 @@
+//! The clip of the package, from when the page opens a clip until it leaves it. Commands go to it, and what it says goes into the state: objects,
+//! what is known of frames, and labels, which are asked for when they have changed, those on screen first.
+
+import type { Clip as PackageClip, ClipEvent, ClipJournal, ClipStep, SegmenterPool } from 'veronese';
+import type { Clip } from '../../clips/clip.js';
+import { PageError, codeOf } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import type { Effect } from '../../state/said.js';
+import type { Store } from '../../state/state.js';
+import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Masks, type Prompt, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
+import { report } from '../failures.js';
+import type { Shown } from '../shown.js';
+import { ClipFrames, masksOf } from './frames.js';
+import { TimeLeft } from './time-left.js';
+
+/** Masks are shown at most this often while they come, milliseconds. */
+const OFTEN = 100;
+
+/** What a person has said, until it has taken effect. */
+interface Said {
+  readonly step: ClipStep;
+  effect: Effect;
+}
+
+export interface Saying {
+  readonly cause: DoneCause;
+  /** The frames that are annotated. */
+  readonly frames?: readonly number[];
+  /** Number of frames that it may reach; 0 if it changes no masks. */
+  readonly reach?: number;
+  /** Number of these that are accepted, and stay as they are. */
+  readonly kept?: number;
+  /** What is said if the clip cannot do it. */
+  readonly refusal?: string;
+}
+
+/** Masks that are known already, and the revision that they are of. */
+export interface KnownMasks {
+  readonly frames: Masks;
+  readonly revisions: readonly number[];
+}
+
+/** What is remembered of a clip, beside its journal. */
+export interface Remembered {
+  readonly known?: KnownMasks | null;
+  /** Number of steps up to the first masks. */
+  readonly found?: number;
+  /** A clip that was saved, which it takes over. */
+  readonly restored?: Uint8Array;
+}
+
+/** Where the clip is kept. */
+export interface Keeper {
+  readonly journal: ClipJournal;
+  /** Called when something was said, when it is written, and when it could not be. */
+  said(): void;
+  kept(): void;
+  refused(error: unknown): void;
+}
+
+/** Parts of the page that a clip needs. */
+interface Parts {
+  readonly store: Store;
+  readonly shown: Shown;
+  readonly segmenter: SegmenterPool;
+  readonly keeper: Keeper;
+}
+
+export class Living {
+  readonly clip: Clip;
+  /** Settled when the clip is open; rejects with what kept it from that. */
+  readonly opened: Promise<void>;
+  readonly #parts: Parts;
+  readonly #frames: ClipFrames;
+  #package: PackageClip | null = null;
+  #isClosed = false;
+  /** What the clip has answered, without what has been said since. */
+  #base: ClipState;
+  #said: readonly Said[] = [];
+  /** Frames whose labels have changed since they were asked for; and those of them that the step under way has changed. */
+  readonly #stale = new Set<number>();
+  readonly #fresh = new Set<number>();
+  #isAsking = false;
+  #lastShown = -Infinity;
+  /** Why the run that is under way will be done, and the range that is being segmented. */
+  #cause: DoneCause = 'continued';
+  #range: { readonly step: ClipStep; readonly time: TimeLeft; isEnded: boolean } | null = null;
+  /** How far the corrections under way have come. */
+  #reached: { readonly frames: Set<number>; readonly of: number; readonly time: TimeLeft } | null = null;
+  #kept = 0;
+  #isUnderWay = false;
+  #longestSide: number | null = null;
+  /** Number of steps up to the first masks. */
+  #found: number;
+
+  /** `known`: what is known of it from before. `after`: what has to end before it can be opened. */
+  constructor(clip: Clip, parts: Parts, { known = null, found = 0, restored }: Remembered, after: Promise<unknown>) {
+    this.clip = clip;
+    this.#parts = parts;
+    this.#found = found;
+    const frames = Array.from({ length: clip.count }, () => null);
+    this.#base = { frames, status: [], objects: [], annotated: new Map() };
+    const { store } = parts;
+    this.#frames = new ClipFrames(clip, () => this.longestSide, () => [store.get().pair.first, store.get().pair.second]);
+    this.opened = this.#open(known, restored, after);
+    this.opened.catch(() => undefined);
+  }
+
+  /** The longer side of the frames as they are segmented, pixels. */
+  get longestSide(): number {
+    const { width = 0, height = 0 } = this.#package ?? {};
+    return this.#longestSide ?? (width > 0 ? Math.max(width, height) : this.#parts.store.get().settings.longestSide);
+  }
+
+  /** The state of the clip as it is now. */
+  get state(): ClipState {
+    return this.#said.reduce((clip, { effect }) => effect(clip), this.#base);
+  }
+
+  /** The state of the clip when it comes to the screen. */
+  get tracked(): Tracked {
+    const known = this.#known;
+    const solved = known.status.filter(({ hasMasks }) => hasMasks).length;
+    return { ...untracked(this.clip), ...known, before: known.frames, solved, run: solved > 0 ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'idle' } };
+  }
+
+  /** Number of steps up to the first masks. */
+  get found(): number {
+    return this.#found;
+  }
+
+  /** The masks as they are known, and the revision that each is of. */
+  get masks(): KnownMasks {
+    const { frames, status } = this.#base;
+    const isKnown = (index: number): boolean => !this.#stale.has(index) && this.#said.length === 0;
+    return { frames, revisions: status.map(({ revision }, index) => (isKnown(index) ? revision : 0)) };
+  }
+
+  save(): Promise<Uint8Array> {
+    return this.#now.save();
+  }
+
+  async close(): Promise<void> {
+    this.#isClosed = true;
+    await this.opened.catch(() => undefined);
+    await this.#package?.close();
+  }
+
+  /** Gives the clip a command, of which `effect` is seen at once. Resolves when it has taken effect, to whether it has. */
+  async say(command: (clip: PackageClip) => ClipStep, effect: Effect, { cause, frames = [], reach = 0, kept = 0, refusal }: Saying): Promise<boolean> {
+    if (reach > 0) this.#begin(cause, kept);
+    this.#parts.keeper.said();
+    const said: Said = { step: command(this.#now), effect };
+    this.#said = [...this.#said, said];
+    const of = Math.max(reach, this.#reached?.of ?? 0);
+    if (reach > 0) this.#reached = { frames: this.#reached?.frames ?? new Set(), time: new TimeLeft(0, of), of };
+    this.#show(reach > 0 && this.#range === null ? { run: this.#correcting() } : {});
+    if (frames.length === 1 && reach > 0) {
+      // Only then what was painted is no longer laid over its frame.
+      said.step.shown.then((frame) => this.#take(frame.index, masksOf(frame), said), () => undefined);
+    }
+    try {
+      await said.step;
+      return true;
+    } catch (error) {
+      const code = codeOf(error);
+      if (code === 'invalid-option' && refusal !== undefined) this.#parts.store.say(refusal);
+      else if (code !== 'cancelled' && code !== 'clip-closed') report(this.#parts.store, reported(error));
+      return false;
+    } finally {
+      this.#forget(said);
+      for (const index of frames) this.#stale.add(index);
+      await this.#readAnnotations(frames).catch(() => undefined);
+      this.#ended(reach > 0 ? null : cause);
+    }
+  }
+
+  /** Whether the masks of a frame show an object. */
+  async shows(index: number, object: number): Promise<boolean> {
+    const { labels } = await this.#now.labels(index);
+    const number = this.#base.objects.find((one) => one.number === object)?.became ?? object;
+    return labels.includes(number);
+  }
+
+  async undo(): Promise<void> {
+    if (this.#steps.undo > 0) await this.#move('undone', (clip) => clip.undo());
+  }
+
+  async redo(): Promise<void> {
+    await this.#move('redone', (clip) => clip.redo());
+  }
+
+  /**
+   * Segments a range of frames. Drafts of masks are shown if there are none. Resolves when all masks are there.
+   */
+  async segment(): Promise<void> {
+    await this.opened;
+    const { store, keeper } = this.#parts;
+    const { tracked, settings: { motions, quality, subject, longestSide } } = store.get();
+    if (tracked?.clip !== this.clip) return;
+    const { first, last } = tracked.range;
+    const isAlone = tracked.frames.every((frame, index) => frame === null || (index >= first && index <= last));
+    const isFirst = !isTracked(tracked);
+    this.#longestSide = isAlone ? longestSide : null;
+    this.#begin('found');
+    if (!tracked.clip.sample) keeper.said();
+    const step = this.#now.segment({ first, last, motions, quality, subject, drafts: isFirst });
+    const range = { step, time: new TimeLeft(0, last - first + 1), isEnded: false };
+    this.#range = range;
+    this.#show({ run: { phase: 'working', stage: 'pairs', left: null, labelled: 0 }, previews: tracked.frames, solved: 0 });
+    try {
+      await step;
+      if (isFirst) this.#found = this.#now.steps.undo;
+      this.#longestSide = null;
+      await this.#readLabels(first, last);
+      if (this.#isClosed || this.#range !== range) return;
+      this.#range = null;
+      const notes = this.#frames.same || range.isEnded ? undefined : (await this.#now.tracks()).notes;
+      const changed = lengthOf({ first, last });
+      this.#show({ run: range.isEnded ? { phase: 'cancelled' } : { phase: 'done', cause: this.#frames.same ? 'same' : 'found', changed, notes: notes ?? [] } });
+    } catch (error) {
+      if (this.#isClosed) return;
+      const isCancelled = codeOf(error) === 'cancelled' || range.isEnded;
+      if (!isCancelled) report(store, reported(error));
+      // What was read before a frame that could not be read has masks.
+      await this.#readLabels(first, last).catch(() => undefined);
+      this.#show({ run: { phase: isCancelled ? 'cancelled' : 'failed' } });
+    } finally {
+      this.#longestSide = null;
+      if (this.#range === range) this.#range = null;
+      if (!this.#isClosed) this.#parts.shown.ended();
+    }
+  }
+
+  /** Ends the range that is being segmented after the frames that are solved, or takes back what is being carried. */
+  cancel(): void {
+    const { tracked } = this.#parts.store.get();
+    if (this.#range === null) return this.#said[0]?.step.cancel();
+    if (this.#range.isEnded || isTracked(tracked)) return this.#range.step.cancel();
+    this.#range.isEnded = true;
+    this.#now.finish();
+    this.#show({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
+  }
+
+  get #now(): PackageClip {
+    if (this.#package === null) throw new PageError('not-ready', strings.notices.notReady);
+    return this.#package;
+  }
+
+  async #open(known: KnownMasks | null, restored: Uint8Array | undefined, after: Promise<unknown>): Promise<void> {
+    const { segmenter, keeper, store } = this.#parts;
+    const { markUnknown } = store.get().settings;
+    await after;
+    const clip = await segmenter.openClip(this.#frames, { journal: keeper.journal, markUnknown });
+    this.#package = clip;
+    if (restored !== undefined) await clip.restore(restored);
+    if (this.#isClosed) return;
+    clip.subscribe((event) => this.#hear(event));
+    const frames = clip.frames.map(({ revision }, index) => (revision > 0 && known?.revisions[index] === revision ? (known.frames[index] ?? null) : null));
+    this.#base = { ...this.#base, frames, status: clip.frames, objects: clip.objects };
+    clip.frames.forEach(({ hasMasks }, index) => hasMasks && frames[index] === null && this.#stale.add(index));
+    await this.#readAnnotations(this.#annotatedFrames());
+    const { run, solved, before } = this.tracked;
+    this.#show({ run, solved, before });
+    void this.#ask();
+  }
+
+  #hear(event: ClipEvent): void {
+    if (this.#isClosed) return;
+    const { store, keeper } = this.#parts;
+    switch (event.type) {
+      case 'frames':
+        this.#base = { ...this.#base, status: this.#now.frames };
+        for (const index of event.frames) {
+          this.#stale.add(index);
+          this.#fresh.add(index);
+        }
+        return void this.#ask();
+      case 'objects':
+      case 'settled':
+        this.#base = { ...this.#base, status: this.#now.frames, objects: this.#now.objects };
+        return this.#show();
+      case 'draft': {
+        const { tracked } = store.get();
+        const { index } = event.frame;
+        if (this.#range === null || tracked === null || tracked.frames[index] !== null) return;
+        return this.#show({ previews: tracked.previews.with(index, masksOf(event.frame)) });
+      }
+      case 'progress':
+        return this.#progress(event);
+      case 'kept':
+        return keeper.kept();
+      case 'unkept':
+        return keeper.refused(event.error.cause ?? event.error);
+      case 'paused':
+        return report(store, event.error);
+      case 'closed':
+        return void (event.reason.code === 'clip-closed' || report(store, event.reason));
+      case 'revived':
+        return;
+    }
+  }
+
+  #progress({ stage, frame, done, of }: Extract<ClipEvent, { type: 'progress' }>): void {
+    if (stage === 'pairs') {
+      const range = this.#range;
+      if (range === null || range.isEnded || of === undefined) return;
+      return this.#show({ run: { phase: 'working', stage, left: range.time.at(done), labelled: 0 }, solved: done });
+    }
+    if (this.#reached === null || this.#range !== null) return;
+    this.#reached.frames.add(frame);
+    this.#show({ run: this.#correcting() });
+  }
+
+  /** How far corrections have come. A frame may be read again: first it tells what objects look like. */
+  #correcting(): ClipRun {
+    const { frames, of, time } = this.#reached ?? { frames: new Set(), of: 0, time: new TimeLeft(0, 0) };
+    const labelled = Math.min(frames.size, of);
+    return { phase: 'working', stage: 'corrections', left: time.at(labelled), labelled, of };
+  }
+
+  /** What follows is compared with the masks as they are now, unless something is under way. */
+  #begin(cause: DoneCause, kept = 0): void {
+    this.#cause = cause;
+    this.#kept = kept;
+    this.#isUnderWay = true;
+    if (this.#said.length === 0) this.#parts.store.clip({ before: this.state.frames });
+  }
+
+  async #move(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
+    if (this.#package === null) return;
+    this.#begin(cause);
+    this.#parts.keeper.said();
+    const isAny = await what(this.#now).catch(() => false);
+    if (!isAny || this.#isClosed) return void (this.#isUnderWay = false);
+    await this.#readAnnotations(this.#annotatedFrames()).catch(() => undefined);
+    this.#cause = cause;
+    this.#ended(null);
+  }
+
+  #forget(said: Said): void {
+    this.#said = this.#said.filter((one) => one !== said);
+  }
+
+  /** Says that all is done when all has taken effect and is on screen. `cause`: of what has changed no masks. */
+  #ended(cause: DoneCause | null): void {
+    if (this.#isClosed) return;
+    if (this.#said.length === 0) this.#fresh.clear();
+    if (this.#stale.size > 0) void this.#ask();
+    const { tracked } = this.#parts.store.get();
+    if (tracked === null || this.#said.length > 0 || this.#range !== null) return this.#show();
+    if (cause !== null && !this.#isUnderWay) return this.#show({ run: { phase: 'done', cause, changed: 0 } });
+    if (this.#stale.size > 0) return this.#show();
+    this.#isUnderWay = false;
+    this.#reached = null;
+    const frames = this.#base.frames;
+    const changed = frames.filter((frame, index) => frame !== tracked.before[index]).length;
+    this.#show({ run: { phase: 'done', cause: this.#cause, changed, kept: this.#kept } });
+  }
+
+  /** Asks for the labels of all frames that have changed, one after another. */
+  async #ask(): Promise<void> {
+    if (this.#isAsking || this.#package === null) return;
+    this.#isAsking = true;
+    try {
+      for (let index = this.#next(); index !== null && !this.#isClosed; index = this.#next()) {
+        this.#stale.delete(index);
+        this.#fresh.delete(index);
+        const frame = await this.#now.labels(index).catch(() => null);
+        if (frame !== null && !this.#isClosed) this.#take(index, masksOf(frame));
+      }
+    } finally {
+      this.#isAsking = false;
+    }
+    if (this.#isUnderWay && this.#stale.size === 0) this.#ended(null);
+  }
+
+  /** The frame to ask for: on screen, else while a step is under way one that it has just changed, so that no labels keep it from going on. */
+  #next(): number | null {
+    const { timeline } = this.#parts.store.get();
+    const waits = this.#stale.has(timeline?.first ?? -1) ? timeline!.first : this.#stale.has(timeline?.second ?? -1) ? timeline!.second : null;
+    if (waits !== null) return waits;
+    const [any] = this.#said.length > 0 ? this.#fresh : this.#stale;
+    return any ?? null;
+  }
+
+  /** The masks of a frame are there. `said`: what they have taken in. */
+  #take(index: number, frame: TrackedFrame, said: Said | null = null): void {
+    if (this.#isClosed) return;
+    const { timeline } = this.#parts.store.get();
+    const before = this.#parts.store.get().tracked?.before[index] ?? null;
+    const now = unchanged(before, unchanged(this.#base.frames[index], frame));
+    this.#base = { ...this.#base, frames: this.#base.frames.with(index, now) };
+    if (said !== null) said.effect = withoutFrames(said.effect);
+    const onScreen = index === timeline?.first || index === timeline?.second;
+    if (!onScreen && performance.now() - this.#lastShown < OFTEN && this.#stale.size > 0) return;
+    this.#show();
+  }
+
+  /** The labels of all frames of a range that was segmented, which are shown as they come. */
+  async #readLabels(first: number, last: number): Promise<void> {
+    const isFirst = this.#range !== null;
+    let labelled = 0;
+    const { timeline } = this.#parts.store.get();
+    const all = Array.from({ length: last - first + 1 }, (_, k) => first + k).filter((index) => this.#now.frames[index]?.hasMasks);
+    all.sort((one, other) => Number(other === timeline?.first) - Number(one === timeline?.first) || one - other);
+    for (const index of all) {
+      if (this.#isClosed) return;
+      this.#stale.delete(index);
+      const frame = masksOf(await this.#now.labels(index));
+      labelled += 1;
+      this.#base = { ...this.#base, frames: this.#base.frames.with(index, unchanged(this.#base.frames[index], frame)) };
+      const { tracked } = this.#parts.store.get();
+      if (tracked === null || (performance.now() - this.#lastShown < OFTEN && index !== timeline?.first)) continue;
+      const previews = tracked.previews.map((shown, at) => this.#base.frames[at] ?? shown);
+      this.#show({ previews, ...(isFirst && { run: { phase: 'working', stage: 'labels', left: null, labelled } }), solved: all.length });
+    }
+  }
+
+  #annotatedFrames(): number[] {
+    const { annotated } = this.#base;
+    return this.#now.frames.flatMap((status, index) => (status.annotated || annotated.has(index) ? [index] : []));
+  }
+
+  /** What a person has annotated in frames. */
+  async #readAnnotations(frames: readonly number[]): Promise<void> {
+    const read = new Map<number, Annotated>();
+    for (const index of frames) {
+      const objects = new Set<number>();
+      const prompts: Prompt[] = [];
+      for (const one of await this.#now.annotations(index)) {
+        if ('labels' in one) for (const label of one.labels) objects.add(label);
+        else objects.add(one.object);
+        if ('clicks' in one || 'box' in one) prompts.push({ object: one.object, clicks: one.clicks ?? [], box: one.box ?? null });
+      }
+      read.set(index, { objects: [...objects].filter(isObject), prompts });
+    }
+    const annotated = new Map([...this.#base.annotated, ...read].filter(([, { objects }]) => objects.length > 0));
+    this.#base = { ...this.#base, annotated };
+  }
+
+  /** Puts what is known into the state. */
+  #show(change: Partial<Tracked> = {}): void {
+    if (this.#isClosed || this.#parts.store.get().tracked?.clip !== this.clip) return;
+    this.#lastShown = performance.now();
+    this.#parts.shown.clip({ ...this.#known, ...change });
+  }
+
+  /** What of the state is the clip's own. */
+  get #known(): Pick<Tracked, keyof ClipState | 'nextObject' | 'steps'> {
+    return { ...this.state, nextObject: this.#package?.nextObject ?? 1, steps: this.#steps };
+  }
+
+  /** The first masks are no step that a person would take back. */
+  get #steps(): Tracked['steps'] {
+    const { undo = 0, redo = 0, waiting = 0 } = this.#package?.steps ?? {};
+    return { undo: Math.max(0, undo + waiting - (this.#range === null ? 0 : 1) - this.#found), redo };
+  }
+}
+
+/** The effect on everything but the masks, which are the clip's own now. */
+function withoutFrames(effect: Effect): Effect {
+  return (clip) => ({ ...effect(clip), frames: clip.frames });
+}
+
+function reported(error: unknown): unknown {
+  const code = codeOf(error);
+  if (code === 'object-locked') return new PageError(code, strings.notices.locked);
+  return code === 'invalid-input' ? new PageError('other-state', strings.notices.otherState) : error;
+}
