@@ -6,12 +6,12 @@ import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type CDPSession, type Locator, type Page, expect } from '@playwright/test';
-import { type Segmentation, type SegmentOptions, Segmenter, davisPalette, segmentPair } from 'veronese';
-import type { ClipOptions } from '../src/segmented.js';
+import { type RangeOptions, type Segmentation, type SegmentOptions, Segmenter, davisPalette, segmentPair } from 'veronese';
 import { decodeImage, encodePng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
 import { SAMPLES } from '../src/frames/samples.js';
+import type { Header } from '../src/projects/file.js';
 import { test as unwatched } from './kept.js';
 
 export { expect, unwatched };
@@ -333,19 +333,20 @@ export async function undoAll(page: Page): Promise<void> {
   await done(page);
 }
 
-/** The projects that the browser keeps, unpacked. */
-export function projectsInBrowser(page: Page): Promise<string[]> {
+/** What the browser keeps of projects beside their journals. */
+export function projectsInBrowser(page: Page): Promise<Header[]> {
   return page.evaluate(async () => {
-    const found: string[] = [];
-    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
-    if (folder === null) return found;
-    for await (const name of folder.keys()) {
-      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
-      // It may be replaced, also while it is read.
-      const text = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
-      found.push((await text?.catch(() => '')) ?? '');
-    }
-    return found;
+    const name = 'veronese-projects';
+    if (!(await indexedDB.databases()).some((database) => database.name === name)) return [];
+    const settled = <T>(request: IDBRequest<T>): Promise<T> =>
+      new Promise((resolve, reject) => {
+        request.onsuccess = () => resolve(request.result);
+        request.onerror = () => reject(request.error);
+      });
+    const database = await settled(indexedDB.open(name));
+    const headers = await settled(database.transaction('headers').objectStore('headers').getAll());
+    database.close();
+    return headers;
   });
 }
 
@@ -497,16 +498,17 @@ export const segmentedInNode = once(
 );
 
 /** The labels of each frame of a clip, found in Node. */
-export const clipInNode = once(async (files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> => {
-  const labels: Uint8Array[] = [];
+export const clipInNode = once(async (files: readonly Upload[], options: RangeOptions = { quality: 'fast' }): Promise<Uint8Array[]> => {
   const frames = { length: files.length, read: async (index: number) => decodeImage(files[index]!.buffer) };
   const segmenter = new Segmenter();
+  const clip = await segmenter.openClip(frames);
   try {
-    for await (const frame of segmenter.segmentClip(frames, options)) labels.push(frame.labels);
+    await clip.segment(options);
+    return await Promise.all(files.map(async (_, index) => (await clip.labels(index)).labels));
   } finally {
+    await clip.close();
     segmenter.close();
   }
-  return labels;
 }, keyOf);
 
 function keyOf(files: readonly Upload[], options: unknown): string {

@@ -1,12 +1,12 @@
 //! Functions of the page that need no browser.
 
 import { expect, test } from '@playwright/test';
-import type { Segmentation } from 'veronese';
+import type { ClipEntry, ClipFrameStatus, Segmentation } from 'veronese';
 
 import type { Clip } from '../src/clips/clip.js';
 import { inFileNames } from '../src/common/naming.js';
 import { strings } from '../src/common/strings.js';
-import { type Runs, differingPixels, packed, unpacked } from '../src/correction/runs.js';
+import { differingPixels, packed, unpacked } from '../src/correction/runs.js';
 import { eachPixel } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
@@ -18,16 +18,12 @@ import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { TimeLeft } from '../src/session/clip/time-left.js';
-import { painted, promptOf, refined } from '../src/session/clip/drawing.js';
+import { promptOf, refined } from '../src/session/clip/drawing.js';
 import { Pace } from '../src/session/playing.js';
-import { exactly } from '../src/state/exact.js';
-import { withCorrection } from '../src/state/correction.js';
-import { fromSpan, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
-import { type Painted, type Prompt, type Annotation, points, withAnnotation } from '../src/state/annotation.js';
-import { annotationAtSize, packageNumbers, toSpan, forPackage } from '../src/state/package-numbers.js';
-import { type TrackedFrame, type Version, livesOf, toReview, untracked } from '../src/state/tracked.js';
+import { becoming, painted } from '../src/state/said.js';
+import { type ClipState, type Prompt, type TrackedFrame, livesOf, toReview } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 
@@ -161,28 +157,7 @@ test('numbers before the camera are used again when all have been, but none twic
   }
 });
 
-/** Masks of 6×1 pixels. */
-function masks(...labels: number[]): TrackedFrame {
-  const objects = [...new Set(labels)].filter((id) => id > 0 && id < 255).map((id) => ({ id, pixels: 1, bbox: [0, 0, 6, 1] as [number, number, number, number], confidence: 1, matrix: null }));
-  return { runs: packed(Uint8Array.from(labels), 6, 1), objects, background: null };
-}
-
-/** Labels of 6×1 pixels. */
-const labels = (...values: number[]): Runs => packed(Uint8Array.from(values), 6, 1);
-const stroke = (object: number, ...values: number[]): Painted => ({ frame: 0, object, propagate: 'both', labels: labels(...values) });
-const prompt = (object: number, clicks: Prompt['clicks'], box: Prompt['box'] = null): Prompt => ({ frame: 0, object, propagate: 'both', clicks, box });
-
-test('annotations are kept of each object, in the order in which they were given', () => {
-  const none: ReadonlySet<number> = new Set();
-  const all = [stroke(1, 1, 1, 255, 255, 255, 255), stroke(2, 255, 2, 2, 0, 255, 255), prompt(1, [[0, 0, 1]]), stroke(1, 255, 0, 255, 255, 255, 1), prompt(1, [[0, 0, 1], [3, 0, -1]])];
-  const annotations = all.reduce<readonly Annotation[]>((before, now) => withAnnotation(before, now, none), []);
-  expect(annotations.map((one) => ('labels' in one ? [one.object, ...unpacked(one.labels)] : one.clicks))).toEqual([[2, 255, 2, 2, 0, 255, 255], [1, 1, 0, 255, 255, 255, 1], [[0, 0, 1], [3, 0, -1]]]);
-  // A label map of objects is about all that was painted in its frame, but what is locked.
-  const [one, , , map] = withAnnotation(annotations, stroke(0, 255, 4, 255, 255, 255, 4), new Set([2])).filter((of) => 'labels' in of || of.object === 1);
-  expect(one).toBe(annotations[0]);
-  expect(map).toMatchObject({ object: 0 });
-  expect([...unpacked((withAnnotation(annotations, stroke(0, 255, 4, 255, 255, 255, 4), none)[0] as Painted).labels)]).toEqual([255, 255, 2, 0, 255, 255]);
-});
+const prompt = (object: number, clicks: Prompt['clicks'], box: Prompt['box'] = null): Prompt => ({ object, clicks, box });
 
 test('a prompt is refined by clicks and a box, which has all that is the object', () => {
   const first = prompt(3, [[4, 4, 1]]);
@@ -191,81 +166,27 @@ test('a prompt is refined by clicks and a box, which has all that is the object'
   expect(boxed).toEqual(prompt(3, [[4, 4, 1]], [0, 0, 5, 5]));
   expect(refined(boxed, [7, 2, 1]).box).toEqual([0, 0, 8, 5]);
   expect(refined(boxed, [9, 9, -1]).box).toEqual([0, 0, 5, 5]);
-  // The last click on a pixel counts, and something must be left that it points to.
+  // The last click on a pixel counts.
   expect(refined(first, [4, 4, -1]).clicks).toEqual([[4, 4, -1]]);
-  expect([first, boxed, refined(first, [4, 4, -1])].map(points)).toEqual([true, true, false]);
-  expect(annotationAtSize(prompt(3, [[1, 1, 1], [5, 3, -1]], [1, 0, 3, 4]), { width: 6, height: 4 }, { width: 12, height: 8 })).toEqual(prompt(3, [[3, 3, 1], [11, 7, -1]], [2, 0, 6, 8]));
-  const version: Version = { ...untracked({ count: 1 } as Clip), annotations: [first], became: new Map([[3, 1]]) };
-  expect([promptOf(version, 0, 1), promptOf(version, 0, 3), promptOf(version, 1, 1), promptOf(version, null, null)]).toEqual([first, null, null, null]);
+  const annotated = new Map([[0, { objects: [1], prompts: [first] }]]);
+  expect([promptOf({ annotated }, 0, 3), promptOf({ annotated }, 0, 1), promptOf({ annotated }, 1, 3), promptOf({ annotated }, null, null)]).toEqual([first, null, null, null]);
 });
 
-test('an eraser is about the selected object and what was merged into it; the background is about all that is not locked', () => {
-  const start: Version = { ...untracked({ count: 1 } as Clip), frames: [masks(1, 1, 2, 3, 3, 0)], largest: 4, became: new Map([[4, 1]]) };
-  const erase = Uint8Array.of(255, 0, 0, 0, 255, 255);
-  const of = (version: Version, object: number): (readonly number[])[] => painted(version, 0, object, erase, 'none').map((one) => [one.object, ...unpacked(one.labels)]);
-  expect(of(start, 1)).toEqual([[4, 255, 0, 0, 0, 255, 255], [1, 255, 0, 0, 0, 255, 255]]);
-  const erased = withCorrection(start, { annotations: painted(start, 0, 1, erase, 'none') });
-  expect([...unpacked(erased.frames[0]!.runs)]).toEqual([1, 0, 2, 3, 3, 0]);
-  expect(of(erased, 0).map(([object]) => object)).toEqual([0, 4, 1]);
-  const locked = { ...start, locked: new Set([3]) };
-  expect(of(locked, 0).map(([object]) => object)).toEqual([0]);
-  expect([...unpacked(withCorrection(locked, { annotations: painted(locked, 0, 0, erase, 'none') }).frames[0]!.runs)]).toEqual([1, 0, 0, 3, 3, 0]);
-  // Under the masks of a file, which name objects, of each that is there.
-  const imported = { ...locked, annotations: [stroke(0, 1, 1, 2, 3, 3, 0)] };
-  expect(of(imported, 0).map(([object]) => object)).toEqual([1, 2]);
-});
-
-test('the package is given annotations by its own numbers', () => {
-  const numbers = new Map([[1, 3], [3, 1]]);
-  const { corrections, prompts } = forPackage([stroke(3, 255, 3, 0, 255, 255, 255), stroke(0, 3, 1, 0, 0, 255, 9), stroke(7, 0, 255, 255, 255, 255, 255), prompt(5, [[1, 0, 1]], [0, 0, 2, 1])], { first: 0, last: 0 }, numbers);
-  expect(corrections!.map((one) => 'labels' in one && [one.object, ...one.labels])).toEqual([[1, 255, 1, 0, 255, 255, 255], [undefined, 1, 3, 0, 0, 255, 9]]);
-  expect(prompts).toEqual([{ frame: 0, object: 5, propagate: 'both', clicks: [[1, 0, 1]], box: [0, 0, 2, 1] }]);
-  expect(numbers).toEqual(new Map([[1, 3], [3, 1], [9, 9], [5, 5]]));
-  expect(packageNumbers(numbers, new Map([[9, 3]]), (id) => id === 3)).toEqual([1, 9]);
-});
-
-test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
-  const row = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
-  const numbers = new Map([[1, 3], [3, 1]]);
-  // An object that no run knows gets a number that no object of the run has.
-  expect(Array.from(toSpan(row(0, 1, 3, 2, 255, 2), numbers))).toEqual([0, 3, 1, 2, 255, 2]);
-  expect(Array.from(toSpan(row(7, 1), new Map([[7, 2]])))).toEqual([8, 1]);
-  expect(Array.from(toSpan(row(9), new Map([[9, 1], [254, 2]])))).toEqual([1]);
-  const seen = fromSpan(masks(1, 3, 6, 0, 255, 2), numbers, 5);
-  expect(Array.from(unpacked(seen.runs))).toEqual([3, 1, 6, 0, 255, 2]);
-  expect(seen.objects.map(({ id }) => id)).toEqual([1, 2, 3, 6]);
-  // There are 254 numbers.
-  expect(Array.from(unpacked(fromSpan(masks(1, 1, 0, 0, 0, 0), new Map(), 254).runs))).toEqual([0, 0, 0, 0, 0, 0]);
-});
-
-test('what is drawn exactly stays under later annotations elsewhere, and follows its object when that is merged or deleted', () => {
-  const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
-  const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
-  const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
-  const drawn = withCorrection(start, { drawn: new Map([[0, packed(row(255, 3, 3, 255, 0, 255), 6, 1)]]) });
-  expect(shown(drawn)).toEqual([1, 3, 3, 2, 0, 0]);
-  expect(drawn.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [2, 1, 3, 0, 1, 1], [3, 2, 1, 0, 2, 1]]);
-  expect(drawn.frames[1]).toBe(start.frames[1]);
-  expect([drawn.largest, drawn.annotations.length]).toEqual([3, 0]);
-  // Whatever comes for the frame, and unchanged if it agrees.
-  expect(shown(exactly({ ...drawn, frames: [masks(4, 4, 4, 4, 4, 4), null] }))).toEqual([4, 3, 3, 4, 0, 4]);
-  expect(exactly(drawn).frames[0]).toBe(drawn.frames[0]);
-  // A person says otherwise: that counts, and is exact as well where something was.
-  const over = withCorrection(drawn, { annotations: [stroke(2, 255, 255, 2, 2, 2, 2)] });
-  expect(shown(over)).toEqual([1, 3, 2, 2, 2, 2]);
-  expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
-  expect(shown(withCorrection(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
-  expect(shown(withCorrection(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
-  // An object without a number of the package's goes along with one that has a number, in all frames.
-  const later = withCorrection(drawn, { annotations: [{ ...stroke(5, 255, 255, 255, 255, 255, 5), frame: 1 }] });
-  const merged = withCorrection(later, { edits: { merge: [[3, 5]] } });
-  expect([shown(merged), shown(merged, 1)]).toEqual([[1, 3, 3, 2, 0, 0], [1, 1, 0, 2, 2, 3]]);
-  expect(merged.frames[1]!.objects.map(({ id }) => id)).toEqual([1, 2, 3]);
-  expect(merged.frames[0]).toBe(later.frames[0]);
-  // A run with frames of another size.
-  const larger = { runs: packed(new Uint8Array(24), 12, 2), objects: [], background: null };
-  const again = withRun(over, [larger], { range: { first: 0, last: 0 }, state: new Blob(), numbers: new Map() }, 12);
-  expect(shown(again)).toEqual([0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0]);
+test('what is painted is seen where it may be: not on locked objects, and an eraser takes its own object away', () => {
+  const runs = packed(Uint8Array.of(1, 1, 2, 3, 3, 0), 6, 1);
+  const entry = (number: number, locked = false): ClipEntry => ({ number, name: '', class: '', locked, annotated: false, became: number });
+  const start: ClipState = { frames: [{ runs, objects: [], background: null }], status: [], objects: [entry(1), entry(2), entry(3, true)], annotated: new Map() };
+  const shown = ({ frames }: ClipState): number[] => [...unpacked(frames[0]!.runs)];
+  const everywhere = (label: number): Uint8Array => new Uint8Array(6).fill(label);
+  expect(shown(painted(0, 1, everywhere(1))(start))).toEqual([1, 1, 1, 3, 3, 1]);
+  expect(shown(painted(0, 1, everywhere(0))(start))).toEqual([0, 0, 2, 3, 3, 0]);
+  expect(shown(painted(0, 0, everywhere(0))(start))).toEqual([0, 0, 0, 3, 3, 0]);
+  const made = painted(0, 4, Uint8Array.of(255, 1, 1, 1, 255, 255))(start);
+  expect(shown(made)).toEqual([1, 4, 4, 3, 3, 0]);
+  expect(made.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [3, 2, 3, 0, 2, 1], [4, 2, 1, 0, 2, 1]]);
+  expect(made.objects.map(({ number }) => number)).toEqual([1, 2, 3, 4]);
+  expect(painted(0, 1, everywhere(255))(start).frames).toBe(start.frames);
+  expect(shown(becoming(new Map([[2, 1], [4, 0]]))(made))).toEqual([1, 0, 0, 3, 3, 0]);
 });
 
 test('a polygon has the pixels whose centres it encloses, and its contour leads around them', () => {
@@ -399,9 +320,10 @@ test('the frame that lost an object is looked at first, unless it left through t
     [1, 0, 2, { index: 3, confidence: 0 }],
     [2, 0, 1, { index: 1, confidence: 0.7 }],
   ]);
-  expect(toReview({ frames, accepted: new Set() }, 0)).toBe(3);
-  expect(toReview({ frames, accepted: new Set([frames[3]!]) }, 3)).toBe(0);
+  const status = (...accepted: number[]): ClipFrameStatus[] => frames.map((_, index) => ({ hasMasks: true, accepted: accepted.includes(index), annotated: false, revision: 1 }));
+  expect(toReview({ frames, status: status() }, 0)).toBe(3);
+  expect(toReview({ frames, status: status(3) }, 3)).toBe(0);
   // Of several that are as doubtful, the next one.
   const alike = [0, 1, 2, 3].map(() => frame([1, 2, 0.6]));
-  expect([0, 1, 3].map((from) => toReview({ frames: alike, accepted: new Set() }, from))).toEqual([1, 2, 0]);
+  expect([0, 1, 3].map((from) => toReview({ frames: alike, status: status() }, from))).toEqual([1, 2, 0]);
 });

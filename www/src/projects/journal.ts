@@ -37,7 +37,8 @@ export class PageJournal implements ClipJournal {
     await this.#turn;
     let rows = this.#memory ?? [];
     if (rows.length === 0) {
-      const kept = await rowsOf(this.#of);
+      // What cannot be read cannot be written either: that is said then.
+      const kept = await rowsOf(this.#of).catch(() => ({ rows: [], next: 0 }));
       rows = kept.rows;
       this.#next = kept.next;
       if (rows.length > 0) this.#memory = null;
