@@ -1,19 +1,13 @@
-// MOTS: ids are 1000 × class + instance. As text, a line for each mask, and as CVAT's archive of 16-bit grey images.
+// MOTS as text, a line for each mask: ids are 1000 × class + instance.
 
-import { type Zippable, zipSync } from 'fflate';
 import { VeroneseError } from '../common/errors.js';
 import { cocoRle } from './coco-rle.js';
-import { type Encoder, type Extent, idOf, lines, Numbering, Stems } from './frames.js';
+import { type Encoder, type Extent, idOf, lines, Numbering } from './frames.js';
 import { nameOf, type Settings } from './metadata.js';
-import { png } from './pictures.js';
 
 const CLASS = 1000;
-/** The largest value is 1000 × 65 + 255: more classes do not fit the 16 bits of the PNG form. */
+/** More classes do not fit the 16 bits of MOTS as PNG. */
 const MOST = 64;
-
-const LABELS = 'default/instances/labels.txt';
-/** Archives hold times: the earliest that a zip can have, so that the same masks give the same bytes. In local time, as fflate reads it. */
-const EPOCH = { mtime: new Date(1980, 0, 1) };
 
 /** Numbers of objects: 1000 × class + instance. */
 class MotsIds {
@@ -57,35 +51,6 @@ export function mots(settings: Settings): Encoder {
       { name: 'mots/gt/labels.txt', content: ids.text },
       { name: 'mots/seqinfo.ini', content: seqinfo(settings, extent, images) },
     ],
-  };
-}
-
-/** An archive to import as "MOTS PNG"; class 1 is the first of labels.txt. */
-export function cvatMots(settings: Settings): Encoder {
-  const ids = new MotsIds(settings);
-  // Where labels are no objects, each is a class of its own and its number is that of its track as well.
-  const tracks = new Numbering();
-  const stems = new Stems();
-  const files: Zippable = { [LABELS]: new Uint8Array() };
-  return {
-    add(frame) {
-      const { width, height, masks } = frame;
-      const samples = new Uint8Array(width * height * 2);
-      for (const mask of masks) {
-        const value = ids.of(mask.name, settings.tracked ? mask.label : tracks.of(String(mask.label)));
-        mask.pixels.forEach((set, at) => {
-          if (!set) return;
-          const pixel = (mask.top + Math.floor(at / mask.width)) * width + mask.left + (at % mask.width);
-          samples[2 * pixel] = value >> 8;
-          samples[2 * pixel + 1] = value & 255;
-        });
-      }
-      files[`default/instances/${stems.of(frame)}.png`] = [png(width, height, samples, { depth: 16 }), EPOCH];
-    },
-    finish() {
-      files[LABELS] = [new TextEncoder().encode(ids.text), EPOCH];
-      return [{ name: 'cvat-mots.zip', content: zipSync(files) }];
-    },
   };
 }
 
