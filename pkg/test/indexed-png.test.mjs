@@ -43,8 +43,8 @@ const noise = { labels: Uint8Array.from({ length: 31 * 17 }, () => next() * 256)
 test('every filter', () => {
   for (const filters of [[0], [1], [2], [3], [4], [4, 3, 2, 1, 0]]) {
     for (const image of [noise, ...labelImages(20)]) {
-      const { indices, width, height } = decodeIndices(filtered(image, filters));
-      assert.deepEqual({ labels: indices, width, height }, image);
+      const { labels, width, height } = decodeIndices(filtered(image, filters));
+      assert.deepEqual({ labels, width, height }, image);
     }
   }
 });
@@ -52,8 +52,8 @@ test('every filter', () => {
 test('what the encoders of the package write', async () => {
   const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
   for (const { labels, width, height } of [noise, ...labelImages(20)]) {
-    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).indices, labels);
-    assert.deepEqual(decodeIndices(davisPng(labels, width, height)).indices, labels);
+    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).labels, labels);
+    assert.deepEqual(decodeIndices(davisPng(labels, width, height)).labels, labels);
   }
 });
 

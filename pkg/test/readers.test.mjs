@@ -21,7 +21,7 @@ for (const format of ['coco', 'coco-polygon', 'label-studio', 'label-studio-poly
 DOCUMENTS['youtube-vis'] = await document('youtube-vis', frames, metadata);
 const FILES = Object.fromEntries(Object.entries(DOCUMENTS).map(([format, value]) => [format, JSON.stringify(value)]));
 for (const format of ['cvat', 'cvat-polygon', 'davis']) [{ content: FILES[format] }] = await encode(format, one, metadata);
-for (const format of ['cvat-video', 'mots', 'cvat-mots']) [{ content: FILES[format] }] = await encode(format, frames, metadata);
+for (const format of ['cvat-video', 'mots']) [{ content: FILES[format] }] = await encode(format, frames, metadata);
 FILES['cvat-boxes'] = await document('cvat-video', frames, { ...metadata, shape: 'box' });
 FILES.yolo = `${await document('yolo', one, metadata)}1 0.5 0.5 0.25 0.5\n`;
 const CODES = ['invalid-input', 'unreadable-image', 'frame-size-mismatch'];

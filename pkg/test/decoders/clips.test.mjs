@@ -11,7 +11,7 @@ import { veronese } from '../support/program.mjs';
 import { decoded, fiftyone, python, skip as withoutDecoders, withoutFiftyone } from '../support/python.mjs';
 
 const FORMATS =
-  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,cvat-mots,mots,label-studio,label-studio-polygon,label-studio-video,yolo,davis,masks';
+  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-video,mots,label-studio,label-studio-polygon,yolo,davis,masks';
 const WAYS = {
   'coco-polygon': ['coco-polygon', 'coco, read by datumaro', 'coco-polygon, read by datumaro'],
   'cvat-video': ['cvat-video, polygons', 'cvat-video, boxes'],
