@@ -5,7 +5,6 @@ import { readdirSync, readFileSync, rmSync, statSync, unlinkSync, writeFileSync 
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
-import { unzipSync } from 'fflate';
 import { encode } from 'veronese/formats';
 import { openClip } from '../build/cli/clip-folder.js';
 import { FORMATS } from '../build/formats/encode.js';
@@ -42,7 +41,7 @@ describe('a clip', () => {
     const given = frames.map((labels, k) => ({ labels, width, height, image: tracks.files[k], objects: sightings[k], background: tracks.background[k]?.matrix }));
     const expected = new Map();
     for (const format of formats) {
-      const clip = ['cvat-video', 'label-studio-video'].includes(format) ? 'a.mp4' : 'clip';
+      const clip = format === 'cvat-video' ? 'a.mp4' : 'clip';
       const metadata = { names: { 1: 'object', 2: 'car', 4: 'car' }, labels: [1, 2, 4], frameRate: 10, tolerance: 0.5, shape: 'box', clip };
       for (const { name, content } of await encode(format, given, metadata)) expected.set(name, Buffer.from(content));
     }
@@ -60,7 +59,7 @@ describe('a clip', () => {
     const folder = temporaryFolder(t);
     const { frames, tracks } = clipFolder(folder.path('clip'));
     const out = folder.path('out');
-    const { frames: count } = await converted(folder.path('clip'), '--to', 'coco,youtube-vis,cvat-mots,mots', '--out', out, '--background', '--from', '3', '--until', '4');
+    const { frames: count } = await converted(folder.path('clip'), '--to', 'coco,youtube-vis,mots', '--out', out, '--background', '--from', '3', '--until', '4');
     assert.equal(count, 2);
     assert.deepEqual(json(out, 'coco.json').images.map(({ file_name }) => file_name), ['f003.jpg', 'f004.jpg']);
     const video = json(out, 'youtube-vis.json');
@@ -68,10 +67,6 @@ describe('a clip', () => {
     assert.deepEqual(video.annotations.map(({ id }) => id), [255, 1, 4], 'the object that is gone there is left out, the numbers stay');
     assert.equal(video.annotations[0].areas[0], frames[3].filter((label) => label === 0).length);
     assert.equal(video.videos[0].length, 2);
-    const archive = unzipSync(new Uint8Array(readFileSync(join(out, 'cvat-mots.zip'))));
-    assert.deepEqual(Object.keys(archive), ['labels.txt', 'f003.png', 'f004.png'].map((name) => `default/instances/${name}`));
-    const value = { 0: 1255, 1: 2001, 4: 2004, 255: 0 };
-    assert.deepEqual([...decode(archive['default/instances/f004.png']).data], Array.from(frames[4], (label) => value[label]));
     assert.match(read(out, 'mots', 'seqinfo.ini'), /seqLength=2\n/);
     assert.equal(read(out, 'mots', 'gt', 'gt.txt').split('\n').length, 7);
     const { objects } = tracks;
@@ -82,24 +77,20 @@ describe('a clip', () => {
   test('times, where tracks.json or an option says them', async (t) => {
     const folder = temporaryFolder(t);
     let said;
-    const times = async (...args) => {
-      said = (await converted(folder.path('clip'), '--to', 'mots,label-studio-video', ...args)).notes;
-      const [task] = json(folder.path('clip'), 'label-studio-video.json');
-      const { duration, sequence } = task.predictions[0].result[0].value;
-      const [, rate] = /frameRate=(\d+)/.exec(read(folder.path('clip'), 'mots', 'seqinfo.ini'));
-      return { video: task.data.video, duration, second: sequence[1].time, rate: Number(rate) };
+    const rate = async (...args) => {
+      said = (await converted(folder.path('clip'), '--to', 'mots', ...args)).notes;
+      return Number(/frameRate=(\d+)/.exec(read(folder.path('clip'), 'mots', 'seqinfo.ini'))[1]);
     };
     clipFolder(folder.path('clip'), { frameRate: 12.5 });
-    assert.deepEqual(await times(), { video: 'clip', duration: 0.56, second: 0.08, rate: 13 });
-    assert.equal(said, undefined);
-    assert.deepEqual(await times('--frame-rate', '10', '--video', 'boat.mp4'), { video: 'boat.mp4', duration: 0.7, second: 0.1, rate: 10 });
+    assert.equal(await rate(), 13);
+    assert.equal(await rate('--frame-rate', '10'), 10);
     clipFolder(folder.path('clip'), { timestamps: [5, 5.5, 6, 6.25, 6.5, 7.5, 8] });
-    assert.deepEqual(await times('--from', '1'), { video: 'clip', duration: 3, second: 0.5, rate: 2 });
+    assert.equal(await rate('--from', '1'), 2);
     assert.equal(said, undefined);
     clipFolder(folder.path('clip'));
-    assert.deepEqual(await times(), { video: 'clip', duration: 0.28, second: 0.04, rate: 25 });
+    assert.equal(await rate(), 25);
     const message = `the frame rate of '${folder.path('clip')}' is not known: 25 frames per second are assumed; '--frame-rate' says another`;
-    assert.deepEqual(said, [{ code: 'frame-rate-assumed', message }], 'once for all formats');
+    assert.deepEqual(said, [{ code: 'frame-rate-assumed', message }]);
     assert.equal((await converted(folder.path('clip'), '--to', 'coco,youtube-vis,cvat-video', '--out', folder.path('out'))).notes, undefined, 'nothing with times');
   });
 
@@ -136,7 +127,7 @@ describe('a clip', () => {
     writeFileSync(join(clip, 'labels', 'f005.png'), davisPng(frames[4], 37, 23));
     await fails('invalid-input', /not of the same result/);
     writeFileSync(join(clip, 'labels', 'f005.png'), png({ data: new Uint8ClampedArray(37 * 23 * 4).fill(7).fill(200, 0, 1), width: 37, height: 23 }));
-    await fails('invalid-input', /f005\.png' has no labels: it is not an 8-bit indexed PNG/);
+    await fails('invalid-input', /f005\.png': it has no labels: it is not an 8-bit indexed PNG/);
 
     clipFolder(clip);
     changed('{"version": 1');

@@ -277,12 +277,12 @@ describe('formats', () => {
   const labels = Uint8Array.of(0, 1, 255, 1);
   const frame = { labels, width: 2, height: 2 };
   const { encode, readMask } = formats;
-  // Of each kind one: a document, tracks, an archive, pictures, numbers.
-  const FORMATS = ['coco-polygon', 'cvat-video', 'cvat-mots', 'davis', 'flo'];
+  // Of each kind one: a document, tracks, pictures.
+  const FORMATS = ['coco-polygon', 'cvat-video', 'davis'];
 
   test('format and metadata', async () => {
     await everywhere((value) => encode(value, frame), []);
-    const call = (metadata) => encode('label-studio-video', [frame], metadata);
+    const call = (metadata) => encode('label-studio', [frame], metadata);
     await everywhere(call, OPTIONS);
     await everywhere((value) => call({ nonsense: value }), ['undefined']);
     const text = ['undefined', 'text', 'empty text'];
@@ -320,7 +320,7 @@ describe('formats', () => {
         await everywhere((value) => call({ ...frame, index: value }), ['undefined', 'zero', 'one', '300', 'more than 32 bits']);
         await assert.rejects(call({ ...frame, motions: [1, 1].map((label) => ({ label, matrix })) }), { code: 'invalid-input', message: 'motions has a label twice' });
       }
-      const image = ['undefined', 'text', ...(['cvat-mots', 'davis', 'flo'].includes(format) ? [] : ['empty text'])];
+      const image = ['undefined', 'text', ...(format === 'davis' ? [] : ['empty text'])];
       await everywhere((value) => encode(format, [frame, { ...frame, image: value }]), image);
       await everywhere((value) => encode(format, value), []);
       await everywhere((value) => encode(format, [frame, value]), []);
