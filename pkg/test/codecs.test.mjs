@@ -89,9 +89,8 @@ describe('decodeImage', () => {
 
   test('refuses every file that lost its end', async () => {
     const { data, width, height } = frame(0, { width: 37, height: 21 });
-    const files = { png: png({ data, width, height }), bmp: bmp({ data, width, height }), ppm: ppm({ data, width, height }), ...ramp };
-    for (const name of ['png', 'bmp', 'ppm', 'jpeg', 'webp']) {
-      const file = files[name];
+    const files = { png: png({ data, width, height }), bmp: bmp({ data, width, height }), ppm: ppm({ data, width, height }), jpeg: ramp.jpeg, webp: ramp.webp };
+    for (const [name, file] of Object.entries(files)) {
       // The last bytes of a PNG (checksums, IEND) and of a BMP (padding) carry no pixels.
       for (let length = 0; length < file.length - 25; length += 7) {
         const error = await failure(decodeImage(file.subarray(0, length)));
@@ -131,12 +130,9 @@ describe('a file costs the memory of its pixels, whatever else it claims or carr
   const decodes = (file) => assert.deepEqual(decoded(file), decoded(plain));
   const cases = {
     'a colour profile of 512 MB': [carrying('iCCP', keyword, Buffer.of(0), zeros), decodes],
-    'a compressed text': [carrying('zTXt', keyword, Buffer.of(0), zeros), decodes],
     'an international text': [carrying('iTXt', keyword, Buffer.of(1, 0, 0, 0), zeros), decodes],
-    'an XMP packet': [carrying('iTXt', Buffer.from('XML:com.adobe.xmp\0'), Buffer.of(1, 0, 0, 0), zeros), decodes],
     'pixels after the last row': [Buffer.concat([header, chunk('IDAT', zeros), chunk('IEND', Buffer.alloc(0))]), () => {}],
     'a PNG of enormous sides': [pngOf([30_000, 30_000, 8, 6], ['IDAT', zeros]), fails('frame-size-unsupported')],
-    'a WebP whose Exif claims 1.8 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0x7000_0000]), fails('unreadable-image')],
     'a WebP whose Exif claims 4 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0xffff_fff0]), fails('unreadable-image')],
     'a WebP with a frame larger than itself': [webp(['VP8X', extended(0, 64, 64)], ['VP8 ', lossy(16_383, 16_383)]), fails('frame-size-unsupported')],
   };

@@ -5,7 +5,6 @@ import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { groupLabels } from 'veronese';
 import { encode } from 'veronese/formats';
-import { davisPng } from '../build/formats/pictures.js';
 import { FORMATS } from '../build/formats/encode.js';
 import { pair, png } from './support/frames.mjs';
 import { converted, entries, notConverted, temporaryFolder, veronese } from './support/program.mjs';
@@ -75,18 +74,6 @@ describe('veronese convert', () => {
     assert.equal(new Set(files).size, files.length);
     assert.equal(files.length, EVERY.split(',').length + 1, 'YOLO has two files');
     assert.deepEqual(entries(folder.path('all')), files.map((name) => name.replace('/', '')).sort());
-    for (const name of files.filter((name) => name.endsWith('.json'))) JSON.parse(readFileSync(folder.path('all', name), 'utf8'));
-  });
-
-  test('labels are indices and no colours, of which two are the same', async (t) => {
-    const folder = temporaryFolder(t);
-    const [width, height] = [16, 16];
-    const labels = Uint8Array.from({ length: width * height }, (_, at) => (at < 7 ? at + 1 : at === 7 ? 128 : 0));
-    const motion = (label) => ({ label, group: label, matrix: [0, 0, 0, 0, 0, 0], pixels: label ? 1 : 248, share: 0, residual: 0, bbox: [0, 0, 1, 1] });
-    folder.file('labels.png', davisPng(labels, width, height));
-    folder.file('result.json', JSON.stringify({ width, height, motions: [0, 1, 2, 3, 4, 5, 6, 7, 128].map(motion) }));
-    await converted(folder.path(), '--to', 'davis');
-    assert.deepEqual(Uint8Array.from(decode(readFileSync(folder.path('davis.png'))).data), labels);
   });
 
   test('says what is wrong and writes nothing', async (t) => {
