@@ -63,13 +63,12 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: Annot
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
     throw invalidInput(sentence);
   }
-  const remarks = new Remarks();
-  const context = contextOf(all, clip, remarks);
+  const { context, notes: noted } = contextOf(all, clip);
   const { format, read } = first
     ? { format: first.format, read: readDocuments(all, documents, context) }
     : readPictures(pictures, clip, context);
   const found = numbered(read);
-  const notes = [...remarks.notes(), ...unknownIn(all, documents), ...found.notes];
+  const notes = [...noted(), ...unknownIn(all, documents), ...found.notes];
   if (first && found.frames.size + found.boxes.length === 0)
     throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
   if (first && found.boxes.length > 0)
@@ -142,28 +141,8 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-/** Notes on files: what was assumed, and what they have and is not read, counted. */
-class Remarks {
-  readonly #notes: AnnotationNote[] = [];
-  readonly #counts = new Map<string, Map<string, number>>();
-
-  readonly note = (note: AnnotationNote): void => void this.#notes.push(note);
-
-  readonly leaveOut = (file: string, kind: string): void => {
-    const kinds = this.#counts.get(file) ?? new Map<string, number>();
-    this.#counts.set(file, kinds.set(kind, (kinds.get(kind) ?? 0) + 1));
-  };
-
-  notes(): AnnotationNote[] {
-    const left = [...this.#counts].map(([file, kinds]) => {
-      const counts = [...kinds].map(([kind, count]) => `${kind} (${count})`).join(', ');
-      return { code: 'shapes-left-out', message: `'${file}': left out ${counts}` };
-    });
-    return [...this.#notes, ...left];
-  }
-}
-
-function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, note }: Remarks): Context {
+/** What readers need beside their file; what they note and leave out, counted, is in `notes`. */
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip): { context: Context; notes: () => AnnotationNote[] } {
   const lists = all
     .filter(({ name }) => NAMES.test(name))
     .map(({ name, bytes }) => ({
@@ -175,7 +154,9 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
   const pictures = new Map<string, Source[]>();
   const stem = (name: string) => keyOf(name.replace(/^.*\//s, '').replace(/\.[^.]*$/s, ''));
   for (const picture of all) if (/\.(png|jpe?g)$/i.test(picture.name)) addTo(pictures, stem(picture.name), picture);
-  return {
+  const noted: AnnotationNote[] = [];
+  const left = new Map<string, string[]>();
+  const context: Context = {
     namesOf: (file) => lists.find(({ folder, names }) => file.startsWith(folder) && names.length > 0)?.names ?? [],
     sizeOf(file) {
       const folder = folderOf(file).replace(/(^|\/)labels\//, '$1images/');
@@ -195,11 +176,17 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
       const list = all.find(({ name }) => name === `${folderOf(file)}labels.txt`);
       return list ? textOf(list.bytes).split(/[ \t\r]*\n/) : [];
     },
-    leaveOut,
-    note,
+    leaveOut: (file, kind) => addTo(left, file, kind),
+    note: (note) => noted.push(note),
     count: names?.length,
     firstFrame,
   };
+  const notes = () =>
+    [...left].map(([file, kinds]) => {
+      const counts = [...new Set(kinds)].map((kind) => `${kind} (${kinds.filter((other) => other === kind).length})`);
+      return { code: 'shapes-left-out', message: `'${file}': left out ${counts.join(', ')}` };
+    });
+  return { context, notes: () => [...noted, ...notes()] };
 }
 
 /** The format of the file, unless it is none of those known. Throws `invalid-input` where it begins like one and is damaged. */
