@@ -11,7 +11,7 @@ import { random } from '../../scripts/lib/random.mjs';
 import { chunk, pngOf } from './support/chunks.mjs';
 import { drawnClip } from './support/clip.mjs';
 import { document, files } from './support/encoded.mjs';
-import { drawn, labelImages } from './support/masks.mjs';
+import { drawn, intersectionOverUnion, labelImages, maskOf } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
 import { soaking } from './support/soak.mjs';
 
@@ -57,15 +57,6 @@ function wandering(seed) {
   });
 }
 
-function intersectionOverUnion(one, other, label) {
-  let [both, either] = [0, 0];
-  one.forEach((value, at) => {
-    both += Number(value === label && other[at] === label);
-    either += Number(value === label || other[at] === label);
-  });
-  return both / either;
-}
-
 describe('what is written is read back', () => {
   const small = drawnClip().map((labels, k) => ({ labels, width: 37, height: 23, image: `${String(k).padStart(5, '0')}.jpg` }));
   const images = labelImages(soaking ? 80 : 15).map((image) => [{ ...image, image: 'first.png' }]);
@@ -101,7 +92,7 @@ describe('what is written is read back', () => {
         frames.forEach(({ labels }, k) => {
           const drawn = found[k].read();
           for (const label of new Set(labels)) {
-            const overlap = intersectionOverUnion(labels, drawn, label);
+            const overlap = intersectionOverUnion(maskOf(labels, label), maskOf(drawn, label));
             const pixels = labels.filter((one) => one === label).length;
             // Of what is nearly covered there is little to compare.
             if (pixels >= 100) assert.ok(overlap >= 0.97, `${format}, frame ${k}, object ${label} of ${pixels} pixels: ${overlap}`);

@@ -8,29 +8,12 @@ import { encode } from 'veronese/formats';
 import { FORMATS } from '../build/formats/encode.js';
 import { random } from '../../scripts/lib/random.mjs';
 import { document, encoded } from './support/encoded.mjs';
-import { drawn, labelImages } from './support/masks.mjs';
+import { drawn, filled, intersectionOverUnion, labelImages, maskOf } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
 import { cases, soaking } from './support/soak.mjs';
 
 const ALL = Array.from({ length: 255 }, (_, label) => label);
 const IMAGES = labelImages(soaking ? 300 : 100);
-const mask = (labels, label) => labels.map((value) => Number(value === label));
-
-/** Even-odd filling at pixel centres: a ring's edges toggle everything to their right. */
-function filled(rings, { width, height }) {
-  const pixels = new Uint8Array(width * height);
-  for (const ring of rings) {
-    for (let at = 0; at < ring.length; at += 2) {
-      const [x0, y0] = [ring[at], ring[at + 1]];
-      const [x1, y1] = [ring[(at + 2) % ring.length], ring[(at + 3) % ring.length]];
-      for (let y = Math.ceil(Math.min(y0, y1) - 0.5); y < Math.max(y0, y1) - 0.5; y++) {
-        const crossing = x0 + ((y + 0.5 - y0) / (y1 - y0)) * (x1 - x0);
-        for (let x = Math.max(0, Math.ceil(crossing - 0.5)); x < width; x++) pixels[y * width + x] ^= 1;
-      }
-    }
-  }
-  return pixels;
-}
 
 /** The rings of each label. */
 async function polygons(frame, tolerance, labels = ALL) {
@@ -63,7 +46,7 @@ describe('polygons', () => {
           for (const { label, rings } of found) {
             const sum = new Uint8Array(image.labels.length);
             for (const ring of rings) filled([ring], image).forEach((set, at) => (sum[at] += set));
-            assert.deepEqual(sum, mask(image.labels, label));
+            assert.deepEqual(sum, maskOf(image.labels, label));
           }
           if (tolerance === 0) exact += count(found);
           else thin += count(found);
@@ -118,9 +101,8 @@ describe('polygons', () => {
     const [{ rings }] = await polygons({ labels, width: 200, height: 200 }, 0.5);
     assert.ok(rings[0].length / 2 < 60, `${rings[0].length / 2} vertices`);
     const pixels = filled(rings, { width: 200, height: 200 });
-    const both = pixels.filter((set, at) => set && labels[at] === 1).length;
-    const either = pixels.filter((set, at) => set || labels[at] === 1).length;
-    assert.ok(both / either > 0.985, `${both / either}`);
+    const overlap = intersectionOverUnion(pixels, maskOf(labels, 1));
+    assert.ok(overlap > 0.985, `${overlap}`);
     assert.deepEqual(await polygons(drawn('1111', '1111'), 0), [{ label: 1, rings: [[0, 0, 4, 0, 4, 2, 0, 2]] }]);
     const image = drawn('111111111', '122211131', '122211111', '122211111', '111144111');
     const corners = async (tolerance) => (await polygons(image, tolerance, [2, 3, 4])).map(({ rings: [ring] }) => ring.map((value, at) => (at % 2 ? `${ring[at - 1]} ${value}` : '')).filter(Boolean).sort());
@@ -157,7 +139,7 @@ describe('masks of noise take no long time', () => {
     const holes = { labels: Uint8Array.from({ length: 301 * 301 }, (_, at) => ((at % 301) % 2 && Math.floor(at / 301) % 2 ? 255 : 1)), width: 301, height: 301 };
     const [{ rings }] = await polygons(holes, 0);
     assert.equal(rings.length, 1);
-    assert.deepEqual(filled(rings, holes), mask(holes.labels, 1));
+    assert.deepEqual(filled(rings, holes), maskOf(holes.labels, 1));
     const at = (x, y) => y % 6 < 2 || (y % 6 === 2 && x % 2 === 0) || x === (Math.floor(y / 6) % 2 ? 0 : 2 * side - 1);
     const labels = Uint8Array.from({ length: 4 * side * side }, (_, p) => Number(at(p % (2 * side), Math.floor(p / (2 * side)))));
     assert.equal((await polygons({ labels, width: 2 * side, height: 2 * side }, 0.4, [1]))[0].rings.length, 1);
