@@ -453,7 +453,9 @@ describe('what is none of that', () => {
     const [width, height] = soaking ? [4096, 4096] : [1024, 1024];
     const large = (annotations) => ({ images: [{ id: 1, file_name: 'f', width, height }], annotations });
     const full = { size: [height, width], counts: [0, width * height] };
+    const small = Array.from({ length: 10_000 }, (_, id) => ({ id, image_id: 1, track_id: 1, segmentation: [[0, 0, 9, 0, 9, id < 9999 ? 9 : undefined]] }));
     const HOSTILE = {
+      'ten thousand polygons, of which the last is wrong': large(small),
       'one mask over another': large(Array.from({ length: soaking ? 100_000 : 20_000 }, () => ({ image_id: 1, track_id: 1, segmentation: full }))),
       'a polygon that goes up and down': large([{ image_id: 1, segmentation: [Array.from({ length: 2_000_000 }, (_, k) => (k % 4 === 1 ? -1 : k % 4 === 3 ? 5000 : k % 3000))] }]),
       'a tower of elements': `${'<annotations>'.repeat(100_000)}${'</annotations>'.repeat(100_000)}`,

@@ -12,7 +12,8 @@ import { FORMATS } from '../build/formats/encode.js';
 import { davisPng } from '../build/formats/pictures.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, pair, png } from './support/frames.mjs';
-import { converted, entries, notConverted as refused, temporaryFolder, veronese } from './support/program.mjs';
+import { converted, entries, notConverted as refused, temporaryFolder, veronese, veroneseProcess } from './support/program.mjs';
+import { signalledAt } from './support/stopping.mjs';
 
 const EVERY = Object.keys(FORMATS);
 const [TRACKS, IMAGES] = [true, false].map((tracks) => EVERY.filter((name) => (FORMATS[name].tracks ?? false) === tracks));
@@ -251,6 +252,14 @@ describe('a clip', () => {
     for (const [args, sentence, exit = 2] of wrong) await refused(clip, [clip, '--to', 'coco,yolo', ...args], 'invalid-option', sentence, exit);
     await refused(clip, [join(clip, 'tracks.json'), '--to', 'coco', '--out', clip], 'file-not-found', /labels\.png/);
     await refused(clip, [clip, '--to', 'coco', '--out', join(clip, 'tracks.json')], 'write-failed', /it is a file/);
+  });
+
+  test('stopped by a signal it leaves nothing half-written', async (t) => {
+    const folder = temporaryFolder(t);
+    clipFolder(folder.path('clip'));
+    const before = files(folder.path('clip'));
+    const { code, stdout } = await veroneseProcess(['convert', folder.path('clip'), '--to', 'davis,coco'], signalledAt(folder, 'SIGINT', { call: 'writeFile', n: 2 }));
+    assert.deepEqual([code, stdout, files(folder.path('clip'))], [130, '', before]);
   });
 });
 

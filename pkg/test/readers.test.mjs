@@ -1,5 +1,5 @@
-// Every reader of annotations on files that are cut, whose values are exchanged, or that are long: the masks, or an error with a code that
-// names the file; nothing else, and soon.
+// Every reader of annotations on files that are cut or whose values are exchanged: the masks, or an error with a code that names the file;
+// nothing else, and soon.
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
@@ -99,22 +99,4 @@ describe('files with other values', () => {
       }
     });
   }
-});
-
-describe('files with ten thousand entries', () => {
-  const many = 10_000;
-  const [annotation] = DOCUMENTS['coco-polygon'].annotations;
-  const coco = (change) => ({ ...DOCUMENTS.coco, annotations: Array.from({ length: many }, (_, id) => ({ ...annotation, id, ...change(id) })) });
-  const LONG_FILES = {
-    'of one object': coco(() => ({ track_id: 1 })),
-    'of images': { ...coco((id) => ({ image_id: id, track_id: 1 })), images: Array.from({ length: many }, (_, id) => ({ id, file_name: `f${id}.png`, width, height })) },
-    'of which the last is wrong': coco((id) => ({ track_id: 1, segmentation: id === many - 1 ? [[0, 0, 1]] : annotation.segmentation })),
-  };
-  for (const [name, document] of Object.entries(LONG_FILES)) {
-    test(name, () => outcome(JSON.stringify(document), name));
-  }
-  test('of which one is wrong: it is named', () => {
-    const [frame] = readAnnotations([{ name: 'a.json', bytes: bytesOf(JSON.stringify(LONG_FILES['of which the last is wrong'])) }]).frames.values();
-    assert.throws(() => frame.read(), { code: 'invalid-input', message: /^'a\.json': image "f0\.png", annotation 9999: a polygon must have three vertices/ });
-  });
 });
