@@ -3,6 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
+import { decode } from 'fast-png';
+import { davisPalette } from 'veronese';
 import { encodePng } from 'veronese/codecs';
 import { decodeIndices } from '../build/formats/png-reader.js';
 import { davisPng } from '../build/formats/pictures.js';
@@ -50,9 +52,10 @@ test('every filter', () => {
 });
 
 test('what the encoders of the package write', async () => {
-  const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
   for (const { labels, width, height } of [noise, ...labelImages(20)]) {
-    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).labels, labels);
+    const file = await encodePng(width, height, labels, { palette: davisPalette() });
+    assert.deepEqual(decodeIndices(file).labels, labels);
+    assert.deepEqual(decode(file).palette.map((colour) => [...colour].slice(0, 3)), davisPalette());
     assert.deepEqual(decodeIndices(davisPng(labels, width, height)).labels, labels);
   }
 });
