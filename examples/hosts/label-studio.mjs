@@ -86,9 +86,7 @@ function addressIn(data, key) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const [text, list] = [{ type: 'string' }, { type: 'string', multiple: true }];
-  const { values } = parseArgs({
-    options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text },
-  });
+  const { values } = parseArgs({ options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text } });
   const numbers = Object.fromEntries(
     ['port', 'jobs'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])),
   );
