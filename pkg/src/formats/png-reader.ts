@@ -23,7 +23,7 @@ const PLAIN = [[0, 0, 1, 1]] as const;
 /** Compressed data are taken in pieces of this size, bytes: what is longer than the picture is noticed before it fills the memory. */
 const PIECE = 65_536;
 
-interface Size {
+export interface Size {
   width: number;
   height: number;
 }

@@ -23,6 +23,7 @@ import {
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../file-names.js';
+import type { Size } from '../png-reader.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
@@ -107,11 +108,6 @@ function blankIn(all: readonly Source[], documents: readonly Recognised[]): Reco
   const isBlank = ({ name, bytes }: Source) =>
     /\.txt$/i.test(name) && folders.has(folderOf(name)) && bytes.every((byte) => BEFORE.includes(byte));
   return all.filter(isBlank).map((source) => ({ source, format: 'yolo', read: (context) => [readYolo(source, '', context)] }));
-}
-
-interface Size {
-  width: number;
-  height: number;
 }
 
 /** {@link AnnotationOptions}, checked. */

@@ -4,6 +4,7 @@ import type { AnnotationNote } from '../../../types/formats.js';
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../file-names.js';
+import type { Size } from '../png-reader.js';
 import type { Canvas } from './canvas.js';
 
 /** Objects with the same key are one, in all frames. */
@@ -16,13 +17,11 @@ export interface Known {
   name?: string;
 }
 
-export interface ReadFrame {
+export interface ReadFrame extends Size {
   /** Its name, without folder and extension. */
   name: string;
   /** The file that annotates it. */
   file: string;
-  width: number;
-  height: number;
   objects: Known[];
   draw: (canvas: Canvas, labelOf: (key: string) => number) => void;
   /** Of objects that have a box and no mask here: where they are. */
@@ -65,7 +64,7 @@ export interface Context {
   /** The names of YOLO's classes, by number, that hold for a file. */
   namesOf: (file: string) => string[];
   /** The size of the frame that is called as the file, where the format does not say it. */
-  sizeOf: (file: string) => { width: number; height: number };
+  sizeOf: (file: string) => Size;
   /** The number of frames, where that is known. */
   count: number | undefined;
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
@@ -111,7 +110,7 @@ export function frameOfShapes(
 }
 
 /** The pixels of a box that are in the frame. */
-function withinFrame(box: readonly number[], { width, height }: { width: number; height: number }): PixelBox | undefined {
+function withinFrame(box: readonly number[], { width, height }: Size): PixelBox | undefined {
   const [x, y, w, h] = box as PixelBox;
   if (!box.every(Number.isFinite)) throw invalidInput('a box must have four numbers');
   const [left, top] = [Math.max(0, Math.floor(x)), Math.max(0, Math.floor(y))];
@@ -215,7 +214,7 @@ export function stemOf(image: unknown): string {
   return stem;
 }
 
-export function checkSize(width: unknown, height: unknown, whose: string): { width: number; height: number } {
+export function checkSize(width: unknown, height: unknown, whose: string): Size {
   if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS)
     return { width, height };
   throw invalidInput(
@@ -224,7 +223,7 @@ export function checkSize(width: unknown, height: unknown, whose: string): { wid
 }
 
 /** A box inside the frame. */
-export function checkBox([left, top, width, height]: readonly unknown[], frame: { width: number; height: number }) {
+export function checkBox([left, top, width, height]: readonly unknown[], frame: Size) {
   const [right, bottom] = [frame.width - 1, frame.height - 1];
   if (isWhole(left, 0, right) && isWhole(top, 0, bottom) && isWhole(width, 1, right + 1 - left) && isWhole(height, 1, bottom + 1 - top)) {
     return { left, top, width, height };

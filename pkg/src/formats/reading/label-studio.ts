@@ -2,6 +2,7 @@
 // numbers. Images that were uploaded are called by a hash and their name.
 
 import { invalidInput, isListOf, isNumber, isObject, isWhole } from '../../common/checks.js';
+import type { Size } from '../png-reader.js';
 import {
   checkSize,
   type Context,
@@ -35,7 +36,7 @@ export function readLabelStudio(tasks: readonly Json[], file: string, context: C
 
 function frameOf(task: Json, image: string, file: string, context: Context): ReadFrame[] {
   const unnumbered = new Unnumbered();
-  let size: { width: number; height: number } | undefined;
+  let size: Size | undefined;
   const shapes = resultsOf(task).flatMap((result): Shape[] => {
     const { id, type, value, original_width: width, original_height: height } = result;
     if (REMARKS.includes(String(type))) return [];
@@ -82,7 +83,7 @@ function decoded(text: string): string {
   }
 }
 
-function drawing(type: string, value: Json, { width, height }: { width: number; height: number }): Drawing {
+function drawing(type: string, value: Json, { width, height }: Size): Drawing {
   if (type === 'brushlabels') {
     const { rle } = value;
     const isBytes = isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255));

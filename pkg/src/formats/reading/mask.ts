@@ -5,7 +5,7 @@ import { checkedBytes, entriesOf, invalidInput, invalidOption, isObject, isWhole
 import type { VeroneseError } from '../../common/errors.js';
 import { davisPalette } from '../../common/palette.js';
 import { countsOf } from '../coco-rle.js';
-import { decodeIndices } from '../png-reader.js';
+import { decodeIndices, type Size } from '../png-reader.js';
 import { Canvas } from './canvas.js';
 import { checkSize, within } from './frame.js';
 import { crispLevels } from './smoothed.js';
@@ -40,7 +40,7 @@ export function labelsOfPng(bytes: Uint8Array, levels?: Levels): LabelImage {
 }
 
 /** Of RGBA pixels: grey levels if there is nothing else, otherwise indices of colours in the DAVIS palette. Transparent pixels have no label. */
-function labelsOfPixels(rgba: Uint8Array, size: { width: number; height: number }, levels?: Levels): LabelImage {
+function labelsOfPixels(rgba: Uint8Array, size: Size, levels?: Levels): LabelImage {
   const { width, height } = size;
   if (rgba.length !== 4 * width * height) throw invalidInput('it must have RGBA pixels that fill its width and height');
   const colours = Int32Array.from({ length: width * height }, (_, p) => (rgba[4 * p + 3] === 0 ? -1 : numberOf(rgba.subarray(4 * p))));

@@ -3,7 +3,7 @@
 
 import type { AnnotationNote, Levels } from '../../../types/formats.js';
 import { invalidInput, UNLABELLED } from '../../common/checks.js';
-import { decodePng, type Samples } from '../png-reader.js';
+import { decodePng, type Samples, type Size } from '../png-reader.js';
 import { addTo, isObjectNumber, type Known, known, naming, type ReadFrame, type Source, stemOf } from './frame.js';
 import { davisIndices } from './mask.js';
 import { valuesIn } from './mots.js';
@@ -29,10 +29,8 @@ interface Values {
 }
 
 /** What a file is taken for: the meaning of each value. */
-interface MaskFile {
+interface MaskFile extends Size {
   name: string;
-  width: number;
-  height: number;
   values: () => Int32Array;
   meaning: Map<number, Known | typeof UNLABELLED | 0>;
   note?: AnnotationNote | undefined;

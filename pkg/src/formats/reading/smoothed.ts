@@ -2,22 +2,18 @@
 
 import type { Levels } from '../../../types/formats.js';
 import { invalidInput } from '../../common/checks.js';
+import type { Size } from '../png-reader.js';
 
 /** With more values that nowhere fill a block it is no mask but a picture. */
 const MOST = 4096;
 /** Pixels of such values that lie between others count if there is one to so many at clear borders: a tiny object or two are no edge. */
 const CLEAR = 4;
 
-interface Grid {
-  width: number;
-  height: number;
-}
-
 /**
  * Throws `invalid-input` where levels or colours lie between others: where most pixels of those that nowhere fill a block of nine touch two other
  * values. Thin objects touch one, the ground.
  */
-export function checkCrisp(values: Int32Array, grid: Grid, what: 'level' | 'colour', ground = 0): void {
+export function checkCrisp(values: Int32Array, grid: Size, what: 'level' | 'colour', ground = 0): void {
   const filling = new Set([ground]);
   for (let at = 0; at < values.length; at++)
     if (!filling.has(values[at] as number) && around(grid, at, true).every((other) => values[other] === values[at]))
@@ -47,13 +43,13 @@ export function checkCrisp(values: Int32Array, grid: Grid, what: 'level' | 'colo
 }
 
 /** Grey levels as labels: those from a level on are object 1 where that is given, else each is a number. Throws as {@link checkCrisp} does. */
-export function crispLevels(levels: Uint8Array, grid: Grid, meaning: Levels | undefined): Uint8Array {
+export function crispLevels(levels: Uint8Array, grid: Size, meaning: Levels | undefined): Uint8Array {
   if (meaning === undefined) checkCrisp(Int32Array.from(levels), grid, 'level');
   return typeof meaning === 'number' ? levels.map((level) => Number(level >= meaning)) : levels;
 }
 
 /** The block of nine pixels around one, without those outside the picture; `whole`: moved into it. */
-function around({ width, height }: Grid, at: number, whole = false): number[] {
+function around({ width, height }: Size, at: number, whole = false): number[] {
   const start = (place: number, side: number) => Math.max(0, whole ? Math.min(place - 1, side - 3) : place - 1);
   const [x, y] = [at % width, Math.floor(at / width)];
   const [left, top] = [start(x, width), start(y, height)];

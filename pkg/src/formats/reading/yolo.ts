@@ -2,7 +2,7 @@
 // text without lines says that there is nothing.
 
 import { invalidInput } from '../../common/checks.js';
-import { headOf } from '../png-reader.js';
+import { headOf, type Size } from '../png-reader.js';
 import {
   type Context,
   type Drawing,
@@ -90,7 +90,7 @@ function plain(name: string): string {
 }
 
 /** The size of a PNG or JPEG file, from its beginning; undefined of another one, or if it is not within the bytes. */
-export function sizeOfPicture(bytes: Uint8Array): { width: number; height: number } | undefined {
+export function sizeOfPicture(bytes: Uint8Array): Size | undefined {
   if (isPng(bytes)) return headOf(bytes);
   const word = (at: number) => ((bytes[at] as number) << 8) | (bytes[at + 1] as number);
   // Segments of a JPEG: FF, what it is, its length. The one that begins a frame has the size.
