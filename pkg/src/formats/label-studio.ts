@@ -44,21 +44,32 @@ const LENGTH_BITS = [3, 4, 8, 16];
 const LONGEST = 1 << 16;
 
 function packed(mask: Mask, width: number, height: number): number[] {
-  const bits = new Bits();
-  bits.write(width * height * 4, 32);
-  bits.write(8 - 1, 5);
-  for (const length of LENGTH_BITS) bits.write(length - 1, 4);
+  const bytes: number[] = [];
+  // Bits one after another from the highest of each byte.
+  let free = 0;
+  const write = (value: number, count: number) => {
+    for (let bit = count - 1; bit >= 0; bit--) {
+      if (free === 0) {
+        bytes.push(0);
+        free = 8;
+      }
+      (bytes[bytes.length - 1] as number) |= ((value >>> bit) & 1) << --free;
+    }
+  };
+  write(width * height * 4, 32);
+  write(8 - 1, 5);
+  for (const length of LENGTH_BITS) write(length - 1, 4);
   for (const [at, length] of rowRuns(placed(mask, width, height)).entries()) {
     for (let left = length * 4; left > 0; left -= LONGEST) {
       const count = Math.min(left, LONGEST) - 1;
       const size = LENGTH_BITS.findIndex((length) => count < 1 << length);
-      bits.write(1, 1);
-      bits.write(size, 2);
-      bits.write(count, LENGTH_BITS[size] as number);
-      bits.write(at % 2 === 0 ? 0 : 255, 8);
+      write(1, 1);
+      write(size, 2);
+      write(count, LENGTH_BITS[size] as number);
+      write(at % 2 === 0 ? 0 : 255, 8);
     }
   }
-  return bits.bytes;
+  return bytes;
 }
 
 /** The mask in the whole image. */
@@ -66,22 +77,4 @@ function placed({ left, top, width, height, pixels }: Mask, imageWidth: number, 
   const all = new Uint8Array(imageWidth * imageHeight);
   for (let y = 0; y < height; y++) all.set(pixels.subarray(y * width, (y + 1) * width), (top + y) * imageWidth + left);
   return all;
-}
-
-/** Bits one after another from the highest of each byte. */
-class Bits {
-  readonly bytes: number[] = [];
-  #free = 0;
-
-  write(value: number, count: number): void {
-    for (let bit = count - 1; bit >= 0; bit--) {
-      if (this.#free === 0) {
-        this.bytes.push(0);
-        this.#free = 8;
-      }
-      this.#free--;
-      const last = this.bytes.length - 1;
-      this.bytes[last] = (this.bytes[last] as number) | (((value >>> bit) & 1) << this.#free);
-    }
-  }
 }

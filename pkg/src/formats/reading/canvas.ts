@@ -78,16 +78,13 @@ export class Canvas {
 
   /** Runs column by column over the whole frame, alternating 0s and 1s. */
   columns(counts: readonly unknown[], label: number): void {
-    this.#runs(counts, this.labels.length, (at, end) => {
-      for (; at < end; at++) this.labels[(at % this.height) * this.width + Math.floor(at / this.height)] = label;
-    });
+    const { width, height } = this;
+    this.#runs(counts, label, width * height, (at) => (at % height) * width + Math.floor(at / height));
   }
 
   /** Runs row by row over a box. */
-  rows(counts: readonly unknown[], box: Box, label: number): void {
-    this.#runs(counts, box.width * box.height, (at, end) => {
-      for (; at < end; at++) this.labels[(box.top + Math.floor(at / box.width)) * this.width + box.left + (at % box.width)] = label;
-    });
+  rows(counts: readonly unknown[], { left, top, width, height }: Box, label: number): void {
+    this.#runs(counts, label, width * height, (at) => (top + Math.floor(at / width)) * this.width + left + (at % width));
   }
 
   /** The pixels of the whole frame that are not 0. */
@@ -104,7 +101,7 @@ export class Canvas {
     }
   }
 
-  #runs(counts: readonly unknown[], size: number, draw: (at: number, end: number) => void): void {
+  #runs(counts: readonly unknown[], label: number, size: number, pixelOf: (at: number) => number): void {
     if (!counts.every(isCount)) throw invalidInput('run lengths must be whole numbers from 0');
     const sum = counts.reduce((sum, count) => sum + count, 0);
     if (sum !== size) throw invalidInput(`run lengths must be of ${size} pixels, not ${sum}`);
@@ -112,7 +109,7 @@ export class Canvas {
       const end = at + (counts[k] as number);
       if (k % 2 === 1) {
         this.#spend(end - at);
-        draw(at, end);
+        for (; at < end; at++) this.labels[pixelOf(at)] = label;
       }
       at = end;
     }
