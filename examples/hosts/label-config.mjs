@@ -7,28 +7,21 @@ import { Refusal } from './http.mjs';
 const LARGEST = 64 * 1024;
 
 /**
- * The targets of annotation: the key of a `video` and its `frameRate` as it is written, or the `keys` of two images, of which the one that is
- * painted on is the first frame. `labels` in their order; `fromName` and `toName` are what a result refers to.
+ * The `keys` of two images, of which the one that is painted on is the first frame. `labels` in their order; `fromName` and `toName` are what a
+ * result refers to.
  */
 export function readConfig(config) {
   if (typeof config !== 'string' || config.length > LARGEST) throw refusal(`must be a text of at most ${LARGEST} characters`);
   const all = parsed(config);
-  const [tool] = [...all('VideoRectangle'), ...all('BrushLabels')];
-  if (!tool) throw refusal('has neither BrushLabels nor a VideoRectangle');
+  const [tool] = all('BrushLabels');
+  if (!tool) throw refusal('has no BrushLabels');
   const [fromName, toName] = [value(tool, 'name'), value(tool, 'toName')];
-  const targets = [...all('Video'), ...all('Image')];
-  const target = targets.find((tag) => tag.getAttribute('name') === toName);
-  if (!target) throw refusal(`has no Video or Image named '${toName}'`);
-  const groups = target.tagName === 'Video' ? all('Labels').filter((tag) => tag.getAttribute('toName') === toName) : [tool];
-  const labels = groups.flatMap((group) => Array.from(group.getElementsByTagName('Label'), (label) => value(label, 'value')));
-  const found = { fromName, toName, labels };
-  if (target.tagName === 'Video') {
-    if (labels.length === 0) throw refusal(`has no Labels for the video '${toName}'`);
-    return { ...found, video: keyOf(target), frameRate: target.getAttribute('frameRate') ?? undefined };
-  }
+  const target = all('Image').find((image) => image.getAttribute('name') === toName);
+  if (!target) throw refusal(`has no Image named '${toName}'`);
+  const labels = Array.from(tool.getElementsByTagName('Label'), (label) => value(label, 'value'));
   const other = all('Image').find((image) => image !== target);
   if (!other) throw refusal('needs two Image tags, the brush on the first frame');
-  return { ...found, keys: [target, other].map(keyOf) };
+  return { fromName, toName, labels, keys: [target, other].map(keyOf) };
 }
 
 /** A function that lists the tags of a name. */

@@ -1,7 +1,6 @@
-// An ML backend for Label Studio: every task with two frames gets brush masks of what moves between them, every task with a video
-// boxes that follow its objects.
+// An ML backend for Label Studio: every task with two frames gets brush masks of what moves between them.
 //
-// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--known-as NAME …] [--allow ORIGIN …] [--jobs N] [--frames N] [--seconds N]
+// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--known-as NAME …] [--allow ORIGIN …] [--jobs N]
 
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
@@ -11,7 +10,6 @@ import { encode } from 'veronese/formats';
 import { createFetch, originOf } from './fetch-file.mjs';
 import { Refusal, serveJson } from './http.mjs';
 import { readConfig } from './label-config.mjs';
-import { boxesOf, follow, rateOf } from './video.mjs';
 
 /** Tasks that are worked on at once, and all that may be asked for. */
 const JOBS = 2;
@@ -28,8 +26,6 @@ export async function startBackend({
   knownAs,
   allow,
   jobs = JOBS,
-  frames,
-  seconds,
   studio = process.env.LABEL_STUDIO_URL,
   token: configured = process.env.LABEL_STUDIO_API_KEY,
 } = {}) {
@@ -56,8 +52,7 @@ export async function startBackend({
       if (tasks.length > TASKS - queue.size - queue.pending)
         throw new Refusal(503, 'busy', 'others are waiting already', { 'Retry-After': '10' });
       const wanted = readConfig(config);
-      const predict = wanted.video === undefined ? masks : boxes;
-      const results = await Promise.all(tasks.map((task) => queue.add(() => predict(Object(task).data, wanted, signal), { signal })));
+      const results = await Promise.all(tasks.map((task) => queue.add(() => masks(Object(task).data, wanted, signal), { signal })));
       return { results: results.map((result) => ({ ...result, model_version: MODEL })) };
     },
   };
@@ -76,12 +71,6 @@ export async function startBackend({
     return { result: JSON.parse(content)[0].predictions[0].result, score };
   }
 
-  /** Of a video: Label Studio has no masks there. */
-  async function boxes(data, { video, frameRate, ...names }, signal) {
-    const file = await fetchFile(addressIn(data, video), { token, signal });
-    return follow(file, (clip) => boxesOf(clip, rateOf(frameRate, data), { ...names, modelVersion: MODEL }), signal, { frames, seconds });
-  }
-
   const server = await serveJson(routes, { port, host, knownAs });
   const close = () => {
     server.close();
@@ -97,11 +86,9 @@ function addressIn(data, key) {
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const [text, list] = [{ type: 'string' }, { type: 'string', multiple: true }];
-  const { values } = parseArgs({
-    options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text, frames: text, seconds: text },
-  });
+  const { values } = parseArgs({ options: { port: { ...text, default: '9090' }, host: text, 'known-as': list, allow: list, jobs: text } });
   const numbers = Object.fromEntries(
-    ['port', 'jobs', 'frames', 'seconds'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])),
+    ['port', 'jobs'].flatMap((name) => (values[name] === undefined ? [] : [[name, Number(values[name])]])),
   );
   const server = await startBackend({ ...values, ...numbers, knownAs: values['known-as'] });
   console.log(`ML backend at ${server.address}`);

@@ -3,35 +3,17 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
-import { unzipSync } from 'fflate';
 import { davisPalette, VeroneseError } from 'veronese';
 import { encode } from 'veronese/formats';
 import { FORMATS } from '../build/formats/encode.js';
 import { random } from '../../scripts/lib/random.mjs';
 import { document, encoded } from './support/encoded.mjs';
-import { drawn, labelImages } from './support/masks.mjs';
+import { drawn, filled, intersectionOverUnion, labelImages, maskOf } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
 import { cases, soaking } from './support/soak.mjs';
 
 const ALL = Array.from({ length: 255 }, (_, label) => label);
 const IMAGES = labelImages(soaking ? 300 : 100);
-const mask = (labels, label) => labels.map((value) => Number(value === label));
-
-/** Even-odd filling at pixel centres: a ring's edges toggle everything to their right. */
-function filled(rings, { width, height }) {
-  const pixels = new Uint8Array(width * height);
-  for (const ring of rings) {
-    for (let at = 0; at < ring.length; at += 2) {
-      const [x0, y0] = [ring[at], ring[at + 1]];
-      const [x1, y1] = [ring[(at + 2) % ring.length], ring[(at + 3) % ring.length]];
-      for (let y = Math.ceil(Math.min(y0, y1) - 0.5); y < Math.max(y0, y1) - 0.5; y++) {
-        const crossing = x0 + ((y + 0.5 - y0) / (y1 - y0)) * (x1 - x0);
-        for (let x = Math.max(0, Math.ceil(crossing - 0.5)); x < width; x++) pixels[y * width + x] ^= 1;
-      }
-    }
-  }
-  return pixels;
-}
 
 /** The rings of each label. */
 async function polygons(frame, tolerance, labels = ALL) {
@@ -64,7 +46,7 @@ describe('polygons', () => {
           for (const { label, rings } of found) {
             const sum = new Uint8Array(image.labels.length);
             for (const ring of rings) filled([ring], image).forEach((set, at) => (sum[at] += set));
-            assert.deepEqual(sum, mask(image.labels, label));
+            assert.deepEqual(sum, maskOf(image.labels, label));
           }
           if (tolerance === 0) exact += count(found);
           else thin += count(found);
@@ -74,7 +56,7 @@ describe('polygons', () => {
     }
   });
 
-  for (const tolerance of [0.5, 1.5, 6, 300]) {
+  for (const tolerance of [0.5, 6, 300]) {
     test(`with a tolerance of ${tolerance}: no gap, no overlap, no part or hole lost`, async () => {
       for (const image of [...IMAGES, ...smooth]) {
         const there = { ...image, labels: image.labels.map((label) => (label === 255 ? 9 : label)) };
@@ -119,9 +101,8 @@ describe('polygons', () => {
     const [{ rings }] = await polygons({ labels, width: 200, height: 200 }, 0.5);
     assert.ok(rings[0].length / 2 < 60, `${rings[0].length / 2} vertices`);
     const pixels = filled(rings, { width: 200, height: 200 });
-    const both = pixels.filter((set, at) => set && labels[at] === 1).length;
-    const either = pixels.filter((set, at) => set || labels[at] === 1).length;
-    assert.ok(both / either > 0.985, `${both / either}`);
+    const overlap = intersectionOverUnion(pixels, maskOf(labels, 1));
+    assert.ok(overlap > 0.985, `${overlap}`);
     assert.deepEqual(await polygons(drawn('1111', '1111'), 0), [{ label: 1, rings: [[0, 0, 4, 0, 4, 2, 0, 2]] }]);
     const image = drawn('111111111', '122211131', '122211111', '122211111', '111144111');
     const corners = async (tolerance) => (await polygons(image, tolerance, [2, 3, 4])).map(({ rings: [ring] }) => ring.map((value, at) => (at % 2 ? `${ring[at - 1]} ${value}` : '')).filter(Boolean).sort());
@@ -146,7 +127,7 @@ describe('masks of noise take no long time', () => {
   };
   const large = noise(side);
   // Of each way to write a mask one.
-  for (const format of cases(['youtube-vis', 'coco-polygon', 'label-studio', 'cvat-mots'], Object.keys(FORMATS))) {
+  for (const format of cases(['youtube-vis', 'coco-polygon', 'label-studio', 'davis'], Object.keys(FORMATS))) {
     soon(`${format}: ${side} × ${side}`, () => encode(format, large, { labels: [0, 1], tolerance: 1 }));
   }
   for (const format of cases(['coco-polygon'], ['yolo', 'cvat-polygon', 'label-studio-polygon'])) {
@@ -158,14 +139,14 @@ describe('masks of noise take no long time', () => {
     const holes = { labels: Uint8Array.from({ length: 301 * 301 }, (_, at) => ((at % 301) % 2 && Math.floor(at / 301) % 2 ? 255 : 1)), width: 301, height: 301 };
     const [{ rings }] = await polygons(holes, 0);
     assert.equal(rings.length, 1);
-    assert.deepEqual(filled(rings, holes), mask(holes.labels, 1));
+    assert.deepEqual(filled(rings, holes), maskOf(holes.labels, 1));
     const at = (x, y) => y % 6 < 2 || (y % 6 === 2 && x % 2 === 0) || x === (Math.floor(y / 6) % 2 ? 0 : 2 * side - 1);
     const labels = Uint8Array.from({ length: 4 * side * side }, (_, p) => Number(at(p % (2 * side), Math.floor(p / (2 * side)))));
     assert.equal((await polygons({ labels, width: 2 * side, height: 2 * side }, 0.4, [1]))[0].rings.length, 1);
   });
 });
 
-test('pictures: indices and palette of DAVIS, masks, and the archive of MOTS with the same bytes every time', async () => {
+test('pictures: indices and palette of DAVIS, and masks', async () => {
   for (const image of IMAGES) {
     const png = decode(await document('davis', image), { checkCrc: true });
     assert.deepEqual([png.width, png.height, png.depth, png.channels, png.palette], [image.width, image.height, 8, 1, davisPalette()]);
@@ -175,14 +156,6 @@ test('pictures: indices and palette of DAVIS, masks, and the archive of MOTS wit
       assert.deepEqual(Uint8Array.from(decode(file).data), image.labels.map((value) => (value === Number(label) ? 255 : 0)));
     }
   }
-  const frames = [drawn('0012', '..12'), drawn('0001', '...1')];
-  const archive = await document('cvat-mots', frames, { labels: [0, 1, 2], names: { 0: 'background' } });
-  assert.deepEqual(await document('cvat-mots', frames, { labels: [0, 1, 2], names: { 0: 'background' } }), archive);
-  const files = unzipSync(archive);
-  assert.deepEqual(Object.keys(files), ['labels.txt', '00000.png', '00001.png'].map((name) => `default/instances/${name}`));
-  assert.equal(new TextDecoder().decode(files['default/instances/labels.txt']), 'background\nmotion-1\nmotion-2\n');
-  const png = decode(files['default/instances/00000.png'], { checkCrc: true });
-  assert.deepEqual([png.depth, ...png.data], [16, 1255, 1255, 2001, 3002, 0, 0, 2001, 3002]);
 });
 
 describe('frames', () => {
@@ -226,11 +199,7 @@ describe('frames', () => {
     const { images, annotations } = await document('coco', clip);
     assert.deepEqual(images.map(({ file_name }) => file_name), ['00004.png', '00005.png', '00006.png']);
     assert.deepEqual(annotations.map(({ attributes }) => attributes), [{ track_id: 1, matrix: [0, 0, 0, 0, 0, 0] }, { track_id: 2 }, { track_id: 2 }, { track_id: 1, matrix: [0, 0, 2, 0, 0, 0] }, { track_id: 2 }]);
-    const flows = await encoded('flo', clip.map((frame, k) => ({ ...frame, image: `cam/${k}.jpg` })));
-    assert.deepEqual(Object.keys(flows), ['flo/cam/0.flo', 'flo/cam/1.flo', 'flo/cam/2.flo']);
-    assert.equal(new DataView(flows['flo/cam/0.flo'].buffer).getFloat32(12, true), 9);
     assert.deepEqual((await document('coco', { ...frames[0], motions: [] })).images[0].file_name, 'first.png');
-    assert.deepEqual(Object.keys(await encoded('npy', frames)), [], 'nothing moves');
   });
 
   test('labels of one name are one class; listed classes come first, with or without a mask', async () => {
@@ -253,8 +222,6 @@ describe('frames', () => {
     // MOTS has numbers for 64: of more, those that objects have are numbered, in the order of the list.
     const numbers = async (classes) => {
       const { 'mots/gt/gt.txt': gt, 'mots/gt/labels.txt': text } = await encoded('mots', frames, { ...known, classes });
-      const archive = unzipSync(await document('cvat-mots', frames, { ...known, classes }));
-      assert.equal(new TextDecoder().decode(archive['default/instances/labels.txt']), text);
       return [text.trimEnd().split('\n'), gt.match(/^1 \d+/gm)];
     };
     const many = [...Array.from({ length: 62 }, (_, k) => `class ${k}`), 'bus', 'car'];
@@ -263,8 +230,6 @@ describe('frames', () => {
     assert.deepEqual(await numbers(['person', ...many]), [['bus', 'car'], ['1 2001', '1 1002']]);
     const crowd = { labels: Uint8Array.from({ length: 66 }, (_, at) => at), width: 66, height: 1 };
     await assert.rejects(encode('mots', [crowd]), { code: 'invalid-input', message: /64 classes at most/ });
-    // Instances of one class are as many as there are labels.
-    await encode('cvat-mots', [crowd], { names: Object.fromEntries(ALL.map((label) => [label, 'car'])) });
   });
 
   test('numbers of objects are kept where they are tracked; the background is written where it is asked for', async () => {
@@ -277,17 +242,11 @@ describe('frames', () => {
   });
 
   test('times', async () => {
-    const times = async (more) => {
-      const [{ predictions: [{ result: [{ value }] }] }] = await document('label-studio-video', frames, { labels: [2], ...more });
-      return [...value.sequence.map(({ time }) => time), value.duration];
-    };
-    assert.deepEqual(await times({}), [0, 0.04, 0.08, 0.12]);
-    assert.deepEqual(await times({ frameRate: 2 }), [0, 0.5, 1, 1.5]);
-    assert.deepEqual(await times({ timestamps: [10, 10.5, 12] }), [10, 10.5, 12, 3]);
-    assert.deepEqual(await times({ timestamps: [10, 10.5, 12], frameRate: 4 }), [10, 10.5, 12, 2.25]);
-    await assert.rejects(times({ timestamps: [10, 12, 11] }), { code: 'invalid-option' });
-    for (const wrong of [{ timestamps: [10, 11] }, { timestamps: [-1e308, 0, 1e308] }, { frameRate: 1e-308 }]) await assert.rejects(times(wrong), { code: 'invalid-input' }, JSON.stringify(wrong));
-    assert.match((await encoded('mots', frames, { timestamps: [0, 0, 1e-300] }))['mots/seqinfo.ini'], /frameRate=25\n/);
+    const rate = async (more) => /frameRate=(\d+)/.exec((await encoded('mots', frames, more))['mots/seqinfo.ini'])[1];
+    const rates = [{}, { frameRate: 2.4 }, { timestamps: [10, 10.5, 11] }, { timestamps: [10, 10.5, 12], frameRate: 4 }, { timestamps: [0, 0, 1e-300] }];
+    assert.deepEqual(await Promise.all(rates.map(rate)), ['25', '2', '2', '4', '25']);
+    await assert.rejects(rate({ timestamps: [10, 12, 11] }), { code: 'invalid-option' });
+    await assert.rejects(rate({ timestamps: [10, 11] }), { code: 'invalid-input', message: /a number for each frame/ });
   });
 
   test('names are escaped, and lead nowhere else', async () => {
@@ -305,9 +264,9 @@ describe('frames', () => {
     for (const image of wrong) await assert.rejects(encode('davis', [{ ...frames[0], image }]), { code: 'invalid-input', message: /cannot be the name of a file: it / }, JSON.stringify(image));
     const right = ['a.png', 'a b/c d.png', 'clip.v2/00001.jpg', 'ä/日本.png', '.hidden.png', 'null.png', 'concert/a.png', '12:30.png', `${'a'.repeat(251)}.png`];
     for (const image of right) assert.deepEqual(Object.keys(await encoded('davis', [{ ...frames[0], image }], { clip: 'c' })), [`davis/Annotations/480p/c/${image.replace(/\.[^.]*$/, '')}.png`, 'davis/ImageSets/2017/val.txt']);
-    for (const format of ['davis', 'masks', 'yolo', 'cvat-mots', 'flo']) {
+    for (const format of ['davis', 'masks', 'yolo']) {
       for (const other of ['a/F1.png', 'A/f1.bmp', 'a/f1']) {
-        const two = ['a/f1.png', other].map((image) => ({ ...frames[0], image, background: [0, 0, 0, 0, 0, 0] }));
+        const two = ['a/f1.png', other].map((image) => ({ ...frames[0], image }));
         await assert.rejects(encode(format, two), { code: 'invalid-input', message: /two frames have the name/ }, `${format} ${other}`);
       }
     }

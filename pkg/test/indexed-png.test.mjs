@@ -3,6 +3,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
+import { decode } from 'fast-png';
+import { davisPalette } from 'veronese';
 import { encodePng } from 'veronese/codecs';
 import { decodeIndices } from '../build/formats/png-reader.js';
 import { davisPng } from '../build/formats/pictures.js';
@@ -43,17 +45,18 @@ const noise = { labels: Uint8Array.from({ length: 31 * 17 }, () => next() * 256)
 test('every filter', () => {
   for (const filters of [[0], [1], [2], [3], [4], [4, 3, 2, 1, 0]]) {
     for (const image of [noise, ...labelImages(20)]) {
-      const { indices, width, height } = decodeIndices(filtered(image, filters));
-      assert.deepEqual({ labels: indices, width, height }, image);
+      const { labels, width, height } = decodeIndices(filtered(image, filters));
+      assert.deepEqual({ labels, width, height }, image);
     }
   }
 });
 
 test('what the encoders of the package write', async () => {
-  const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
   for (const { labels, width, height } of [noise, ...labelImages(20)]) {
-    assert.deepEqual(decodeIndices(await encodePng(width, height, labels, { palette: palette })).indices, labels);
-    assert.deepEqual(decodeIndices(davisPng(labels, width, height)).indices, labels);
+    const file = await encodePng(width, height, labels, { palette: davisPalette() });
+    assert.deepEqual(decodeIndices(file).labels, labels);
+    assert.deepEqual(decode(file).palette.map((colour) => [...colour].slice(0, 3)), davisPalette());
+    assert.deepEqual(decodeIndices(davisPng(labels, width, height)).labels, labels);
   }
 });
 

@@ -1,5 +1,5 @@
-// Every reader of annotations on files that are cut, whose values are exchanged, or that are long: the masks, or an error with a code that
-// names the file; nothing else, and soon.
+// Every reader of annotations on files that are cut or whose values are exchanged: the masks, or an error with a code that names the file;
+// nothing else, and soon.
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
@@ -8,7 +8,7 @@ import { random } from '../../scripts/lib/random.mjs';
 import { document } from './support/encoded.mjs';
 import { drawn } from './support/masks.mjs';
 import { stopwatch } from './support/processor.mjs';
-import { cases, soaking } from './support/soak.mjs';
+import { soaking } from './support/soak.mjs';
 
 const [width, height] = [5, 5];
 const { labels } = drawn('00000', '01120', '01020', '01120', '30000');
@@ -21,7 +21,7 @@ for (const format of ['coco', 'coco-polygon', 'label-studio', 'label-studio-poly
 DOCUMENTS['youtube-vis'] = await document('youtube-vis', frames, metadata);
 const FILES = Object.fromEntries(Object.entries(DOCUMENTS).map(([format, value]) => [format, JSON.stringify(value)]));
 for (const format of ['cvat', 'cvat-polygon', 'davis']) [{ content: FILES[format] }] = await encode(format, one, metadata);
-for (const format of ['cvat-video', 'mots', 'cvat-mots']) [{ content: FILES[format] }] = await encode(format, frames, metadata);
+for (const format of ['cvat-video', 'mots']) [{ content: FILES[format] }] = await encode(format, frames, metadata);
 FILES['cvat-boxes'] = await document('cvat-video', frames, { ...metadata, shape: 'box' });
 FILES.yolo = `${await document('yolo', one, metadata)}1 0.5 0.5 0.25 0.5\n`;
 const CODES = ['invalid-input', 'unreadable-image', 'frame-size-mismatch'];
@@ -99,24 +99,4 @@ describe('files with other values', () => {
       }
     });
   }
-});
-
-describe('files with ten thousand entries', () => {
-  const many = 10_000;
-  const [annotation] = DOCUMENTS['coco-polygon'].annotations;
-  const coco = (change) => ({ ...DOCUMENTS.coco, annotations: Array.from({ length: many }, (_, id) => ({ ...annotation, id, ...change(id) })) });
-  const LONG_FILES = {
-    'of one object': coco(() => ({ track_id: 1 })),
-    'of objects without numbers': coco(() => ({})),
-    'of boxes': coco((id) => ({ segmentation: [], track_id: id % 200, bbox: [1, 1, 2, 2] })),
-    'of images': { ...coco((id) => ({ image_id: id, track_id: 1 })), images: Array.from({ length: many }, (_, id) => ({ id, file_name: `f${id}.png`, width, height })) },
-    'of which the last is wrong': coco((id) => ({ track_id: 1, segmentation: id === many - 1 ? [[0, 0, 1]] : annotation.segmentation })),
-  };
-  for (const [name, document] of cases(Object.entries(LONG_FILES).slice(0, 4), Object.entries(LONG_FILES).slice(4))) {
-    test(name, () => outcome(JSON.stringify(document), name));
-  }
-  test('of which one is wrong: it is named', () => {
-    const [frame] = readAnnotations([{ name: 'a.json', bytes: bytesOf(JSON.stringify(LONG_FILES['of which the last is wrong'])) }]).frames.values();
-    assert.throws(() => frame.read(), { code: 'invalid-input', message: /^'a\.json': image "f0\.png", annotation 9999: a polygon must have three vertices/ });
-  });
 });

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { encode } from 'veronese/formats';
 import { random } from '../../scripts/lib/random.mjs';
+import { filled, intersectionOverUnion, maskOf } from './support/masks.mjs';
 
 /** Labels of rectangles [left, top, right, bottom, label], the later on top. */
 function image(width, height, ...rectangles) {
@@ -25,32 +26,16 @@ async function ringsOf({ labels, width, height }, options) {
   });
 }
 
-/** Pixels whose middle is in a ring, by the even-odd rule, with the lines of its outline if these are drawn. */
-function filled(points, { width, height }, { whole }) {
-  const inside = new Uint8Array(width * height);
-  const own = whole ? points.map((point) => point.map((value) => Math.trunc(Math.fround(value)))) : points;
-  const offset = whole ? 0 : 0.5;
-  own.forEach(([x, y], k) => {
-    const [nextX, nextY] = own[(k + 1) % own.length];
-    for (let row = 0; row < height; row++) {
-      const at = row + offset;
-      if (Math.min(y, nextY) > at || Math.max(y, nextY) <= at) continue;
-      const crossing = x + ((at - y) * (nextX - x)) / (nextY - y);
-      for (let column = 0; column < width; column++) if (column + offset > crossing) inside[row * width + column] ^= 1;
-    }
-  });
-  if (!whole) return inside;
+/** Pixels in a ring as Ultralytics fills it: vertices are whole pixels, and the lines of the outline are drawn too. */
+function whole(points, { width, height }) {
+  const own = points.map((point) => point.map((value) => Math.trunc(Math.fround(value))));
+  const inside = filled([own.flat()], { width, height }, 0);
   own.forEach(([x, y], k) => {
     const [nextX, nextY] = own[(k + 1) % own.length];
     const steps = Math.max(Math.abs(nextX - x), Math.abs(nextY - y), 1);
     for (let step = 0; step <= steps; step++) inside[Math.round(y + ((nextY - y) * step) / steps) * width + Math.round(x + ((nextX - x) * step) / steps)] = 1;
   });
   return inside;
-}
-
-function iou(inside, labels, label) {
-  const both = labels.filter((one, p) => one === label && inside[p]).length;
-  return both / labels.filter((one, p) => one === label || inside[p]).length;
 }
 
 /** A ring with an island, a touch at a corner and a lone pixel far away; bars, lines and borders. */
@@ -61,9 +46,9 @@ describe('rings of YOLO', () => {
   for (const tolerance of [0, 0.5]) {
     test(`parts far apart, with tolerance ${tolerance}: IoU as Ultralytics draws them`, async () => {
       for (const { label, points } of await ringsOf(PARTS, { tolerance })) {
-        const drawn = iou(filled(points, PARTS, { whole: true }), PARTS.labels, label);
+        const drawn = intersectionOverUnion(whole(points, PARTS), maskOf(PARTS.labels, label));
         assert.ok(drawn >= 0.95, `label ${label}: ${drawn}`);
-        const exact = iou(filled(points, PARTS, { whole: false }), PARTS.labels, label);
+        const exact = intersectionOverUnion(filled([points.flat()], PARTS), maskOf(PARTS.labels, label));
         assert.ok(tolerance > 0 ? exact > 0.99 : exact === 1, `label ${label}: ${exact}`);
       }
     });
@@ -76,8 +61,8 @@ describe('rings of YOLO', () => {
       // All have the middle.
       const one = image(40, 30, ...some.map(([left, top]) => [left, top, left + 16 + (top % 5), top + 13 + (left % 4), 1]));
       const [{ points }] = await ringsOf(one);
-      assert.equal(iou(filled(points, one, { whole: true }), one.labels, 1), 1);
-      assert.equal(iou(filled(points, one, { whole: false }), one.labels, 1), 1);
+      assert.equal(intersectionOverUnion(whole(points, one), one.labels), 1);
+      assert.equal(intersectionOverUnion(filled([points.flat()], one), one.labels), 1);
     }
   });
 

@@ -10,15 +10,11 @@ export type Format =
   | 'cvat'
   | 'cvat-polygon'
   | 'cvat-video'
-  | 'cvat-mots'
   | 'mots'
   | 'label-studio'
   | 'label-studio-polygon'
-  | 'label-studio-video'
   | 'yolo'
   | 'davis'
-  | 'flo'
-  | 'npy'
   | 'masks';
 
 /** The motion of a label to the next frame. Those of a `Segmentation` fit. */
@@ -57,7 +53,7 @@ export interface Metadata {
    * a mask, so that they are the same for all files of a data set. Default: those of `labels` or of the masks.
    */
   classes?: readonly string[];
-  /** The labels that become masks. Default: all but 0, the background, and 255, which never becomes one. `davis`, `flo` and `npy` have all labels. */
+  /** The labels that become masks. Default: all but 0, the background, and 255, which never becomes one. `davis` has all labels. */
   labels?: readonly number[];
   /**
    * Whether labels are the numbers of objects through all frames, which are kept as ids; where ids begin at 1, label 0 becomes 255. Default:
@@ -78,7 +74,7 @@ export interface Metadata {
   tolerance?: number;
   /** Of `cvat-video`: polygons (the default) or boxes. */
   shape?: 'polygon' | 'box';
-  /** Of Label Studio: the names in the project's labelling configuration (default `tag` and `image`, of videos `box` and `video`). */
+  /** Of Label Studio: the names in the project's labelling configuration (default `tag` and `image`). */
   fromName?: string;
   toName?: string;
   /** Of Label Studio: who made the prediction; default `veronese`. */

@@ -104,11 +104,7 @@ export const OPTIONS = {
   from: { type: 'string', default: '0', value: 'N', text: 'of batch and clip: the first frame to convert, counted from 0' },
   until: { type: 'string', value: 'M', text: 'of batch and clip: the last frame to convert (default: the last one)' },
   shapes: { type: 'string', value: 'polygon|box', text: 'of clip: shapes in cvat-video (default: polygon)' },
-  video: {
-    type: 'string',
-    value: 'NAME',
-    text: 'of clip: file name of the video, for cvat-video and label-studio-video (default: the name of DIR)',
-  },
+  video: { type: 'string', value: 'NAME', text: 'of clip: file name of the video, for cvat-video (default: the name of DIR)' },
   'frame-rate': { type: 'string', value: 'N', text: "of clip: frames per second, for formats that need it (default: the clip's, else 25)" },
   clip: {
     type: 'string',

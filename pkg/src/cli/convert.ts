@@ -26,7 +26,7 @@ export async function convert(command: ConvertCommand, output: Output, io: Io): 
   if (kind !== 'pair') output.check(to.flatMap((name) => FORMATS[name].files));
   const files = await output.stage(async (write) => {
     for (const name of to) {
-      const clip = ['cvat-video', 'label-studio-video'].includes(name) ? (video ?? metadata.clip) : metadata.clip;
+      const clip = name === 'cvat-video' ? (video ?? metadata.clip) : metadata.clip;
       const encoder = new FrameEncoder(name, { ...metadata, clip, tolerance, shape: shapes }, kind === 'pair');
       // Each is written before the next is read: all of them can be larger than the memory.
       for await (const frame of frames) for (const file of encoder.add(frame)) await write(file.name, file.content);

@@ -1,24 +1,16 @@
 // Label images and JSON, as the program wrote them, read back.
 
-import type { Levels } from '../../types/formats.js';
-import { VeroneseError, veroneseError } from '../common/errors.js';
+import type { LabelImage, Levels } from '../../types/formats.js';
+import { VeroneseError } from '../common/errors.js';
 import { readInput } from './files.js';
 import { decodeIndices } from '../formats/png-reader.js';
-import { crispLevels } from '../formats/reading/smoothed.js';
+import { naming } from '../formats/reading/frame.js';
+import { labelsOfPng } from '../formats/reading/mask.js';
 
 /** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */
-export async function readLabels(
-  path: string,
-  options?: { foreign: boolean; levels: Levels | undefined },
-): Promise<{ labels: Uint8Array; width: number; height: number }> {
+export async function readLabels(path: string, options?: { foreign: boolean; levels: Levels | undefined }): Promise<LabelImage> {
   const bytes = await readInput(path);
-  try {
-    const { indices, isGrey, ...size } = decodeIndices(bytes, options);
-    return { labels: isGrey ? crispLevels(indices, size, options?.levels) : indices, ...size };
-  } catch (thrown) {
-    const { code, message } = veroneseError(thrown);
-    throw new VeroneseError(code, `'${path}' ${message}`);
-  }
+  return naming(path, () => (options?.foreign ? labelsOfPng(bytes, options.levels) : decodeIndices(bytes)));
 }
 
 /** The value in a file of JSON. Throws `invalid-json`. */

@@ -20,7 +20,7 @@ export async function unpacked({ width, height, rows }: Packed): Promise<Uint8Ar
 
 /** An indexed PNG whose indices are the labels, with the DAVIS palette. */
 export function fileOf({ width, height, rows }: Packed, name: string): File {
-  const bytes = pngFile(width, height, rows, { palette: Uint8Array.from(davisPalette().flat()) });
+  const bytes = pngFile(width, height, rows, Uint8Array.from(davisPalette().flat()));
   return new File([bytes], name, { type: 'image/png' });
 }
 

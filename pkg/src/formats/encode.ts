@@ -5,12 +5,10 @@ import { invalidInput, invalidOption, isObject, reading, unreadable } from '../c
 import { cocoImages, cocoVideo } from './coco.js';
 import { cvatImages } from './cvat-images.js';
 import { cvatVideo } from './cvat-video.js';
-import { flow } from './flow.js';
 import { type Encoder, type Extent, frameOf, noFrames } from './frames.js';
 import { labelStudio } from './label-studio.js';
-import { labelStudioVideo } from './label-studio-video.js';
 import { type Settings, settingsOf } from './metadata.js';
-import { cvatMots, mots } from './mots.js';
+import { mots } from './mots.js';
 import { davis, masks } from './pictures.js';
 import { yolo } from './yolo.js';
 
@@ -20,7 +18,7 @@ interface FormatEntry {
   files: readonly string[];
   /** Whether it holds tracks: a label must be the same object in all frames. */
   tracks?: boolean;
-  /** Whether it says when frames are, or how many there are in a second. */
+  /** Whether it says how many frames there are in a second. */
   timed?: boolean;
 }
 
@@ -31,15 +29,11 @@ export const FORMATS: Readonly<Record<Format, FormatEntry>> = {
   cvat: { begin: cvatImages('cvat.xml', 'mask'), files: ['cvat.xml'] },
   'cvat-polygon': { begin: cvatImages('cvat-polygon.xml', 'polygon'), files: ['cvat-polygon.xml'] },
   'cvat-video': { begin: cvatVideo, files: ['cvat-video.xml'], tracks: true },
-  'cvat-mots': { begin: cvatMots, files: ['cvat-mots.zip'], tracks: true },
   mots: { begin: mots, files: ['mots/gt/gt.txt', 'mots/gt/labels.txt', 'mots/seqinfo.ini'], tracks: true, timed: true },
   'label-studio': { begin: labelStudio('label-studio.json', 'brush'), files: ['label-studio.json'] },
   'label-studio-polygon': { begin: labelStudio('label-studio-polygon.json', 'polygon'), files: ['label-studio-polygon.json'] },
-  'label-studio-video': { begin: labelStudioVideo, files: ['label-studio-video.json'], tracks: true, timed: true },
   yolo: { begin: yolo, files: ['yolo/names.txt', 'yolo/data.yaml'] },
   davis: { begin: davis, files: ['davis/ImageSets/2017/val.txt'] },
-  flo: { begin: flow('flo'), files: [] },
-  npy: { begin: flow('npy'), files: [] },
   masks: { begin: masks, files: [] },
 };
 

@@ -50,7 +50,6 @@ export function frameOf(given: unknown, extent: Extent | undefined, settings: Se
     if (image !== undefined && !isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
     if (!isWhole(own, 0, Number.MAX_SAFE_INTEGER)) throw invalidInput("a frame's index must be a whole number from 0");
     if (settings.times !== undefined && index >= settings.times) throw invalidInput('timestamps must have a number for each frame');
-    if (!Number.isFinite(settings.duration(index + 1))) throw invalidInput('the times of the frames are too large');
     if (extent && (width !== extent.width || height !== extent.height)) {
       throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
     }

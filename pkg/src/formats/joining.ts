@@ -1,44 +1,95 @@
-// The parts of a mask in one ring: from the largest part, each of the others hangs on a bridge without width, which is taken there and back,
-// where it is nearest to those that are joined already.
+// Rings that hang on each other over bridges without width, walked as one ring; and the parts of a mask, joined like that: from the largest
+// part, each of the others hangs where its corners are nearest to those of parts that are joined already.
 
 /** x, y of one vertex after another, multiples of ½; the last is joined to the first. */
 export type Ring = number[];
+
+/** The rings that hang at a vertex, as a list: the first, and from each to the next; `start` is a ring's own end of its bridge. */
+export interface Hanging {
+  first: Map<number, number>;
+  next: Int32Array;
+  start: Int32Array;
+}
 
 /** With more corners in all, some of each part are compared: every pair of corners of two parts is, else. */
 const MOST_CORNERS = 8_000;
 /** With more parts each hangs on the one before it in the list. */
 const MOST_PARTS = 4_000;
 
-/** A place on a ring: behind the corner `at`, at the point (x, y) of its edge. */
-interface Place {
+const NONE = -1;
+
+/** Of so many rings none hangs yet. */
+export function nothingHangs(rings: number): Hanging {
+  return { first: new Map(), next: new Int32Array(rings).fill(NONE), start: new Int32Array(rings) };
+}
+
+/** Hangs a ring with its vertex `start` at a vertex of another one. */
+export function hang({ first, next, start }: Hanging, ring: number, vertex: number, there: number): void {
+  start[ring] = vertex;
+  next[ring] = first.get(there) ?? NONE;
+  first.set(there, ring);
+}
+
+/** A ring under way: it begins and ends at `start`. */
+interface Tour {
+  start: number;
+  begin: number;
+  size: number;
+  done: number;
+  /** The vertex it stands at, and the first of the rings that hang there and are still to come. */
   at: number;
-  x: number;
-  y: number;
+  pending: number;
 }
 
-/** The shortest way found so far from a part to those that are joined. */
-interface Bridge {
-  length: number;
-  /** Number of the joined part. */
-  to: number;
-  there: Place;
-  here: Place;
+/** Gives the vertices of a ring with all that hangs on it. Those of ring r alone are `from[r]` to `from[r + 1]`, exclusive. */
+export function walker(from: readonly number[], { first, next, start }: Hanging): (root: number) => Int32Array {
+  // Each ring is walked once, and each bridge has two ends to come back over.
+  const room = new Int32Array((from.at(-1) as number) + 2 * from.length);
+  const tour = (ring: number, start: number): Tour => {
+    const begin = from[ring] as number;
+    return { start, begin, size: (from[ring + 1] as number) - begin, done: 0, at: start, pending: NONE };
+  };
+  return (root) => {
+    let count = 0;
+    let current = tour(root, from[root] as number);
+    // A stack and not recursion: rings may hang on rings by the thousand.
+    const stack: Tour[] = [];
+    for (;;) {
+      if (current.pending !== NONE) {
+        const ring = current.pending;
+        current.pending = next[ring] as number;
+        stack.push(current);
+        current = tour(ring, start[ring] as number);
+      } else if (current.done < current.size) {
+        current.at = current.begin + ((current.start - current.begin + current.done++) % current.size);
+        current.pending = first.get(current.at) ?? NONE;
+        room[count++] = current.at;
+      } else {
+        const parent = stack.pop();
+        if (!parent) return room.slice(0, count);
+        // The ring is closed; then back over the bridge.
+        room[count++] = current.start;
+        room[count++] = parent.at;
+        current = parent;
+      }
+    }
+  };
 }
 
-/** A part that hangs on another. */
-interface Hanging {
-  bridge: Bridge;
-  part: number;
-}
-
+/** One ring over all parts. */
 export function joined(parts: readonly Ring[]): Ring {
   if (parts.length < 2) return [...(parts[0] ?? [])];
+  const from = [0];
+  for (const ring of parts) from.push((from.at(-1) as number) + ring.length / 2);
+  const corners = parts.flat();
   const areas = parts.map(areaOf);
   const root = areas.indexOf(Math.max(...areas));
-  const bridges = parts.length > MOST_PARTS ? inARow(parts, root) : nearest(parts, root);
-  const hanging: Hanging[][] = parts.map(() => []);
-  for (const [part, bridge] of bridges) (hanging[bridge.to] as Hanging[]).push({ bridge, part });
-  return walked(parts, hanging, root);
+  const hanging = nothingHangs(parts.length);
+  if (parts.length > MOST_PARTS) {
+    const others = [root, ...parts.keys()].filter((part, at) => at === 0 || part !== root);
+    others.slice(1).forEach((part, at) => hang(hanging, part, from[part] as number, from[others[at] as number] as number));
+  } else hangNearest(hanging, parts, from, corners, root);
+  return [...walker(from, hanging)(root)].flatMap((vertex) => corners.slice(2 * vertex, 2 * vertex + 2));
 }
 
 function areaOf(ring: Ring): number {
@@ -50,80 +101,42 @@ function areaOf(ring: Ring): number {
   return Math.abs(area);
 }
 
-function corner(ring: Ring, at: number): Place {
-  return { at, x: ring[2 * at] as number, y: ring[2 * at + 1] as number };
-}
-
-function inARow(parts: readonly Ring[], root: number): Map<number, Bridge> {
-  const bridges = new Map<number, Bridge>();
-  let before = root;
-  for (const [part, ring] of parts.entries()) {
-    if (part === root) continue;
-    bridges.set(part, { length: 0, to: before, there: corner(parts[before] as Ring, 0), here: corner(ring, 0) });
-    before = part;
-  }
-  return bridges;
+/** The shortest way found so far from a part to those that are joined, and its vertices. */
+interface Bridge {
+  length: number;
+  there: number;
+  here: number;
 }
 
 /** A tree of shortest bridges, as Prim grows it. */
-function nearest(parts: readonly Ring[], root: number): Map<number, Bridge> {
-  const step = Math.ceil(parts.reduce((sum, { length }) => sum + length / 2, 0) / MOST_CORNERS);
-  const best = new Map<number, Bridge>(
-    parts.map((_, part) => [
-      part,
-      { length: Infinity, to: root, there: corner(parts[root] as Ring, 0), here: corner(parts[part] as Ring, 0) },
-    ]),
-  );
-  const bridges = new Map<number, Bridge>();
+function hangNearest(hanging: Hanging, parts: readonly Ring[], from: readonly number[], corners: Ring, root: number): void {
+  const step = Math.ceil(corners.length / 2 / MOST_CORNERS);
+  const best = new Map<number, Bridge>(parts.map((_, part) => [part, { length: Infinity, there: 0, here: 0 }]));
   const extents = parts.map(extentOf);
   let last = root;
   for (;;) {
     best.delete(last);
     let next: number | undefined;
     for (const [part, bridge] of best) {
-      if (gap(extents[last] as Extent, extents[part] as Extent) < bridge.length)
-        shorten(bridge, last, parts[last] as Ring, parts[part] as Ring, step);
+      if (gap(extents[last] as Extent, extents[part] as Extent) < bridge.length) shorten(bridge, last, part);
       if (next === undefined || bridge.length < (best.get(next) as Bridge).length) next = part;
     }
-    if (next === undefined) return bridges;
-    bridges.set(next, best.get(next) as Bridge);
+    if (next === undefined) return;
+    const { there, here } = best.get(next) as Bridge;
+    hang(hanging, next, here, there);
     last = next;
   }
-}
 
-/** Makes a bridge the shortest from a joined part to another one, if that is shorter. */
-function shorten(bridge: Bridge, to: number, there: Ring, here: Ring, step: number): void {
-  for (let k = 0; k < there.length / 2; k += step) {
-    for (let j = 0; j < here.length / 2; j += step) {
-      const [onThere, onHere] = [way(there, k, here, j), way(here, j, there, k)];
-      if (Math.min(onThere, onHere) >= bridge.length) continue;
-      const [far, near] =
-        onThere <= onHere ? [nearestPlace(there, k, here, j), corner(here, j)] : [corner(there, k), nearestPlace(here, j, there, k)];
-      Object.assign(bridge, { length: Math.min(onThere, onHere), to, there: far, here: near });
+  /** Makes a bridge the shortest from a joined part to another one, if that is shorter. */
+  function shorten(bridge: Bridge, joined: number, part: number): void {
+    for (let there = from[joined] as number; there < (from[joined + 1] as number); there += step) {
+      const [x, y] = [corners[2 * there] as number, corners[2 * there + 1] as number];
+      for (let here = from[part] as number; here < (from[part + 1] as number); here += step) {
+        const length = (x - (corners[2 * here] as number)) ** 2 + (y - (corners[2 * here + 1] as number)) ** 2;
+        if (length < bridge.length) Object.assign(bridge, { length, there, here });
+      }
     }
   }
-}
-
-/** The square of the way from a corner of `other` to the edge behind a corner of `ring`. */
-function way(ring: Ring, at: number, other: Ring, end: number): number {
-  return (
-    (onEdge(ring, at, 0, other, end) - (other[2 * end] as number)) ** 2 +
-    (onEdge(ring, at, 1, other, end) - (other[2 * end + 1] as number)) ** 2
-  );
-}
-
-function nearestPlace(ring: Ring, at: number, other: Ring, end: number): Place {
-  return { at, x: onEdge(ring, at, 0, other, end), y: onEdge(ring, at, 1, other, end) };
-}
-
-/** A coordinate of the place on the edge behind a corner that is nearest to a corner of `other`: the corner unless the edge is level or upright. */
-function onEdge(ring: Ring, at: number, axis: 0 | 1, other: Ring, end: number): number {
-  const next = (2 * at + 2) % ring.length;
-  const own = ring[2 * at + axis] as number;
-  if (ring[2 * at + 1 - axis] !== ring[next + 1 - axis]) return own;
-  const far = ring[next + axis] as number;
-  const wanted = other[2 * end + axis] as number;
-  return own < far ? Math.min(Math.max(wanted, own), far) : Math.min(Math.max(wanted, far), own);
 }
 
 /** First and last column and row of a ring. */
@@ -146,53 +159,4 @@ function gap(one: Extent, other: Extent): number {
   const across = Math.max(0, one[0] - other[2], other[0] - one[2]);
   const down = Math.max(0, one[1] - other[3], other[1] - one[3]);
   return across ** 2 + down ** 2;
-}
-
-/** One ring over all parts. A stack and not recursion: parts may hang on each other by the thousand. */
-function walked(parts: readonly Ring[], hanging: readonly Hanging[][], root: number): Ring {
-  const ring: Ring = [];
-  const stack: { steps: Iterator<Step>; back?: Place }[] = [{ steps: stepsOf(parts, hanging, root) }];
-  for (let tour = stack.at(-1); tour !== undefined; tour = stack.at(-1)) {
-    const { value, done } = tour.steps.next();
-    if (done) {
-      stack.pop();
-      if (tour.back) ring.push(tour.back.x, tour.back.y);
-    } else if ('part' in value) {
-      ring.push(value.there.x, value.there.y);
-      stack.push({ steps: stepsOf(parts, hanging, value.part, value.here), back: value.there });
-    } else {
-      ring.push(value.x, value.y);
-    }
-  }
-  return ring;
-}
-
-type Step = { x: number; y: number } | { part: number; there: Place; here: Place };
-
-/** The corners of a part from a place on it round to the same place, and between them the parts that hang there. */
-function* stepsOf(parts: readonly Ring[], hanging: readonly Hanging[][], part: number, from?: Place): Generator<Step, void, undefined> {
-  const ring = parts[part] as Ring;
-  const count = ring.length / 2;
-  const start = from?.at ?? 0;
-  const along = ({ at, x, y }: Place) => Math.abs(x - (ring[2 * at] as number)) + Math.abs(y - (ring[2 * at + 1] as number));
-  const own = [...(hanging[part] as Hanging[])].sort((a, b) => along(a.bridge.there) - along(b.bridge.there));
-  const byCorner = new Map<number, Hanging[]>();
-  for (const one of own) byCorner.set(one.bridge.there.at, [...(byCorner.get(one.bridge.there.at) ?? []), one]);
-  const childrenAt = function* (at: number, wanted: (way: number) => boolean): Generator<Step> {
-    for (const { bridge, part } of byCorner.get(at) ?? [])
-      if (wanted(along(bridge.there))) yield { part, there: bridge.there, here: bridge.here };
-  };
-  const begin = from ? along(from) : 0;
-  if (from) yield from;
-  // The edge on which the tour begins is taken in two pieces.
-  yield* childrenAt(start, (way) => from !== undefined && way >= begin);
-  for (let k = from ? 1 : 0; k < count; k++) {
-    const at = (start + k) % count;
-    yield corner(ring, at);
-    yield* childrenAt(at, () => true);
-  }
-  if (!from) return;
-  yield corner(ring, start);
-  yield* childrenAt(start, (way) => way < begin);
-  yield from;
 }

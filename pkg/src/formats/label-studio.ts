@@ -5,6 +5,7 @@ import type { Encoder } from './frames.js';
 import type { Mask } from './masks.js';
 import type { Settings } from './metadata.js';
 import { Outlines, points, type Ring } from './outline.js';
+import { rowRuns } from './runs.js';
 
 /** A task for each frame. */
 export function labelStudio(file: string, shape: 'brush' | 'polygon') {
@@ -43,55 +44,37 @@ const LENGTH_BITS = [3, 4, 8, 16];
 const LONGEST = 1 << 16;
 
 function packed(mask: Mask, width: number, height: number): number[] {
-  const bits = new Bits();
-  bits.write(width * height * 4, 32);
-  bits.write(8 - 1, 5);
-  for (const length of LENGTH_BITS) bits.write(length - 1, 4);
-  for (const { value, length } of fullRuns(mask, width, height)) {
+  const bytes: number[] = [];
+  // Bits one after another from the highest of each byte.
+  let free = 0;
+  const write = (value: number, count: number) => {
+    for (let bit = count - 1; bit >= 0; bit--) {
+      if (free === 0) {
+        bytes.push(0);
+        free = 8;
+      }
+      (bytes[bytes.length - 1] as number) |= ((value >>> bit) & 1) << --free;
+    }
+  };
+  write(width * height * 4, 32);
+  write(8 - 1, 5);
+  for (const length of LENGTH_BITS) write(length - 1, 4);
+  for (const [at, length] of rowRuns(placed(mask, width, height)).entries()) {
     for (let left = length * 4; left > 0; left -= LONGEST) {
       const count = Math.min(left, LONGEST) - 1;
       const size = LENGTH_BITS.findIndex((length) => count < 1 << length);
-      bits.write(1, 1);
-      bits.write(size, 2);
-      bits.write(count, LENGTH_BITS[size] as number);
-      bits.write(value, 8);
+      write(1, 1);
+      write(size, 2);
+      write(count, LENGTH_BITS[size] as number);
+      write(at % 2 === 0 ? 0 : 255, 8);
     }
   }
-  return bits.bytes;
+  return bytes;
 }
 
-/** Row by row over the whole image, none empty. */
-function fullRuns({ left, top, width, pixels, height }: Mask, imageWidth: number, imageHeight: number) {
-  const runs: { value: 0 | 255; length: number }[] = [];
-  const add = (value: 0 | 255, length: number) => {
-    const last = runs.at(-1);
-    if (last?.value === value) last.length += length;
-    else if (length > 0) runs.push({ value, length });
-  };
-  add(0, top * imageWidth);
-  for (let y = 0; y < height; y++) {
-    add(0, left);
-    for (let x = 0; x < width; x++) add(pixels[y * width + x] ? 255 : 0, 1);
-    add(0, imageWidth - left - width);
-  }
-  add(0, (imageHeight - top - height) * imageWidth);
-  return runs;
-}
-
-/** Bits one after another from the highest of each byte. */
-class Bits {
-  readonly bytes: number[] = [];
-  #free = 0;
-
-  write(value: number, count: number): void {
-    for (let bit = count - 1; bit >= 0; bit--) {
-      if (this.#free === 0) {
-        this.bytes.push(0);
-        this.#free = 8;
-      }
-      this.#free--;
-      const last = this.bytes.length - 1;
-      this.bytes[last] = (this.bytes[last] as number) | (((value >>> bit) & 1) << this.#free);
-    }
-  }
+/** The mask in the whole image. */
+function placed({ left, top, width, height, pixels }: Mask, imageWidth: number, imageHeight: number): Uint8Array {
+  const all = new Uint8Array(imageWidth * imageHeight);
+  for (let y = 0; y < height; y++) all.set(pixels.subarray(y * width, (y + 1) * width), (top + y) * imageWidth + left);
+  return all;
 }

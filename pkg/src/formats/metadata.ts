@@ -20,10 +20,6 @@ export interface Settings extends Omit<Metadata, 'timestamps' | 'frameRate'> {
   rate: number;
   /** How many frames have a time, if any. */
   times: number | undefined;
-  /** The time of a frame in seconds. */
-  time: (index: number) => number;
-  /** Seconds to the end of the last of so many frames. */
-  duration: (length: number) => number;
 }
 
 const KNOWN = [
@@ -56,8 +52,6 @@ export function settingsOf(metadata: unknown, one: boolean): Settings {
     const labels = taken('labels', 'a list of labels from 0 to 255', (value) => isListOf(value, isLabel));
     const timestamps = taken('timestamps', 'a list of numbers, none below the one before it', isRising);
     const frameRate = taken('frameRate', 'a number above 0', (value): value is number => Number.isFinite(value) && (value as number) > 0);
-    const rate = rateOf({ frameRate, timestamps }) ?? USUAL_RATE;
-    const time = (index: number) => timestamps?.[index] ?? index / rate;
     const [fromName, toName] = [text('fromName'), text('toName')];
     return {
       one,
@@ -72,10 +66,8 @@ export function settingsOf(metadata: unknown, one: boolean): Settings {
       ...(fromName !== undefined && { fromName }),
       ...(toName !== undefined && { toName }),
       modelVersion: text('modelVersion') ?? 'veronese',
-      rate,
+      rate: rateOf({ frameRate, timestamps }) ?? USUAL_RATE,
       times: timestamps?.length || undefined,
-      time,
-      duration: (length) => (timestamps ? time(length - 1) - time(0) + 1 / rate : length / rate),
     };
   });
 }

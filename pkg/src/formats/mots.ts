@@ -1,92 +1,42 @@
-// MOTS: ids are 1000 × class + instance. As text, a line for each mask, and as CVAT's archive of 16-bit grey images.
+// MOTS as text, a line for each mask: ids are 1000 × class + instance.
 
-import { type Zippable, zipSync } from 'fflate';
-import { VeroneseError } from '../common/errors.js';
+import { invalidInput } from '../common/checks.js';
 import { cocoRle } from './coco-rle.js';
-import { type Encoder, type Extent, idOf, lines, Numbering, Stems } from './frames.js';
+import { type Encoder, type Extent, idOf, lines, Numbering } from './frames.js';
 import { nameOf, type Settings } from './metadata.js';
-import { png } from './pictures.js';
 
 const CLASS = 1000;
-/** The largest value is 1000 × 65 + 255: more classes do not fit the 16 bits of the PNG form. */
+/** More classes do not fit the 16 bits of MOTS as PNG. */
 const MOST = 64;
-
-const LABELS = 'default/instances/labels.txt';
-/** Archives hold times: the earliest that a zip can have, so that the same masks give the same bytes. In local time, as fflate reads it. */
-const EPOCH = { mtime: new Date(1980, 0, 1) };
-
-/** Numbers of objects: 1000 × class + instance. */
-class MotsIds {
-  readonly #classes: Numbering;
-
-  /** Of a list that leaves no room for the classes of all objects, only those that objects have are numbered. */
-  constructor({ classes, names = {}, labels = Object.keys(names).map(Number) }: Settings) {
-    const used = new Set(labels.map((label) => oneLine(nameOf(label, { names }))));
-    const listed = classes.map(oneLine);
-    const fits = new Set([...listed, ...used]).size <= MOST;
-    this.#classes = new Numbering(fits ? listed : listed.filter((name) => used.has(name)));
-  }
-
-  of(name: string, label: number): number {
-    const number = this.#classes.of(oneLine(name));
-    if (number > MOST) throw new VeroneseError('invalid-input', `MOTS holds ${MOST} classes at most`);
-    return number * CLASS + idOf(label);
-  }
-
-  /** The names of the classes, a line for each. */
-  get text(): string {
-    return lines(this.#classes.entries);
-  }
-}
 
 /** A line is "frame id class height width run-lengths"; frames count from 1. */
 export function mots(settings: Settings): Encoder {
-  const ids = new MotsIds(settings);
+  const classes = new Numbering(classesOf(settings));
   const written: string[] = [];
   const images: string[] = [];
   return {
     add(frame) {
       images.push(frame.image);
       for (const mask of frame.masks) {
-        const id = ids.of(mask.name, mask.label);
-        written.push(`${frame.index + 1} ${id} ${Math.floor(id / CLASS)} ${frame.height} ${frame.width} ${cocoRle(mask, frame).counts}`);
+        const number = classes.of(oneLine(mask.name));
+        if (number > MOST) throw invalidInput(`MOTS holds ${MOST} classes at most`);
+        const id = number * CLASS + idOf(mask.label);
+        written.push(`${frame.index + 1} ${id} ${number} ${frame.height} ${frame.width} ${cocoRle(mask, frame).counts}`);
       }
     },
     finish: (extent) => [
       { name: 'mots/gt/gt.txt', content: lines(written) },
-      { name: 'mots/gt/labels.txt', content: ids.text },
+      { name: 'mots/gt/labels.txt', content: lines(classes.entries) },
       { name: 'mots/seqinfo.ini', content: seqinfo(settings, extent, images) },
     ],
   };
 }
 
-/** An archive to import as "MOTS PNG"; class 1 is the first of labels.txt. */
-export function cvatMots(settings: Settings): Encoder {
-  const ids = new MotsIds(settings);
-  // Where labels are no objects, each is a class of its own and its number is that of its track as well.
-  const tracks = new Numbering();
-  const stems = new Stems();
-  const files: Zippable = { [LABELS]: new Uint8Array() };
-  return {
-    add(frame) {
-      const { width, height, masks } = frame;
-      const samples = new Uint8Array(width * height * 2);
-      for (const mask of masks) {
-        const value = ids.of(mask.name, settings.tracked ? mask.label : tracks.of(String(mask.label)));
-        mask.pixels.forEach((set, at) => {
-          if (!set) return;
-          const pixel = (mask.top + Math.floor(at / mask.width)) * width + mask.left + (at % mask.width);
-          samples[2 * pixel] = value >> 8;
-          samples[2 * pixel + 1] = value & 255;
-        });
-      }
-      files[`default/instances/${stems.of(frame)}.png`] = [png(width, height, samples, { depth: 16 }), EPOCH];
-    },
-    finish() {
-      files[LABELS] = [new TextEncoder().encode(ids.text), EPOCH];
-      return [{ name: 'cvat-mots.zip', content: zipSync(files) }];
-    },
-  };
+/** Of a list that leaves no room for the classes of all objects, only those that objects have are numbered. */
+function classesOf({ classes, names = {}, labels = Object.keys(names).map(Number) }: Settings): string[] {
+  const used = new Set(labels.map((label) => oneLine(nameOf(label, { names }))));
+  const listed = classes.map(oneLine);
+  return new Set([...listed, ...used]).size <= MOST ? listed : listed.filter((name) => used.has(name));
 }
 
 /** The properties of a sequence that readers need. They want the frame rate as a whole number. */

@@ -8,7 +8,7 @@
 import { VeroneseError } from '../common/errors.js';
 import { Borders, type Masks, thinned } from './arcs.js';
 import type { Mask } from './masks.js';
-import { joined, type Ring } from './joining.js';
+import { hang, joined, nothingHangs, type Ring, walker } from './joining.js';
 
 export type { Ring };
 
@@ -17,13 +17,6 @@ interface Cracks {
   x: Uint16Array;
   y: Uint16Array;
   from: number[];
-}
-
-/** The holes that hang at a vertex, as a list: the first, and from each to the next; `start` is a hole's own end of its bridge. */
-interface Hanging {
-  first: ReadonlyMap<number, number>;
-  next: Int32Array;
-  start: Int32Array;
 }
 
 /** Most vertices in the outlines of one document, of one image and of many. Only masks of noise have more, and files that no tool opens. */
@@ -58,7 +51,7 @@ export class Outlines {
       return { mask, cracks, roots, hanging };
     });
     return traces.map(({ mask, cracks, roots, hanging }) => {
-      const walk = walker(cracks, hanging);
+      const walk = walker(cracks.from, hanging);
       return roots.map((root) => this.#ring(mask, cracks, walk(root), borders));
     });
   }
@@ -152,8 +145,7 @@ function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
   const vertexAt = new Int32Array((width + 1) * (height + 1)).fill(NONE);
   for (let vertex = 0; vertex < x.length; vertex++) vertexAt[(y[vertex] as number) * (width + 1) + (x[vertex] as number)] = vertex;
   const roots: number[] = [];
-  const first = new Map<number, number>();
-  const hanging = { first, next: new Int32Array(from.length).fill(NONE), start: new Int32Array(from.length) } satisfies Hanging;
+  const hanging = nothingHangs(from.length);
   const ends: number[] = [];
   for (let ring = 0; ring + 1 < from.length; ring++) {
     const begin = from[ring] as number;
@@ -166,9 +158,7 @@ function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
     let at = (y[top] as number) * (width + 1) + (x[top] as number) - 1;
     while (vertexAt[at] === NONE) at--;
     const anchor = vertexAt[at] as number;
-    hanging.start[ring] = top;
-    hanging.next[ring] = first.get(anchor) ?? NONE;
-    first.set(anchor, ring);
+    hang(hanging, ring, top, anchor);
     ends.push(anchor, top);
   }
   return { roots, hanging, ends };
@@ -190,51 +180,6 @@ function topLeft(x: Uint16Array, y: Uint16Array, begin: number, end: number): nu
     if (below < 0 || (below === 0 && (x[vertex] as number) < (x[best] as number))) best = vertex;
   }
   return best;
-}
-
-/** A ring under way: it begins and ends at `start`. */
-interface Tour {
-  start: number;
-  begin: number;
-  size: number;
-  done: number;
-  /** The vertex it stands at, and the first of the rings that hang there and are still to come. */
-  at: number;
-  pending: number;
-}
-
-/** Gives the vertices of a ring with all that hangs on it. A stack and not recursion: holes may hang on holes by the thousand. */
-function walker({ x, from }: Cracks, { first, next, start }: Hanging): (root: number) => Int32Array {
-  // Each ring is walked once, and each bridge has two ends to come back over.
-  const room = new Int32Array(x.length + 2 * from.length);
-  const tour = (ring: number, start: number): Tour => {
-    const begin = from[ring] as number;
-    return { start, begin, size: (from[ring + 1] as number) - begin, done: 0, at: start, pending: NONE };
-  };
-  return (root) => {
-    let count = 0;
-    let current = tour(root, from[root] as number);
-    const stack: Tour[] = [];
-    for (;;) {
-      if (current.pending !== NONE) {
-        const hole = current.pending;
-        current.pending = next[hole] as number;
-        stack.push(current);
-        current = tour(hole, start[hole] as number);
-      } else if (current.done < current.size) {
-        current.at = current.begin + ((current.start - current.begin + current.done++) % current.size);
-        current.pending = first.get(current.at) ?? NONE;
-        room[count++] = current.at;
-      } else {
-        const parent = stack.pop();
-        if (!parent) return room.slice(0, count);
-        // The hole is closed; then back over the bridge.
-        room[count++] = current.start;
-        room[count++] = parent.at;
-        current = parent;
-      }
-    }
-  };
 }
 
 /** The vertices at which a ring turns, and its nodes. */

@@ -6,7 +6,7 @@ import { colourBytes, davisPalette } from '../common/palette.js';
 import { type Encoder, lines, Stems } from './frames.js';
 import { checkPath } from './file-names.js';
 import type { Settings } from './metadata.js';
-import { pngFile, type PngOptions, rowsOf } from './png-writer.js';
+import { pngFile, rowsOf } from './png-writer.js';
 
 /** Changes along the rows above which a picture is noise, if there is more than one in so many samples. */
 const NOISE = { changes: 65_536, samplesPerChange: 16 };
@@ -27,7 +27,7 @@ export function davis({ one, clip }: Settings): Encoder {
 }
 
 export function davisPng(labels: Uint8Array, width: number, height: number): Uint8Array<ArrayBuffer> {
-  return png(width, height, labels, { palette: colourBytes(davisPalette()) });
+  return png(width, height, labels, colourBytes(davisPalette()));
 }
 
 /** 255 where the label is. */
@@ -50,18 +50,17 @@ export function masks(): Encoder {
   };
 }
 
-/** `samples` row by row, one or two bytes each. */
-export function png(width: number, height: number, samples: Uint8Array, options: PngOptions = {}): Uint8Array<ArrayBuffer> {
-  const bytes = (options.depth ?? 8) / 8;
-  return pngFile(width, height, zlibSync(rowsOf(samples, width * bytes, height), { level: levelFor(samples, bytes) }), options);
+/** `samples` row by row: indices of a palette, or grey levels. */
+function png(width: number, height: number, samples: Uint8Array, palette?: Uint8Array): Uint8Array<ArrayBuffer> {
+  return pngFile(width, height, zlibSync(rowsOf(samples, width, height), { level: levelFor(samples) }), palette);
 }
 
 /**
  * The search for repetitions of level 9 takes twenty times as long in noise as that of level 6 and finds a twentieth more; masks
  * with borders that somebody drew or found are hardly slower for it, and a third smaller.
  */
-function levelFor(samples: Uint8Array, bytes: number): 6 | 9 {
+function levelFor(samples: Uint8Array): 6 | 9 {
   let changes = 0;
-  for (let at = bytes; at < samples.length; at++) if (samples[at] !== samples[at - bytes]) changes++;
+  for (let at = 1; at < samples.length; at++) if (samples[at] !== samples[at - 1]) changes++;
   return changes > NOISE.changes && changes * NOISE.samplesPerChange > samples.length ? 6 : 9;
 }

@@ -23,7 +23,7 @@ const PLAIN = [[0, 0, 1, 1]] as const;
 /** Compressed data are taken in pieces of this size, bytes: what is longer than the picture is noticed before it fills the memory. */
 const PIECE = 65_536;
 
-interface Size {
+export interface Size {
   width: number;
   height: number;
 }
@@ -42,7 +42,7 @@ export interface Samples extends Size {
   alpha?: Uint8Array;
 }
 
-/** The samples of any PNG. Throws `unreadable-image`; the sentences follow the file's name. */
+/** The samples of any PNG. Throws `unreadable-image`. */
 export function decodePng(file: Uint8Array): Samples {
   const { width, height, depth, type, passes, data, palette, alpha } = opened(file);
   const channels = SAMPLES[type];
@@ -80,26 +80,20 @@ export function decodePng(file: Uint8Array): Samples {
   return { width, height, depth, channels, samples, ...(type === INDEXED && palette && { palette, ...(alpha && { alpha }) }) };
 }
 
-export interface Indices extends Size {
-  indices: Uint8Array;
-  /** Whether these are grey levels, and not indices of a palette. */
-  isGrey: boolean;
-}
-
 /**
  * The labels in a PNG of this package: indices of 8 bits. `foreign`: other programs write labels with fewer bits or as grey levels too.
- * Throws `unreadable-image`, or `invalid-input` where it is a picture of another kind; the sentences follow the file's name.
+ * Throws `unreadable-image`, or `invalid-input` where it is a picture of another kind.
  */
-export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indices {
+export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Size & { labels: Uint8Array; isGrey: boolean } {
   const { depth, type } = opened(file);
   const fits = foreign ? depth <= 8 && (type === GREY || type === INDEXED) : depth === 8 && type === INDEXED;
   if (!fits)
     throw new VeroneseError(
       'invalid-input',
-      `has no labels: it is not an ${foreign ? 'indexed or grey PNG of up to 8 bits' : '8-bit indexed PNG'}`,
+      `it has no labels: it is not an ${foreign ? 'indexed or grey PNG of up to 8 bits' : '8-bit indexed PNG'}`,
     );
   const { width, height, samples } = decodePng(file);
-  return { indices: samples as Uint8Array, isGrey: type === GREY, width, height };
+  return { labels: samples as Uint8Array, isGrey: type === GREY, width, height };
 }
 
 /** The size, and whether the samples are grey levels of 16 bits. Throws as {@link decodePng} does. */
@@ -119,7 +113,7 @@ interface Png extends Size {
 }
 
 function opened(file: Uint8Array): Png {
-  if (!SIGNATURE.every((byte, at) => file[at] === byte)) throw unreadable('is not a PNG');
+  if (!SIGNATURE.every((byte, at) => file[at] === byte)) throw unreadable('it is not a PNG');
   let header: Uint8Array | undefined;
   const data: Uint8Array[] = [];
   const colours: Pick<Png, 'palette' | 'alpha'> = {};
@@ -129,11 +123,11 @@ function opened(file: Uint8Array): Png {
     if (name === 'PLTE') colours.palette = content;
     if (name === 'tRNS') colours.alpha = content;
   }
-  if (header?.length !== 13) throw unreadable('has no header');
+  if (header?.length !== 13) throw unreadable('it has no header');
   const view = viewOf(header);
   const [width, height] = [view.getUint32(0), view.getUint32(4)];
   if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_LABEL_SIDE || width * height > MOST_LABELS)
-    throw unreadable(`has ${width} × ${height} pixels`);
+    throw unreadable(`it has ${width} × ${height} pixels`);
   const [depth, type, compression, filter, interlacing] = header.subarray(8) as unknown as [number, number, number, number, number];
   const passes = compression === 0 && filter === 0 ? [PLAIN, INTERLACED][interlacing] : undefined;
   return { width, height, depth, type, passes, data, ...colours };
@@ -162,7 +156,7 @@ function unreadable(reason: string): VeroneseError {
 }
 
 function damaged(): VeroneseError {
-  return unreadable('is damaged');
+  return unreadable('it is damaged');
 }
 
 /** Each is its length, its name, as many bytes, and a checksum; the data have one of their own. */

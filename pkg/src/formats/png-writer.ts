@@ -1,15 +1,8 @@
-// PNG files of labels and levels, one sample per pixel. What compresses the rows is the caller's: fflate gives the same bytes everywhere, a
+// PNG files of labels and levels, a byte per pixel. What compresses the rows is the caller's: fflate gives the same bytes everywhere, a
 // browser's own stream comes without any code.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
 const COLOUR_TYPE = { grey: 0, indexed: 3 } as const;
-
-export interface PngOptions {
-  /** Bits of a sample: 16 is most significant byte first. */
-  depth?: 8 | 16;
-  /** Red, green, blue of every index; without a palette the samples are grey. */
-  palette?: Uint8Array;
-}
 
 /** The rows of a PNG before they are compressed: `stride` bytes each, after the number of their filter. 0, none: the others gain nothing on indices. */
 export function rowsOf(samples: Uint8Array, stride: number, height: number): Uint8Array<ArrayBuffer> {
@@ -25,13 +18,13 @@ export function samplesIn(rows: Uint8Array, stride: number, height: number): Uin
   return samples;
 }
 
-/** The file around rows that are compressed: a zlib stream. */
-export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, palette }: PngOptions): Uint8Array<ArrayBuffer> {
+/** The file around rows that are compressed, a zlib stream: grey, or with the red, green and blue of every index. */
+export function pngFile(width: number, height: number, rows: Uint8Array, palette?: Uint8Array): Uint8Array<ArrayBuffer> {
   const header = new Uint8Array(13);
   const view = new DataView(header.buffer);
   view.setUint32(0, width);
   view.setUint32(4, height);
-  header.set([depth, palette ? COLOUR_TYPE.indexed : COLOUR_TYPE.grey, 0, 0, 0], 8);
+  header.set([8, palette ? COLOUR_TYPE.indexed : COLOUR_TYPE.grey, 0, 0, 0], 8);
   return joined([
     Uint8Array.from(SIGNATURE),
     chunk('IHDR', header),

@@ -1,23 +1,20 @@
 // examples/hosts/label-studio.mjs, asked over HTTP as Label Studio asks.
 
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { describe, test } from 'node:test';
-import { openClip, segmentPair } from 'veronese';
+import { segmentPair } from 'veronese';
 import { encode } from 'veronese/formats';
 import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
-import { clip, listen, post, video } from './asking.mjs';
-
-const withoutVideos = ['ffmpeg', 'ffprobe'].some((name) => spawnSync(name, ['-version']).status !== 0) && 'the program ffmpeg is not installed';
+import { listen, post } from './asking.mjs';
 
 /**
- * The bodies of /setup and /predict that Label Studio 1.23.2 sent, word for word but for the token: `pairs` of a project with the first
- * configuration of its page, `videos` with the second. `label-studio start` of PyPI's package sent them, when a model was connected and
- * predictions were retrieved. Here Label Studio is at `origin`.
+ * The bodies of /setup and /predict that Label Studio 1.23.2 sent, word for word but for the token, of a project with the configuration of its
+ * page. `label-studio start` of PyPI's package sent them, when a model was connected and predictions were retrieved. Here Label Studio is at
+ * `origin`.
  */
 function recorded(origin) {
   return JSON.parse(readFileSync(new URL('label-studio.json', import.meta.url), 'utf8').replaceAll('http://localhost:8097', origin));
@@ -47,11 +44,11 @@ async function predicted(address, { setup, predict }) {
 
 describe('the Label Studio backend', { timeout: 120_000 }, () => {
   test('predicts the masks of segmentPair for two images that only the token opens', async (t) => {
-    const uploads = Object.values(recorded('').pairs.predict.tasks[0].data);
+    const uploads = Object.values(recorded('').predict.tasks[0].data);
     const frames = pair();
     const { address, asked, requests } = await studio(t, Object.fromEntries(uploads.map((url, k) => [url, png(frames[k])])));
     assert.equal((await (await fetch(`${address}/health`)).json()).status, 'UP');
-    const { result, score } = await predicted(address, requests.pairs);
+    const { result, score } = await predicted(address, requests);
     const { labels } = await segmentPair(...frames);
     const [{ content }] = await encode('label-studio', { labels, width: 64, height: 48 }, { labels: [1] });
     const [expected] = JSON.parse(content)[0].predictions[0].result;
@@ -59,19 +56,6 @@ describe('the Label Studio backend', { timeout: 120_000 }, () => {
     assert.deepEqual([result.length, from, to, value.brushlabels, value.rle], [1, 'moving', 'first', ['moving-1'], expected.value.rle]);
     assert.ok(score > 0.5 && score <= 1, String(score));
     assert.deepEqual(asked.sort((a, b) => uploads.indexOf(a[0]) - uploads.indexOf(b[0])), uploads.map((url) => [url, 'Token secret']));
-  });
-
-  test('predicts a box for each object and frame of a video', { skip: withoutVideos }, async (t) => {
-    const film = clip();
-    const [upload] = [recorded('').videos.predict.tasks[0].data.video];
-    const { address, requests } = await studio(t, { [upload]: video(film) });
-    const { result } = await predicted(address, requests.videos);
-    const whole = await openClip(film);
-    await whole.segment({ quality: 'fast' });
-    const { objects } = await whole.tracks();
-    assert.ok(objects.length > 0, 'something moves');
-    const places = result.map(({ value: { labels, framesCount, sequence } }) => [labels, framesCount, sequence.filter(({ enabled }) => enabled).length > 0, sequence[0].frame]);
-    assert.deepEqual(places, objects.map(({ first }) => [['moving'], film.length, true, first + 1]));
   });
 
   test('asks no server that was not named, sends its token to none but Label Studio, and answers programs alone', async (t) => {
@@ -82,7 +66,7 @@ describe('the Label Studio backend', { timeout: 120_000 }, () => {
     });
     const { address, requests } = await studio(t, {}, { token: 'secret', away: `${other}/away.png` });
     const ask = async (to, first, headers) => {
-      const { predict } = structuredClone(requests.pairs);
+      const { predict } = structuredClone(requests);
       predict.tasks[0].data = { first, second: first };
       const { status, body } = await post(`${to}/predict`, predict, headers);
       return [status, body.error?.code];

@@ -1,34 +1,39 @@
-"""Decodes what `veronese convert` wrote of clips with the tools' own decoders, and compares with the labels: decode_clips.py FOLDER."""
+"""Decodes what `veronese convert` wrote of clips with the tools' own decoders, and compares with the labels: decode_clips.py FOLDER.
+
+Of large tools only the modules that decode are imported, without what their packages import for servers and windows.
+"""
 
 import configparser
+import contextlib
+import importlib.util
+import io
 import shutil
 import sys
 import types
-import zipfile
+
+import numpy as np
+from clips import Clip, coco_mask, counted, rasterised, report, united
+from datumaro import AnnotationType, Dataset
+from PIL import Image
+from pycocotools.coco import COCO
 
 # TrackEval imports a solver for its matching, which is not installed: reading needs none.
 sys.modules["scipy"] = types.ModuleType("scipy")
 sys.modules["scipy.optimize"] = types.ModuleType("scipy.optimize")
 sys.modules["scipy.optimize"].linear_sum_assignment = None
 
-import numpy as np
-import yaml
-from PIL import Image
+# Packages whose __init__ is not run.
+for name in ("label_studio_sdk", "label_studio_sdk.converter", "trackeval", "trackeval.datasets"):
+    module = types.ModuleType(name)
+    module.__path__ = list(importlib.util.find_spec(name).submodule_search_locations)
+    sys.modules[name] = module
 
-import decode
-from clips import Clip, coco_mask, counted, rasterised, report, united
-from decode import COCO, brush
-
-decode.bare("trackeval", "trackeval.datasets")
-
-from datumaro import AnnotationType, Dataset  # noqa: E402
-from label_studio_sdk._extensions.label_studio_tools.postprocessing.video import extract_key_frames  # noqa: E402
-from trackeval.datasets.davis import DAVIS  # noqa: E402
+from label_studio_sdk.converter import brush  # noqa: E402
 from trackeval.datasets.mots_challenge import MOTSChallenge  # noqa: E402
 
 
 def coco(clip, name):
-    with decode.contextlib.redirect_stdout(decode.io.StringIO()):
+    with contextlib.redirect_stdout(io.StringIO()):
         data = COCO(clip.path(name))
     frames = {image["id"]: clip.files.index(image["file_name"]) for image in data.imgs.values()}
     assert len(frames) == len(clip.files)
@@ -124,39 +129,20 @@ def cvat_boxes(clip):
     return {key: tuple(a.get_bbox()) for key, a in cvat_tracks(clip, "boxes/cvat-video.xml").items()}
 
 
-def cvat_mots(clip):
-    with zipfile.ZipFile(clip.path("cvat-mots.zip")) as files:
-        files.extractall(clip.path("unzipped"))
-    masks = {}
-    for item, kind, annotation in datumaro(clip.path("unzipped"), "mots"):
-        thing = int(annotation.attributes["track_id"])
-        clip.check_class(thing, kind)
-        masks[(clip.names.index(item.id), thing)] = np.asarray(annotation.image).astype(bool)
-    return masks
-
-
-def track_eval(reader_class, clip, sequence):
+def mots(clip):
     """TrackEval's reader of a folder, without a tracker to judge."""
-    reader = reader_class.__new__(reader_class)
+    reader = MOTSChallenge.__new__(MOTSChallenge)
     reader.data_is_zipped = False
     reader.gt_fol = str(clip.folder)
-    reader.config = {"SEQ_INFO": {sequence: None}, "GT_LOC_FORMAT": "{gt_folder}/{seq}/gt/gt.txt"}
+    reader.config = {"SEQ_INFO": {"mots": None}, "GT_LOC_FORMAT": "{gt_folder}/{seq}/gt/gt.txt"}
     _, reader.seq_lengths = reader._get_seq_info()
-    assert reader.seq_lengths[sequence] == len(clip.files)
+    assert reader.seq_lengths["mots"] == len(clip.files)
     info = configparser.ConfigParser()
-    info.read(clip.path(sequence, "seqinfo.ini"))
+    info.read(clip.path("mots", "seqinfo.ini"))
     size = info["Sequence"]
     assert (int(size["imHeight"]), int(size["imWidth"]), size["name"], size["imExt"]) == (*clip.shape, clip.name, ".jpg")
-    return reader._load_raw_file(None, sequence, True)
-
-
-def classes_of(clip, folder):
-    return clip.text(folder, "gt", "labels.txt").splitlines()
-
-
-def mots(clip):
-    data = track_eval(MOTSChallenge, clip, "mots")
-    names = classes_of(clip, "mots")
+    data = reader._load_raw_file(None, "mots", True)
+    names = clip.text("mots", "gt", "labels.txt").splitlines()
     masks = {}
     for t in range(data["num_timesteps"]):
         for number, kind, rle in zip(data["gt_ids"][t], data["gt_classes"][t], data["gt_dets"][t]):
@@ -191,21 +177,6 @@ def label_studio_polygons(clip):
     return united(pairs)
 
 
-def label_studio_video(clip):
-    """Every frame that the tool shows a box in: key frames, and those that it puts between two of them."""
-    (task,) = clip.json("label-studio-video.json")
-    boxes = {}
-    for result in extract_key_frames(task["predictions"][0]["result"]):
-        thing = int(result["id"].split("-")[1])
-        clip.check_class(thing, result["value"]["labels"][0])
-        assert result["value"]["framesCount"] == len(clip.files)
-        for box in result["value"]["sequence"]:
-            (height, width) = clip.shape
-            share = [box["x"] * width, box["y"] * height, box["width"] * width, box["height"] * height]
-            boxes[(box["frame"] - 1, thing)] = tuple(np.round(np.array(share) / 100, 9))
-    return boxes
-
-
 def yolo(clip):
     names = clip.text("yolo", "names.txt").splitlines()
     pairs = []
@@ -217,35 +188,14 @@ def yolo(clip):
     return united(pairs)
 
 
-def yolo_ultralytics(clip):
-    """Of frames that are large enough: a line of one pixel from part to part is nothing in these, and below ten pixels nothing is read."""
-    if min(clip.shape) < 100:
-        return None
-    clip.images("yolo", "images")
-    data = yaml.safe_load(clip.text("yolo", "data.yaml"))
-    images = sorted(str(place) for place in clip.path("yolo", data["val"]).iterdir())
-    pairs = []
-    for t, (image, file) in enumerate(zip(images, decode.img2label_paths(images))):
-        _, rows, shape, rings, _, missing, _, _, _, problem = decode.verify_image_label((image, file, "", False, len(data["names"]), 0, 0, False))
-        assert (shape, missing, problem) == (clip.shape, 0, "")
-        for row, ring in zip(rows, decode.resample_segments(rings)):
-            pairs.append(((t, data["names"][int(row[0])]), decode.polygon2mask(shape, [ring * shape[::-1]]) > 0))
-    assert len(images) == len(clip.files)
-    return united(pairs)
-
-
 def davis(clip):
-    reader = DAVIS.__new__(DAVIS)
-    reader.gt_fol = str(clip.path("davis", "Annotations", "480p"))
     sequence = clip.text("davis", "ImageSets", "2017", "val.txt").strip()
-    reader.seq_lengths = {sequence: len(clip.files)}
-    data = reader._load_raw_file(None, sequence, True)
-    masks = {}
-    for t in range(data["num_timesteps"]):
-        assert (coco_mask.decode(data["masks_void"][t]).astype(bool) == (clip.labels[t] == 255)).all(), "void"
-        for thing, rle in zip(data["gt_ids"][t], data["gt_dets"][t]):
-            masks[(t, int(thing))] = coco_mask.decode(rle).astype(bool)
-    return masks
+    found = {}
+    for t, name in enumerate(clip.names):
+        indices = np.array(Image.open(clip.path("davis", "Annotations", "480p", sequence, f"{name}.png")))
+        assert ((indices == 255) == (clip.labels[t] == 255)).all(), "void"
+        found.update({(t, int(k)): indices == k for k in np.unique(indices) if 0 < k < 255})
+    return found
 
 
 def masks(clip):
@@ -257,27 +207,22 @@ def masks(clip):
     return found
 
 
-# The decoder, the clip's own view of what it should find, and by how much of it at least, if not all.
-DECODERS = {
-    "coco": (lambda clip: coco(clip, "coco.json"), lambda clip: clip.masks),
-    "coco-polygon": (lambda clip: coco(clip, "coco-polygon.json"), lambda clip: clip.masks),
-    "coco, read by datumaro": (lambda clip: coco_datumaro(clip, "coco"), lambda clip: clip.masks),
-    "coco-polygon, read by datumaro": (lambda clip: coco_datumaro(clip, "coco-polygon"), lambda clip: clip.masks),
-    "youtube-vis": (youtube_vis, lambda clip: clip.masks),
-    "cvat": (cvat_masks, Clip.in_order),
-    "cvat-polygon": (cvat_polygons, Clip.by_class),
-    "cvat-video, polygons": (cvat_video, lambda clip: clip.masks),
-    "cvat-video, boxes": (cvat_boxes, Clip.boxes),
-    "cvat-mots": (cvat_mots, lambda clip: clip.masks),
-    "mots": (mots, lambda clip: clip.masks),
-    "label-studio": (label_studio, lambda clip: clip.masks),
-    "label-studio-polygon": (label_studio_polygons, lambda clip: clip.masks),
-    "label-studio-video": (label_studio_video, Clip.boxes),
-    "yolo": (yolo, Clip.by_class),
-    "yolo, read by ultralytics": (yolo_ultralytics, Clip.by_class, 0.99),
-    "davis": (davis, lambda clip: clip.masks),
-    "masks": (masks, lambda clip: clip.masks),
-}
-
-
-report(DECODERS)
+report(
+    {
+        "coco": (lambda clip: coco(clip, "coco.json"), lambda clip: clip.masks),
+        "coco-polygon": (lambda clip: coco(clip, "coco-polygon.json"), lambda clip: clip.masks),
+        "coco, read by datumaro": (lambda clip: coco_datumaro(clip, "coco"), lambda clip: clip.masks),
+        "coco-polygon, read by datumaro": (lambda clip: coco_datumaro(clip, "coco-polygon"), lambda clip: clip.masks),
+        "youtube-vis": (youtube_vis, lambda clip: clip.masks),
+        "cvat": (cvat_masks, Clip.in_order),
+        "cvat-polygon": (cvat_polygons, Clip.by_class),
+        "cvat-video, polygons": (cvat_video, lambda clip: clip.masks),
+        "cvat-video, boxes": (cvat_boxes, Clip.boxes),
+        "mots": (mots, lambda clip: clip.masks),
+        "label-studio": (label_studio, lambda clip: clip.masks),
+        "label-studio-polygon": (label_studio_polygons, lambda clip: clip.masks),
+        "yolo": (yolo, Clip.by_class),
+        "davis": (davis, lambda clip: clip.masks),
+        "masks": (masks, lambda clip: clip.masks),
+    }
+)

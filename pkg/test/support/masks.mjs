@@ -69,3 +69,31 @@ export function rleOf(mask, width, height, { compressed = true } = {}) {
   }
   return { size: [height, width], counts: compressed ? compress(counts) : counts };
 }
+
+/** Pixels whose middles are in rings, each x and y of one vertex after another, by the even-odd rule; `offset`: where in a pixel that is. */
+export function filled(rings, { width, height }, offset = 0.5) {
+  const pixels = new Uint8Array(width * height);
+  for (const ring of rings) {
+    for (let at = 0; at < ring.length; at += 2) {
+      const [x0, y0] = [ring[at], ring[at + 1]];
+      const [x1, y1] = [ring[(at + 2) % ring.length], ring[(at + 3) % ring.length]];
+      for (let y = Math.max(0, Math.ceil(Math.min(y0, y1) - offset)); y < Math.max(y0, y1) - offset; y++) {
+        const crossing = x0 + ((y + offset - y0) / (y1 - y0)) * (x1 - x0);
+        for (let x = Math.max(0, Math.ceil(crossing - offset)); x < width; x++) pixels[y * width + x] ^= 1;
+      }
+    }
+  }
+  return pixels;
+}
+
+/** Of the pixels that one or the other has, the share that both have. */
+export function intersectionOverUnion(one, other) {
+  let [both, either] = [0, 0];
+  one.forEach((value, at) => {
+    both += Number(value && other[at]);
+    either += Number(value || other[at]);
+  });
+  return both / either;
+}
+
+export const maskOf = (labels, label) => labels.map((value) => Number(value === label));

@@ -31,12 +31,10 @@ function entry(id: Format, title: string, hint: string, { counted = false } = {}
 
 const FORMATS: readonly ClipFormat[] = [
   entry('cvat-video', 'CVAT, tracks', 'CVAT for video 1.1: a track with polygons for each object.', { counted: true }),
-  entry('cvat-mots', 'CVAT, MOTS PNG', 'An archive to import into CVAT: exact masks, up to 64 classes.'),
   entry('youtube-vis', 'YouTube-VIS', 'The objects of the clip as compressed run lengths in the form of COCO.'),
   entry('coco', 'COCO, RLE', 'Every frame is an image; objects have a track_id.'),
   entry('mots', 'MOTS', 'The text form of MOTS, with the names of the classes.'),
   entry('davis', 'DAVIS', 'An indexed PNG for each frame: the index is the number of the object.'),
   entry('yolo', 'YOLO segmentation', 'A text file for each frame with a line per object, and the names of the classes.'),
   entry('label-studio', 'Label Studio', 'A task for each frame with brush labels as predictions.'),
-  entry('label-studio-video', 'Label Studio, video', 'One task with boxes that follow the objects.', { counted: true }),
 ];

@@ -1,6 +1,5 @@
 //! A preview of a clip's export: the names of its files, and the content for one frame.
 
-import { unzipSync } from 'fflate';
 import type { State } from '../state/state.js';
 import type { Tracked } from '../state/tracked.js';
 import { type ClipFormat, exportOfClip, exportOfFrame } from './clip-export.js';
@@ -36,15 +35,8 @@ export async function previewOf(format: ClipFormat, tracked: Tracked, shown: Pic
   if (format.picture !== undefined) return { folders, file: null, shown: await format.picture(one) };
   const [[name, content]] = Object.entries(await format.make(one)) as [[string, string | Uint8Array<ArrayBuffer>]];
   const file = { name: name.replace(/^.*\//, ''), bytes: new Blob([content]).size, ofFrame: name.includes(one.stems[0]!) };
-  if (typeof content !== 'string') return { folders, file, shown: pictureIn(name, content) };
+  if (typeof content !== 'string') return { folders, file, shown: new Blob([content], { type: 'image/png' }) };
   return { folders, file, shown: content.slice(0, BEGINNING) + (content.length > BEGINNING ? '…' : '') };
-}
-
-/** The picture that a file is, or the first that it packs. */
-function pictureIn(name: string, bytes: Uint8Array<ArrayBuffer>): Blob | null {
-  if (!name.endsWith('.zip')) return new Blob([bytes], { type: 'image/png' });
-  const picture = Object.entries(unzipSync(bytes)).find(([path]) => path.endsWith('.png'))?.[1];
-  return picture === undefined ? null : new Blob([new Uint8Array(picture)], { type: 'image/png' });
 }
 
 function foldersOf(names: readonly string[]): Folder[] {

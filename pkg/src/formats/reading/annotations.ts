@@ -23,16 +23,16 @@ import {
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../file-names.js';
+import type { Size } from '../png-reader.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
 import { readCvat } from './cvat.js';
-import { checkSize, type Context, type Known, isPng, naming, type ReadFrame, type Source, wrong } from './frame.js';
+import { addTo, checkSize, type Context, isPng, type Known, naming, type ReadFrame, type Source } from './frame.js';
 import { readLabelStudio } from './label-studio.js';
 import { isLevels, wrongLevels } from './mask.js';
 import { readMasks } from './masks.js';
 import { IGNORED, isMots, numbersOfMots, readMots, readMotsPng } from './mots.js';
-import { sizeOfPicture } from './pictures.js';
-import { isYolo, namesInYaml, readYolo } from './yolo.js';
+import { isYolo, namesInYaml, readYolo, sizeOfPicture } from './yolo.js';
 
 /** Most bytes in an archive: more than the annotations of any clip. */
 const LARGEST = 2 ** 30;
@@ -55,28 +55,44 @@ export function readAnnotations(files: Iterable<AnnotationFile>, options?: Annot
   const { clip, sources } = reading(() => ({ clip: clipOf(options), sources: [...files].map(checkedSource) }));
   const all = sources.flatMap((source) => (isArchive(source.bytes) ? naming(source.name, () => unpacked(source)) : [source]));
   // Images beside a document are the frames that it is about.
+  const pictures = all.filter(({ bytes }) => isPng(bytes));
   const documents = all.flatMap((source) => (isPng(source.bytes) ? [] : naming(source.name, () => recognised(source))));
   const [first, ...others] = documents;
-  if (!first && !all.some(({ bytes }) => isPng(bytes))) throw invalidInput(nothingIn(sources));
-  if (!first) return ofPictures(all, clip);
-  const other = others.find(({ format }) => format !== first.format);
-  if (other) {
+  if (!first && pictures.length === 0) throw invalidInput(nothingIn(sources));
+  const other = others.find(({ format }) => format !== first?.format);
+  if (first && other) {
     const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
     throw invalidInput(sentence);
   }
-  const remarks = new Remarks();
-  const context = contextOf(all, clip, remarks);
-  const read = [first, ...others, ...(first.format === 'yolo' ? blankIn(all, documents) : [])].flatMap(({ source, read }) =>
-    naming(source.name, () => read(context)),
-  );
+  const { context, notes: noted } = contextOf(all, clip);
+  const { format, read } = first
+    ? { format: first.format, read: readDocuments(all, documents, context) }
+    : readPictures(pictures, clip, context);
   const found = numbered(read);
-  const notes = [...remarks.notes(), ...unknownIn(all, documents), ...found.notes];
-  const { frames, boxes } = found;
-  if (frames.size + boxes.length === 0)
+  const notes = [...noted(), ...unknownIn(all, documents), ...found.notes];
+  if (first && found.frames.size + found.boxes.length === 0)
     throw invalidInput(`'${first.source.name}' annotates no frame${notes[0] ? `: ${notes[0].message}` : ''}`);
-  if (boxes.length > 0)
-    notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${boxes.length})` });
-  return { format: first.format, ...found, notes };
+  if (first && found.boxes.length > 0)
+    notes.push({ code: 'boxes-taken', message: `'${first.source.name}': boxes without a mask are prompts (${found.boxes.length})` });
+  return { format, ...found, notes };
+}
+
+function readDocuments(all: readonly Source[], documents: readonly Recognised[], context: Context): ReadFrame[] {
+  const blank = documents[0]?.format === 'yolo' ? blankIn(all, documents) : [];
+  return [...documents, ...blank].flatMap(({ source, read }) => naming(source.name, () => read(context)));
+}
+
+/** Annotations that are pictures themselves. */
+function readPictures(pictures: readonly Source[], { levels }: Clip, context: Context): { format: AnnotationFormat; read: ReadFrame[] } {
+  const numbers = numbersOfMots(pictures);
+  if (!numbers) {
+    const { frames, notes } = readMasks(pictures, levels);
+    for (const note of notes) context.note(note);
+    return { format: 'png', read: frames };
+  }
+  const message = `'${pictures[0]?.name}': pictures with levels from 1000 on are MOTS, in which ${IGNORED} says nothing`;
+  if (numbers.has(IGNORED)) context.note({ code: 'mots-ignored', message });
+  return { format: 'mots-png', read: pictures.map((source) => naming(source.name, () => readMotsPng(source, context))) };
 }
 
 /** Documents beside others that are in no format that is read. */
@@ -86,32 +102,12 @@ function unknownIn(all: readonly Source[], documents: readonly Recognised[]): An
   return others.map(({ name }) => ({ code: 'file-left-out', message: nothingIn([{ name }]) }));
 }
 
-/** Annotations that are pictures themselves. */
-function ofPictures(all: readonly Source[], clip: Clip): Annotations {
-  const pictures = all.filter(({ bytes }) => isPng(bytes));
-  const numbers = numbersOfMots(pictures);
-  if (numbers) {
-    const context = contextOf(all, clip, new Remarks());
-    const found = numbered(pictures.map((source) => naming(source.name, () => readMotsPng(source, context))));
-    const message = `'${pictures[0]?.name}': pictures with levels from 1000 on are MOTS, in which ${IGNORED} says nothing`;
-    return { format: 'mots-png', ...found, notes: [...(numbers.has(IGNORED) ? [{ code: 'mots-ignored', message }] : []), ...found.notes] };
-  }
-  const { frames, notes } = readMasks(pictures, clip.levels);
-  const found = numbered(frames);
-  return { format: 'png', ...found, notes: [...notes, ...unknownIn(all, []), ...found.notes] };
-}
-
 /** Texts of YOLO that say that there is nothing: those without a line, beside others. */
 function blankIn(all: readonly Source[], documents: readonly Recognised[]): Recognised[] {
   const folders = new Set(documents.map(({ source }) => folderOf(source.name)));
   const isBlank = ({ name, bytes }: Source) =>
     /\.txt$/i.test(name) && folders.has(folderOf(name)) && bytes.every((byte) => BEFORE.includes(byte));
   return all.filter(isBlank).map((source) => ({ source, format: 'yolo', read: (context) => [readYolo(source, '', context)] }));
-}
-
-interface Size {
-  width: number;
-  height: number;
 }
 
 /** {@link AnnotationOptions}, checked. */
@@ -141,28 +137,8 @@ function checkedSource(file: unknown): Source {
   return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
 }
 
-/** Notes on files: what was assumed, and what they have and is not read, counted. */
-class Remarks {
-  readonly #notes: AnnotationNote[] = [];
-  readonly #counts = new Map<string, Map<string, number>>();
-
-  readonly note = (note: AnnotationNote): void => void this.#notes.push(note);
-
-  readonly leaveOut = (file: string, kind: string): void => {
-    const kinds = this.#counts.get(file) ?? new Map<string, number>();
-    this.#counts.set(file, kinds.set(kind, (kinds.get(kind) ?? 0) + 1));
-  };
-
-  notes(): AnnotationNote[] {
-    const left = [...this.#counts].map(([file, kinds]) => {
-      const counts = [...kinds].map(([kind, count]) => `${kind} (${count})`).join(', ');
-      return { code: 'shapes-left-out', message: `'${file}': left out ${counts}` };
-    });
-    return [...this.#notes, ...left];
-  }
-}
-
-function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { leaveOut, note }: Remarks): Context {
+/** What readers need beside their file; what they note and leave out, counted, is in `notes`. */
+function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip): { context: Context; notes: () => AnnotationNote[] } {
   const lists = all
     .filter(({ name }) => NAMES.test(name))
     .map(({ name, bytes }) => ({
@@ -173,9 +149,10 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
   lists.sort((a, b) => b.folder.length - a.folder.length);
   const pictures = new Map<string, Source[]>();
   const stem = (name: string) => keyOf(name.replace(/^.*\//s, '').replace(/\.[^.]*$/s, ''));
-  for (const picture of all)
-    if (/\.(png|jpe?g)$/i.test(picture.name)) pictures.set(stem(picture.name), [...(pictures.get(stem(picture.name)) ?? []), picture]);
-  return {
+  for (const picture of all) if (/\.(png|jpe?g)$/i.test(picture.name)) addTo(pictures, stem(picture.name), picture);
+  const noted: AnnotationNote[] = [];
+  const left = new Map<string, string[]>();
+  const context: Context = {
     namesOf: (file) => lists.find(({ folder, names }) => file.startsWith(folder) && names.length > 0)?.names ?? [],
     sizeOf(file) {
       const folder = folderOf(file).replace(/(^|\/)labels\//, '$1images/');
@@ -191,19 +168,21 @@ function contextOf(all: readonly Source[], { names, size, firstFrame }: Clip, { 
       checkPath(name);
       return name;
     },
-    classesOf({ name }) {
-      const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);
-      return list
-        ? textOf(list.bytes)
-            .split('\n')
-            .map((line) => line.trim())
-        : [];
+    classesOf(file) {
+      const list = all.find(({ name }) => name === `${folderOf(file)}labels.txt`);
+      return list ? textOf(list.bytes).split(/[ \t\r]*\n/) : [];
     },
-    leaveOut,
-    note,
+    leaveOut: (file, kind) => addTo(left, file, kind),
+    note: (note) => noted.push(note),
     count: names?.length,
     firstFrame,
   };
+  const notes = () =>
+    [...left].map(([file, kinds]) => {
+      const counts = [...new Set(kinds)].map((kind) => `${kind} (${kinds.filter((other) => other === kind).length})`);
+      return { code: 'shapes-left-out', message: `'${file}': left out ${counts.join(', ')}` };
+    });
+  return { context, notes: () => [...noted, ...notes()] };
 }
 
 /** The format of the file, unless it is none of those known. Throws `invalid-input` where it begins like one and is damaged. */
@@ -220,18 +199,14 @@ function recognised(source: Source): Recognised[] {
 
 function recognisedJson(source: Source): Recognised[] {
   const { name, bytes } = source;
-  const text = textOf(bytes);
-  const document = parsed(text);
-  if (isListOf(document, isTask) && document.length > 0)
-    return [{ source, format: 'label-studio', read: (context) => readLabelStudio(document, name, context) }];
-  if (!isObject(document)) return [];
-  const json = document;
-  const found = (format: AnnotationFormat, read: (context: Context) => ReadFrame[]): Recognised[] => [{ source, format, read }];
-  if ('annotations' in json && 'videos' in json && !('images' in json))
-    return found('youtube-vis', (context) => readYouTubeVis(json, name, context));
-  if ('annotations' in json && 'images' in json) return found('coco', (context) => readCoco(json, name, context));
-  if (isTask(json)) return found('label-studio', (context) => readLabelStudio([json], name, context));
-  return [];
+  const json = parsed(textOf(bytes));
+  const tasks = isObject(json) ? [json] : json;
+  if (isObject(json) && 'annotations' in json && 'images' in json)
+    return [{ source, format: 'coco', read: (context) => readCoco(json, name, context) }];
+  if (isObject(json) && 'annotations' in json && 'videos' in json)
+    return [{ source, format: 'youtube-vis', read: (context) => readYouTubeVis(json, name, context) }];
+  if (!isListOf(tasks, isTask) || tasks.length === 0) return [];
+  return [{ source, format: 'label-studio', read: (context) => readLabelStudio(tasks, name, context) }];
 }
 
 function isTask(value: unknown): value is Record<string, unknown> {
@@ -278,7 +253,7 @@ function numbered(read: readonly ReadFrame[]): Omit<Annotations, 'format'> {
   for (const [key, object] of objects) {
     if (labels.has(key)) continue;
     while (taken.has(free)) free++;
-    if (free >= UNLABELLED) throw wrong(read[0]?.file ?? '', `has more than ${UNLABELLED - 1} objects`);
+    if (free >= UNLABELLED) throw invalidInput(`'${read[0]?.file}' has more than ${UNLABELLED - 1} objects`);
     give(key, free);
     if (object.original !== undefined) changed.push({ ...object, label: free });
   }
@@ -295,12 +270,12 @@ function numbered(read: readonly ReadFrame[]): Omit<Annotations, 'format'> {
   const frames = new Map<string, AnnotatedFrame>();
   const files = new Map<string, string>();
   const boxes: Annotations['boxes'] = [];
-  const { width: w = 0, height: h = 0 } = read[0] ?? {};
-  const size = { width: w, height: h };
+  const [{ width, height } = { width: 0, height: 0 }] = read;
+  const size = { width, height };
   for (const { name, file, width, height, draw, boxes: some = [], isOpen } of read) {
     const before = files.get(keyOf(name));
-    if (before === file) throw wrong(file, `has two frames called '${name}'`);
-    if (before !== undefined) throw wrong(file, `and '${before}' are both of the frame '${name}'`);
+    if (before === file) throw invalidInput(`'${file}' has two frames called '${name}'`);
+    if (before !== undefined) throw invalidInput(`'${file}' and '${before}' are both of the frame '${name}'`);
     files.set(keyOf(name), file);
     if (size.width !== width || size.height !== height) {
       const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${size.width}×${size.height}`;

@@ -35,12 +35,26 @@ export class Canvas {
   polygon(ring: readonly unknown[], label: number): void {
     if (ring.length < 6 || ring.length % 2 !== 0) throw invalidInput('a polygon must have three vertices or more, x and y each');
     if (!ring.every(isCoordinate)) throw invalidInput(`a polygon has a vertex that is no pair of numbers up to ±${FARTHEST}`);
-    const spans = crossings(ring, this.width, this.height, (count) => this.#spend(count));
-    for (let y = 0; y < this.height; y++) {
-      const [from, until] = [spans.from[y] as number, spans.from[y + 1] as number];
-      const row = spans.at.subarray(from, until).sort();
-      const start = y * this.width;
-      for (let k = 0; k + 1 < row.length; k += 2) this.#fill(start + (row[k] as number), start + (row[k + 1] as number), label);
+    // The first pixels behind where the ring crosses the rows of pixel centres: of each row an even number, sorted row by row.
+    const stride = this.width + 1;
+    let count = 0;
+    eachEdge(ring, this.height, (first, last) => {
+      this.#spend(last - first + 1);
+      count += last - first + 1;
+    });
+    const crossings = new Uint32Array(count);
+    eachEdge(ring, this.height, (first, last, x, y, slope) => {
+      for (let row = first; row <= last; row++) {
+        const crossing = Math.ceil(x + (row + 0.5 - y) * slope - 0.5);
+        crossings[--count] = row * stride + Math.min(Math.max(crossing, 0), this.width);
+      }
+    });
+    crossings.sort();
+    for (let k = 0; k < crossings.length; k += 2) {
+      const [from, until] = [crossings[k] as number, crossings[k + 1] as number];
+      const row = Math.floor(from / stride);
+      this.#spend(until - from);
+      this.labels.fill(label, from - row, until - row);
     }
   }
 
@@ -64,16 +78,13 @@ export class Canvas {
 
   /** Runs column by column over the whole frame, alternating 0s and 1s. */
   columns(counts: readonly unknown[], label: number): void {
-    this.#runs(counts, this.labels.length, (at, end) => {
-      for (; at < end; at++) this.labels[(at % this.height) * this.width + Math.floor(at / this.height)] = label;
-    });
+    const { width, height } = this;
+    this.#runs(counts, label, width * height, (at) => (at % height) * width + Math.floor(at / height));
   }
 
   /** Runs row by row over a box. */
-  rows(counts: readonly unknown[], box: Box, label: number): void {
-    this.#runs(counts, box.width * box.height, (at, end) => {
-      for (; at < end; at++) this.labels[(box.top + Math.floor(at / box.width)) * this.width + box.left + (at % box.width)] = label;
-    });
+  rows(counts: readonly unknown[], { left, top, width, height }: Box, label: number): void {
+    this.#runs(counts, label, width * height, (at) => (top + Math.floor(at / width)) * this.width + left + (at % width));
   }
 
   /** The pixels of the whole frame that are not 0. */
@@ -90,7 +101,7 @@ export class Canvas {
     }
   }
 
-  #runs(counts: readonly unknown[], size: number, draw: (at: number, end: number) => void): void {
+  #runs(counts: readonly unknown[], label: number, size: number, pixelOf: (at: number) => number): void {
     if (!counts.every(isCount)) throw invalidInput('run lengths must be whole numbers from 0');
     const sum = counts.reduce((sum, count) => sum + count, 0);
     if (sum !== size) throw invalidInput(`run lengths must be of ${size} pixels, not ${sum}`);
@@ -98,15 +109,10 @@ export class Canvas {
       const end = at + (counts[k] as number);
       if (k % 2 === 1) {
         this.#spend(end - at);
-        draw(at, end);
+        for (; at < end; at++) this.labels[pixelOf(at)] = label;
       }
       at = end;
     }
-  }
-
-  #fill(from: number, until: number, label: number): void {
-    this.#spend(until - from);
-    this.labels.fill(label, from, until);
   }
 
   #spend(count: number): void {
@@ -121,30 +127,6 @@ function isCount(value: unknown): value is number {
 
 function isCoordinate(value: unknown): value is number {
   return typeof value === 'number' && Math.abs(value) <= FARTHEST;
-}
-
-/** The first pixels behind where a ring crosses the rows of pixel centres: those of row y are `from[y]` to `from[y + 1]`, exclusive. */
-interface Crossings {
-  from: Uint32Array;
-  at: Uint16Array;
-}
-
-function crossings(ring: readonly number[], width: number, height: number, spend: (count: number) => void): Crossings {
-  const from = new Uint32Array(height + 1);
-  eachEdge(ring, height, (first, last) => {
-    spend(Math.max(0, last - first + 1));
-    for (let y = first; y <= last; y++) (from[y + 1] as number)++;
-  });
-  for (let y = 0; y < height; y++) (from[y + 1] as number) += from[y] as number;
-  const next = from.slice();
-  const at = new Uint16Array(from[height] as number);
-  eachEdge(ring, height, (first, last, x, y, slope) => {
-    for (let row = first; row <= last; row++) {
-      const crossing = x + (row + 0.5 - y) * slope;
-      at[(next[row] as number)++] = Math.min(Math.max(Math.ceil(crossing - 0.5), 0), width);
-    }
-  });
-  return { from, at };
 }
 
 /** The first and the last row whose centres an edge passes, and the edge from its upper end: the same line whichever way it is taken. */

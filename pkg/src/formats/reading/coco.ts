@@ -1,23 +1,20 @@
 // COCO's instances, of images and of videos as in YouTube-VIS.
 
 import { invalidInput, isNumber, isObject } from '../../common/checks.js';
-import type { Canvas } from './canvas.js';
-import { decompressed } from './coco-rle.js';
+import { countsOf } from '../coco-rle.js';
 import {
+  addTo,
   checkSize,
   type Context,
   type Drawing,
   frameOfShapes,
-  type Known,
   known,
-  type LeftOut,
   listOf,
-  placed,
   polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
-  shapeOf,
+  shapesOf,
   stemOf,
   Unnumbered,
   within,
@@ -28,20 +25,19 @@ type Json = Record<string, unknown>;
 /** Images of which nothing is annotated are left out: a list of images also has those at which nobody has looked. */
 export function readCoco(document: Json, file: string, context: Context): ReadFrame[] {
   const categories = categoriesOf(document);
-  const images = new Map<unknown, { image: Json; shapes: Shape[]; unnumbered: Unnumbered }>();
-  for (const image of listOf(document['images'], 'images')) {
-    if (images.has(idOf(image, 'an image'))) throw invalidInput(`two images have the id ${String(image['id'])}`);
-    images.set(image['id'], { image, shapes: [], unnumbered: new Unnumbered() });
-  }
-  for (const annotation of listOf(document['annotations'], 'annotations')) {
-    const { attributes, segmentation, bbox, id } = annotation;
-    const which = `annotation ${quoted(id)}`;
-    const found = images.get(annotation['image_id']);
-    if (!found) throw invalidInput(`${which} is of the image ${quoted(annotation['image_id'])}, and there is none`);
-    const track = (isObject(attributes) ? attributes['track_id'] : undefined) ?? annotation['track_id'];
-    const name = categories.get(annotation['category_id']);
-    const objectOf = once(() => known(isId(track) ? `track ${track}` : found.unnumbered.keyOf(name), track, name));
-    found.shapes.push(...shapesOf(`image ${quoted(found.image['file_name'])}, ${which}`, objectOf, segmentation, bbox));
+  const images = byId(listOf(document['images'], 'images'), 'image', (image) => ({
+    image,
+    shapes: [] as Shape[],
+    unnumbered: new Unnumbered(),
+  }));
+  for (const { attributes, segmentation, bbox, id, image_id: of, category_id: category, track_id: own } of annotationsOf(document)) {
+    const found = images.get(of);
+    if (!found) throw invalidInput(`annotation ${quoted(id)} is of the image ${quoted(of)}, and there is none`);
+    const track = (isObject(attributes) ? attributes['track_id'] : undefined) ?? own;
+    const name = categories.get(category);
+    const place = `image ${quoted(found.image['file_name'])}, annotation ${quoted(id)}`;
+    const object = () => known(isId(track) ? `track ${track}` : found.unnumbered.keyOf(name), track, name);
+    found.shapes.push(...shapesOf(place, () => drawingsOf(segmentation, bbox), object));
   }
   return [...images.values()].flatMap(({ image, shapes }) => {
     if (shapes.length === 0) return [];
@@ -55,16 +51,12 @@ export function readCoco(document: Json, file: string, context: Context): ReadFr
 /** Frames in which no object is are left out, as are images of {@link readCoco}. */
 export function readYouTubeVis(document: Json, file: string, context: Context): ReadFrame[] {
   const categories = categoriesOf(document);
-  const videos = new Map<unknown, { size: { width: number; height: number }; names: unknown[]; shapes: Map<number, Shape[]> }>();
-  for (const video of listOf(document['videos'], 'videos')) {
-    if (videos.has(idOf(video, 'a video'))) throw invalidInput(`two videos have the id ${String(video['id'])}`);
-    const { width, height, file_names: names } = video;
+  const videos = byId(listOf(document['videos'], 'videos'), 'video', ({ width, height, file_names: names }) => {
     if (!Array.isArray(names)) throw invalidInput('"file_names" must be a list');
-    videos.set(video['id'], { size: checkSize(width, height, 'a video'), names, shapes: new Map() });
-  }
+    return { size: checkSize(width, height, 'a video'), names: names as unknown[], shapes: new Map<number, Shape[]>() };
+  });
   const unnumbered = new Unnumbered();
-  for (const annotation of listOf(document['annotations'], 'annotations')) {
-    const { id, video_id: of, category_id: category, segmentations } = annotation;
+  for (const { id, video_id: of, category_id: category, segmentations } of annotationsOf(document)) {
     const video = videos.get(of);
     if (!video) throw invalidInput(`annotation ${quoted(id)} is of the video ${quoted(of)}, and there is none`);
     if (!Array.isArray(segmentations) || segmentations.length !== video.names.length) {
@@ -76,14 +68,25 @@ export function readYouTubeVis(document: Json, file: string, context: Context): 
     const key = isId(id) ? `${videos.size > 1 ? String(of) : ''} track ${id}` : unnumbered.keyOf(name);
     for (const [index, segmentation] of segmentations.entries()) {
       if (segmentation === null || segmentation === undefined) continue;
-      const shapes = video.shapes.get(index) ?? [];
-      video.shapes.set(index, shapes);
-      shapes.push(...shapesOf(`frame ${quoted(video.names[index])}, annotation ${quoted(id)}`, () => known(key, id, name), segmentation));
+      const place = `frame ${quoted(video.names[index])}, annotation ${quoted(id)}`;
+      addTo(
+        video.shapes,
+        index,
+        ...shapesOf(
+          place,
+          () => drawingsOf(segmentation),
+          () => known(key, id, name),
+        ),
+      );
     }
   }
   return [...videos.values()].flatMap(({ size, names, shapes }) =>
     [...shapes].sort(([a], [b]) => a - b).map(([index, all]) => frameOfShapes({ name: stemOf(names[index]), file, ...size }, all, context)),
   );
+}
+
+function annotationsOf(document: Json): Json[] {
+  return listOf(document['annotations'], 'annotations');
 }
 
 function categoriesOf(document: Json): Map<unknown, string> {
@@ -95,51 +98,45 @@ function categoriesOf(document: Json): Map<unknown, string> {
   );
 }
 
+function byId<T>(list: readonly Json[], what: string, read: (entry: Json) => T): Map<unknown, T> {
+  const all = new Map<unknown, T>();
+  for (const entry of list) {
+    const { id } = entry;
+    if (!isId(id)) throw invalidInput(`each ${what} must have an id`);
+    if (all.has(id)) throw invalidInput(`two ${what}s have the id ${id}`);
+    all.set(id, read(entry));
+  }
+  return all;
+}
+
 function isId(id: unknown): id is number | string {
   return typeof id === 'number' || typeof id === 'string';
 }
 
-/** What a function gives the first time, each time. */
-function once<T>(make: () => T): () => T {
-  let made: { value: T } | undefined;
-  return () => (made ??= { value: make() }).value;
-}
-
-function idOf({ id }: Json, what: string): number | string {
-  if (isId(id)) return id;
-  throw invalidInput(`${what} must have an id`);
-}
-
-function isBox(bbox: unknown): bbox is number[] {
-  return Array.isArray(bbox) && bbox.length === 4;
-}
-
 /** The parts of an annotation. */
-function shapesOf(place: string, objectOf: () => Known, segmentation: unknown, bbox?: unknown): Shape[] {
-  const shape = (drawing: () => Drawing | LeftOut): Shape => placed(place, () => shapeOf(drawing(), objectOf));
-  if (isObject(segmentation)) return [shape(() => ({ draw: (canvas, label) => columnsOf(canvas, segmentation, label) }))];
+function drawingsOf(segmentation: unknown, bbox?: unknown): Drawing[] {
+  if (isObject(segmentation)) return [runLengthsOf(segmentation)];
   // Some programs leave out the list around the only polygon, others write an empty one where there is a box alone.
-  const rings: unknown[] =
-    !Array.isArray(segmentation) || segmentation.length === 0 ? [] : segmentation.every(isNumber) ? [segmentation] : segmentation;
-  const parts = rings.map((ring) =>
-    shape(() => {
-      if (Array.isArray(ring)) return polygonOf(ring);
-      throw invalidInput('an annotation has no mask: its segmentation must be polygons or run lengths');
-    }),
-  );
-  if (parts.some((part) => 'draw' in part)) return parts;
-  if (isBox(bbox) && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0)))
-    return [...parts, shape(() => ({ box: bbox.map(Number) }))];
+  const list: unknown[] = Array.isArray(segmentation) ? segmentation : [];
+  const rings = list.length > 0 && list.every(isNumber) ? [list] : list;
+  const parts = rings.map((ring) => {
+    if (Array.isArray(ring)) return polygonOf(ring);
+    throw invalidInput('an annotation has no mask: its segmentation must be polygons or run lengths');
+  });
+  const isBox = Array.isArray(bbox) && bbox.length === 4 && (parts.length === 0 || bbox.every((value, k) => k < 2 || value > 0));
+  if (isBox && !parts.some((part) => 'draw' in part)) return [...parts, { box: bbox.map(Number) }];
   return parts.length > 0 ? parts : [{ leftOut: 'annotations without a mask' }];
 }
 
 /** Run lengths with their size. */
-function columnsOf(canvas: Canvas, { size, counts }: Json, label: number): void {
-  const { width, height } = canvas;
-  if (!Array.isArray(size) || size.length !== 2 || size[0] !== height || size[1] !== width) {
-    throw invalidInput(`run lengths must be of the frame's size, [${height}, ${width}], not ${JSON.stringify(size)?.slice(0, 40)}`);
-  }
-  const list = typeof counts === 'string' ? decompressed(counts) : counts;
-  if (!Array.isArray(list)) throw invalidInput('run lengths must be text or a list');
-  canvas.columns(list, label);
+function runLengthsOf({ size, counts }: Json): Drawing {
+  return {
+    draw(canvas, label) {
+      const { width, height } = canvas;
+      if (!Array.isArray(size) || size.length !== 2 || size[0] !== height || size[1] !== width) {
+        throw invalidInput(`run lengths must be of the frame's size, [${height}, ${width}], not ${quoted(size)}`);
+      }
+      canvas.columns(countsOf(counts), label);
+    },
+  };
 }

@@ -3,21 +3,20 @@
 import { parseXml, XmlElement } from '@rgrove/parse-xml';
 import { invalidInput } from '../../common/checks.js';
 import {
+  addTo,
   checkBox,
   checkSize,
   type Context,
   type Drawing,
   frameOfShapes,
-  type Known,
   known,
-  type LeftOut,
-  placed,
   polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
-  shapeOf,
+  shapesOf,
   stemOf,
+  turnedBox,
   Unnumbered,
   within,
 } from './frame.js';
@@ -54,23 +53,20 @@ type Layered = Shape & { z: number };
 
 function framesOf(image: XmlElement, file: string, context: Context): ReadFrame[] {
   const unnumbered = new Unnumbered();
-  const objectOf = (element: XmlElement): Known => {
+  const objectOf = (element: XmlElement) => {
     const { label, group_id: group = '0' } = element.attributes;
     const track = childrenOf(element, 'attribute').find(({ attributes }) => attributes['name'] === 'track_id')?.text;
     if (track !== undefined) return known(`track ${track}`, numberOr(track), label);
     return group === '0' ? known(unnumbered.keyOf(label), undefined, label) : known(`group ${group} ${label}`, numberOr(group), label);
   };
   const { name, width, height } = image.attributes;
-  const shapes = childrenOf(image).flatMap((element, at): Layered[] => {
-    if (REMARKS.includes(element.name)) return [];
-    return [layered(`image ${quoted(name)}, shape ${at + 1}`, element, () => objectOf(element))];
-  });
+  const place = `image ${quoted(name)}`;
+  const shapes = childrenOf(image).flatMap((element, at) =>
+    REMARKS.includes(element.name) ? [] : layered(`${place}, shape ${at + 1}`, element, () => objectOf(element)),
+  );
   if (shapes.length === 0) return [];
-  return [
-    within(`image ${quoted(name)}`, () =>
-      frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes, context),
-    ),
-  ];
+  const size = within(place, () => checkSize(number(width), number(height), 'an image'));
+  return [within(place, () => frameOf({ name: stemOf(name), file, ...size }, shapes, context))];
 }
 
 function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, context: Context): ReadFrame[] {
@@ -85,9 +81,8 @@ function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, 
       const index = number(element.attributes['frame']);
       if (!Number.isInteger(index) || index < 0)
         throw invalidInput(`track ${quoted(id)}: the frame of a shape must be a whole number from 0`);
-      const shapes = frames.get(index) ?? [];
-      frames.set(index, shapes);
-      shapes.push(layered(`track ${quoted(id)}, frame ${index}`, element, () => known(`track ${id}`, numberOr(id), label)));
+      const object = () => known(`track ${id}`, numberOr(id), label);
+      addTo(frames, index, ...layered(`track ${quoted(id)}, frame ${index}`, element, object));
     }
   }
   return [...frames]
@@ -108,37 +103,25 @@ function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly La
   );
 }
 
-function layered(place: string, element: XmlElement, objectOf: () => Known): Layered {
-  return { ...placed(place, () => shapeOf(drawing(element), objectOf)), z: number(element.attributes['z_order']) || 0 };
+function layered(place: string, element: XmlElement, object: Parameters<typeof shapesOf>[2]): Layered[] {
+  const z = number(element.attributes['z_order']) || 0;
+  return shapesOf(place, () => [drawing(element)], object).map((shape) => ({ ...shape, z }));
 }
 
-function drawing({ name, attributes }: XmlElement): Drawing | LeftOut {
-  const { points = '', rle = '', left, top, width, height, rotation } = attributes;
+function drawing({ name, attributes }: XmlElement): Drawing {
+  const { points = '', rle = '', rotation } = attributes;
+  const numbers = (...parts: string[]) => parts.map((part) => number(attributes[part])) as [number, number, number, number];
+  const angle = number(rotation) || 0;
   if (name === 'polygon') return polygonOf(points.trim() === '' ? [] : points.split(/[,;]/).map(number));
-  if (name === 'box') return { box: boxOf(attributes) };
-  if (name === 'ellipse') {
-    const [x, y, across, down] = ['cx', 'cy', 'rx', 'ry'].map((part) => number(attributes[part])) as [number, number, number, number];
-    return { draw: (canvas, label) => canvas.ellipse([x, y, across, down], label, number(rotation) || 0) };
+  if (name === 'box') {
+    const [left, top, right, bottom] = numbers('xtl', 'ytl', 'xbr', 'ybr');
+    return turnedBox([left, top, right - left, bottom - top], angle, [(left + right) / 2, (top + bottom) / 2]);
   }
+  if (name === 'ellipse') return { draw: (canvas, label) => canvas.ellipse(numbers('cx', 'cy', 'rx', 'ry'), label, angle) };
   if (name !== 'mask') return { leftOut: `<${name}> elements` };
   return {
-    draw: (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox([left, top, width, height].map(number), canvas), label),
+    draw: (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox(numbers('left', 'top', 'width', 'height'), canvas), label),
   };
-}
-
-/** The box around one that may be turned, in degrees about its middle. */
-function boxOf(attributes: XmlElement['attributes']): number[] {
-  const [left, top, right, bottom] = ['xtl', 'ytl', 'xbr', 'ybr'].map((side) => number(attributes[side])) as [
-    number,
-    number,
-    number,
-    number,
-  ];
-  const angle = ((number(attributes['rotation']) || 0) * Math.PI) / 180;
-  const [cosine, sine] = [Math.abs(Math.cos(angle)), Math.abs(Math.sin(angle))];
-  const [width, height] = [right - left, bottom - top];
-  const [across, down] = angle === 0 ? [width, height] : [width * cosine + height * sine, width * sine + height * cosine];
-  return [(left + right - across) / 2, (top + bottom - down) / 2, across, down];
 }
 
 /** The number that a text is, or the text. */

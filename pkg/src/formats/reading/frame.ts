@@ -4,6 +4,7 @@ import type { AnnotationNote } from '../../../types/formats.js';
 import { invalidInput, isListOf, isObject, isWhole, LONGEST_LABEL_SIDE, MOST_LABELS, UNLABELLED } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { checkPath } from '../file-names.js';
+import type { Size } from '../png-reader.js';
 import type { Canvas } from './canvas.js';
 
 /** Objects with the same key are one, in all frames. */
@@ -16,13 +17,11 @@ export interface Known {
   name?: string;
 }
 
-export interface ReadFrame {
+export interface ReadFrame extends Size {
   /** Its name, without folder and extension. */
   name: string;
   /** The file that annotates it. */
   file: string;
-  width: number;
-  height: number;
   objects: Known[];
   draw: (canvas: Canvas, labelOf: (key: string) => number) => void;
   /** Of objects that have a box and no mask here: where they are. */
@@ -35,19 +34,18 @@ export interface ReadFrame {
 export type PixelBox = [left: number, top: number, width: number, height: number];
 
 /** Which pixels an object has, or just the box that holds them. */
-export type Drawing = { draw: (canvas: Canvas, label: number) => void } | { box: readonly number[] };
+type Marked = { draw: (canvas: Canvas, label: number) => void } | { box: readonly number[] };
 
 /** A shape that is not read: what it is, in the plural, and the box around all that it marks, where that is known. */
-export interface LeftOut {
+interface LeftOut {
   leftOut: string;
   place?: readonly number[];
 }
 
-/** One shape, and the object that it is of. */
-export type Shape = (Known & Drawing) | LeftOut;
+export type Drawing = Marked | LeftOut;
 
-/** The place of what marks nothing. */
-const NOWHERE = [0, 0, 0, 0];
+/** One shape, and the object that it is of. */
+export type Shape = (Known & Marked) | LeftOut;
 
 /** A file, or what is in an archive. */
 export interface Source {
@@ -62,11 +60,11 @@ export interface Context {
   /** The number of the first frame, where the format may count from 0 or from 1. */
   firstFrame: 0 | 1 | undefined;
   /** The lines of the file `labels.txt` in the same folder: the names of classes by number, from 1. */
-  classesOf: (source: Source) => string[];
+  classesOf: (file: string) => string[];
   /** The names of YOLO's classes, by number, that hold for a file. */
   namesOf: (file: string) => string[];
   /** The size of the frame that is called as the file, where the format does not say it. */
-  sizeOf: (file: string) => { width: number; height: number };
+  sizeOf: (file: string) => Size;
   /** The number of frames, where that is known. */
   count: number | undefined;
   /** Counts what the file has and is not read: a kind of shape, in the plural. */
@@ -91,17 +89,15 @@ export function frameOfShapes(
   let open: PixelBox[] = [];
   for (const shape of shapes) {
     if ('draw' in shape) continue;
-    const place = 'leftOut' in shape ? (shape.place ?? whole) : shape.box;
-    const box = withinFrame(place, frame);
+    const box = withinFrame('leftOut' in shape ? (shape.place ?? whole) : shape.box, frame);
     if (box) open.push(box);
-    if ('leftOut' in shape) {
-      leaveOut(frame.file, shape.leftOut);
-      continue;
-    }
-    if (!box) leaveOut(frame.file, 'boxes without a pixel of the frame');
+    if ('leftOut' in shape) leaveOut(frame.file, shape.leftOut);
+    else if (!box) leaveOut(frame.file, 'boxes without a pixel of the frame');
     else if (seen.has(shape.key)) leaveOut(frame.file, 'boxes of objects that have a mask or another box');
-    else boxes.push({ key: shape.key, box });
-    seen.add(shape.key);
+    else {
+      boxes.push({ key: shape.key, box });
+      seen.add(shape.key);
+    }
   }
   if (open.some(([, , width, height]) => width === frame.width && height === frame.height)) open = [whole];
   const draw = (canvas: Canvas, labelOf: (key: string) => number) => {
@@ -109,15 +105,12 @@ export function frameOfShapes(
     for (const box of open) canvas.open(box);
   };
   const isOpen = masks.length === 0 && (open.length > 0 || shapes.some((shape) => 'leftOut' in shape));
-  const isSeen = ({ key }: Known) => masks.some((mask) => mask.key === key) || boxes.some((box) => box.key === key);
-  const objects = shapes.flatMap((shape) =>
-    'leftOut' in shape || !isSeen(shape) ? [] : [known(shape.key, shape.number, shape.name, shape.original)],
-  );
+  const objects = shapes.filter((shape): shape is Known & Marked => !('leftOut' in shape) && seen.has(shape.key));
   return { ...frame, objects, draw, ...(boxes.length > 0 && { boxes }), ...(isOpen && { isOpen }) };
 }
 
 /** The pixels of a box that are in the frame. */
-function withinFrame(box: readonly number[], { width, height }: { width: number; height: number }): PixelBox | undefined {
+function withinFrame(box: readonly number[], { width, height }: Size): PixelBox | undefined {
   const [x, y, w, h] = box as PixelBox;
   if (!box.every(Number.isFinite)) throw invalidInput('a box must have four numbers');
   const [left, top] = [Math.max(0, Math.floor(x)), Math.max(0, Math.floor(y))];
@@ -125,26 +118,35 @@ function withinFrame(box: readonly number[], { width, height }: { width: number;
   return right > left && bottom > top ? [left, top, right - left, bottom - top] : undefined;
 }
 
-/** The box around points, each x and y. */
-export function boxAround(points: readonly (readonly unknown[])[]): [number, number, number, number] {
-  const [x, y] = [0, 1].map((axis) => points.map((point) => Number(point[axis]))) as [number[], number[]];
-  const [left, top] = [Math.min(...x), Math.min(...y)];
-  return [left, top, Math.max(...x) - left, Math.max(...y) - top];
+/** The box around a box that is turned by an angle in degrees about a point. */
+export function turnedBox(box: readonly [number, number, number, number], angle: number, [x, y]: readonly [number, number]): Drawing {
+  if (angle === 0) return { box };
+  const [left, top, width, height] = box;
+  const [cosine, sine] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
+  const [u, v] = [left + width / 2 - x, top + height / 2 - y];
+  const [across, down] = [width * Math.abs(cosine) + height * Math.abs(sine), width * Math.abs(sine) + height * Math.abs(cosine)];
+  return { box: [x + u * cosine - v * sine - across / 2, y + u * sine + v * cosine - down / 2, across, down] };
 }
 
 /** A polygon, x and y of one vertex after another. One of fewer than three vertices, as a click makes it, is left out. */
-export function polygonOf(ring: readonly unknown[]): Drawing | LeftOut {
+export function polygonOf(ring: readonly unknown[]): Drawing {
   if (ring.length > 4 || ring.length % 2 === 1) return { draw: (canvas, label) => canvas.polygon(ring, label) };
-  const [x, y, width, height] = boxAround([ring.slice(0, 2), ring.slice(-2)]);
-  return {
-    leftOut: 'polygons of fewer than three vertices',
-    place: ring.length === 0 ? NOWHERE : [x, y, Math.max(width, 1), Math.max(height, 1)],
-  };
+  const [x, y, endX = x, endY = y] = ring.map(Number) as [number, number, number?, number?];
+  const place = [Math.min(x, endX), Math.min(y, endY), Math.max(1, Math.abs(endX - x)), Math.max(1, Math.abs(endY - y))];
+  return { leftOut: 'polygons of fewer than three vertices', place: ring.length === 0 ? [0, 0, 0, 0] : place };
 }
 
-/** The shape of a drawing; what is left out is of no object. */
-export function shapeOf(drawing: Drawing | LeftOut, object: () => Known): Shape {
-  return 'leftOut' in drawing ? drawing : { ...object(), ...drawing };
+/** The shapes of one object in a place of a file; what is left out is of no object. Errors, also those in drawing, say the place. */
+export function shapesOf(place: string, drawings: () => Drawing[], object: () => Known): Shape[] {
+  return within(place, () => {
+    const all = drawings();
+    const known = all.some((drawing) => !('leftOut' in drawing)) ? object() : undefined;
+    return all.map((drawing): Shape => {
+      if (!known || 'leftOut' in drawing) return drawing as LeftOut;
+      if ('box' in drawing) return { ...known, ...drawing };
+      return { ...known, draw: (canvas, label) => within(place, () => drawing.draw(canvas, label)) };
+    });
+  });
 }
 
 /** Reads a part of a file: its errors say which. */
@@ -157,11 +159,15 @@ export function within<T>(place: string, read: () => T): T {
   }
 }
 
-/** A shape of which errors in drawing say where it is in the file, too. */
-export function placed(place: string, read: () => Shape): Shape {
-  const shape = within(place, read);
-  if (!('draw' in shape)) return shape;
-  return { ...shape, draw: (canvas, label) => within(place, () => shape.draw(canvas, label)) };
+/** Runs a reader of a file: its errors name the file. */
+export function naming<T>(file: string, read: () => T): T {
+  return within(`'${file}'`, () => {
+    try {
+      return read();
+    } catch (thrown) {
+      throw thrown instanceof RangeError ? invalidInput('it cannot be read: it is nested too deeply, or too large') : thrown;
+    }
+  });
 }
 
 /** A text of the file in an error. */
@@ -200,31 +206,6 @@ export function isObjectNumber(value: unknown): value is number {
   return isWhole(value, 1, UNLABELLED - 1);
 }
 
-export function wrong(file: string, what: string): VeroneseError {
-  return invalidInput(`'${file}' ${what}`);
-}
-
-/** Runs a reader of a file: its errors name the file. */
-export function naming<T>(file: string, read: () => T): T {
-  try {
-    return read();
-  } catch (thrown) {
-    if (thrown instanceof VeroneseError) throw new VeroneseError(thrown.code, `'${file}': ${thrown.message}`);
-    if (thrown instanceof RangeError) throw wrong(file, 'cannot be read: it is nested too deeply, or too large');
-    throw thrown;
-  }
-}
-
-/** Runs what decodes a picture, whose sentences lack what they are about. */
-export function decoding<T>(what: string, decode: () => T): T {
-  try {
-    return decode();
-  } catch (thrown) {
-    if (thrown instanceof VeroneseError) throw new VeroneseError(thrown.code, `${what} ${thrown.message}`);
-    throw thrown;
-  }
-}
-
 /** A frame's name from that of its image: without folder and extension. Throws `invalid-input` unless it can be that of a file. */
 export function stemOf(image: unknown): string {
   if (typeof image !== 'string') throw invalidInput("a frame's image must be text, the name of its file");
@@ -233,7 +214,7 @@ export function stemOf(image: unknown): string {
   return stem;
 }
 
-export function checkSize(width: unknown, height: unknown, whose: string): { width: number; height: number } {
+export function checkSize(width: unknown, height: unknown, whose: string): Size {
   if (isWhole(width, 1, LONGEST_LABEL_SIDE) && isWhole(height, 1, LONGEST_LABEL_SIDE) && width * height <= MOST_LABELS)
     return { width, height };
   throw invalidInput(
@@ -242,7 +223,7 @@ export function checkSize(width: unknown, height: unknown, whose: string): { wid
 }
 
 /** A box inside the frame. */
-export function checkBox([left, top, width, height]: readonly unknown[], frame: { width: number; height: number }) {
+export function checkBox([left, top, width, height]: readonly unknown[], frame: Size) {
   const [right, bottom] = [frame.width - 1, frame.height - 1];
   if (isWhole(left, 0, right) && isWhole(top, 0, bottom) && isWhole(width, 1, right + 1 - left) && isWhole(height, 1, bottom + 1 - top)) {
     return { left, top, width, height };
@@ -254,4 +235,11 @@ export function checkBox([left, top, width, height]: readonly unknown[], frame: 
 export function listOf(value: unknown, what: string): Record<string, unknown>[] {
   if (isListOf(value, isObject)) return value;
   throw invalidInput(`"${what}" must be a list of objects`);
+}
+
+/** Adds to the list of a key. */
+export function addTo<K, T>(lists: Map<K, T[]>, key: K, ...entries: T[]): void {
+  const list = lists.get(key);
+  if (list) list.push(...entries);
+  else lists.set(key, entries);
 }

@@ -1,23 +1,22 @@
 // Tasks of Label Studio: brushes, polygons and rectangles of what people have annotated, or of predictions where nobody has. Objects have no
 // numbers. Images that were uploaded are called by a hash and their name.
 
-import { invalidInput, isArrayOf, isListOf, isNumber, isObject, isWhole } from '../../common/checks.js';
+import { invalidInput, isListOf, isNumber, isObject, isWhole } from '../../common/checks.js';
+import type { Size } from '../png-reader.js';
 import {
-  boxAround,
   checkSize,
   type Context,
   type Drawing,
   frameOfShapes,
   known,
-  type LeftOut,
   listOf,
-  placed,
   polygonOf,
   quoted,
   type ReadFrame,
   type Shape,
-  shapeOf,
+  shapesOf,
   stemOf,
+  turnedBox,
   Unnumbered,
   within,
 } from './frame.js';
@@ -37,7 +36,7 @@ export function readLabelStudio(tasks: readonly Json[], file: string, context: C
 
 function frameOf(task: Json, image: string, file: string, context: Context): ReadFrame[] {
   const unnumbered = new Unnumbered();
-  let size: { width: number; height: number } | undefined;
+  let size: Size | undefined;
   const shapes = resultsOf(task).flatMap((result): Shape[] => {
     const { id, type, value, original_width: width, original_height: height } = result;
     if (REMARKS.includes(String(type))) return [];
@@ -47,7 +46,11 @@ function frameOf(task: Json, image: string, file: string, context: Context): Rea
     size ??= own;
     if (own.width !== size.width || own.height !== size.height) throw invalidInput(`${place}: the image has had another size`);
     const [name] = isListOf(value[type], (entry): entry is string => typeof entry === 'string') ? value[type] : [];
-    return [placed(place, () => shapeOf(drawing(type, value, own), () => known(unnumbered.keyOf(name), undefined, name)))];
+    return shapesOf(
+      place,
+      () => [drawing(type, value, own)],
+      () => known(unnumbered.keyOf(name), undefined, name),
+    );
   });
   return size ? [frameOfShapes({ name: stemOf(image), file, ...size }, shapes, context)] : [];
 }
@@ -80,16 +83,12 @@ function decoded(text: string): string {
   }
 }
 
-function drawing(type: string, value: Json, { width, height }: { width: number; height: number }): Drawing | LeftOut {
+function drawing(type: string, value: Json, { width, height }: Size): Drawing {
   if (type === 'brushlabels') {
     const { rle } = value;
-    const bytes = isArrayOf(rle, 'Uint8Array')
-      ? rle
-      : isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255))
-        ? Uint8Array.from(rle)
-        : undefined;
-    if (value['format'] !== 'rle' || !bytes) throw invalidInput('a brush must have run lengths');
-    return { draw: (canvas, label) => canvas.stamp(unpacked(bytes as Uint8Array, width * height), label) };
+    const isBytes = isListOf(rle, (byte): byte is number => isWhole(byte, 0, 255));
+    if (value['format'] !== 'rle' || !isBytes) throw invalidInput('a brush must have run lengths');
+    return { draw: (canvas, label) => canvas.stamp(unpacked(Uint8Array.from(rle), width * height), label) };
   }
   if (type === 'polygonlabels') {
     const { points } = value;
@@ -103,17 +102,8 @@ function drawing(type: string, value: Json, { width, height }: { width: number; 
   const angle = Number(value['rotation']) || 0;
   if (type === 'ellipselabels') return { draw: (canvas, label) => canvas.ellipse([x, y, across, down], label, angle) };
   if (type !== 'rectanglelabels') return { leftOut: `results of type ${quoted(type)}` };
-  const [cosine, sine] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
   // It is turned about its first corner.
-  const corners = [
-    [0, 0],
-    [across, 0],
-    [across, down],
-    [0, down],
-  ] as const;
-  return {
-    box: angle === 0 ? [x, y, across, down] : boxAround(corners.map(([u, v]) => [x + u * cosine - v * sine, y + u * sine + v * cosine])),
-  };
+  return turnedBox([x, y, across, down], angle, [x, y]);
 }
 
 /** The pixels that are not transparent, from runs of RGBA bytes as @thi.ng/rle-pack packs them. Throws `invalid-input`. */

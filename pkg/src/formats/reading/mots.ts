@@ -1,20 +1,19 @@
 // MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; 10000 is a region to ignore.
 
 import { invalidInput, UNLABELLED } from '../../common/checks.js';
+import { countsOf } from '../coco-rle.js';
 import { decodePng, headOf } from '../png-reader.js';
 import type { Canvas } from './canvas.js';
-import { decompressed } from './coco-rle.js';
 import {
   checkSize,
   type Context,
-  decoding,
   frameOfShapes,
   type Known,
   known,
   naming,
-  placed,
   type ReadFrame,
   type Shape,
+  shapesOf,
   type Source,
   stemOf,
   within,
@@ -32,10 +31,9 @@ export function isMots(text: string): boolean {
 
 /** The numbers in pictures that are MOTS and no masks of another kind: all with 16 bits, and with a class in each number. */
 export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefined {
-  if (!pictures.every(({ name, bytes }) => naming(name, () => decoding('it', () => headOf(bytes))).isDeep)) return undefined;
+  if (!pictures.every(({ name, bytes }) => naming(name, () => headOf(bytes)).isDeep)) return undefined;
   const seen = new Set<number>();
-  for (const { name, bytes } of pictures)
-    for (const level of naming(name, () => decoding('it', () => decodePng(bytes))).samples) seen.add(level);
+  for (const { name, bytes } of pictures) for (const level of valuesIn(naming(name, () => decodePng(bytes)).samples)) seen.add(level);
   seen.delete(0);
   const [first] = seen;
   // White on black is no number, and what is ignored alone an object.
@@ -46,7 +44,7 @@ export function numbersOfMots(pictures: readonly Source[]): Set<number> | undefi
 /** Frames without objects are left out: they may not have been annotated. */
 export function readMots(source: Source, text: string, context: Context): ReadFrame[] {
   const { nameOf, classesOf, count, firstFrame } = context;
-  const names = classesOf(source);
+  const names = classesOf(source.name);
   const frames = new Map<number, { width: number; height: number; shapes: Shape[]; ignored: ((canvas: Canvas) => void)[] }>();
   for (const [k, line] of text.split('\n').entries()) {
     if (line.trim() === '') continue;
@@ -56,9 +54,16 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
     const entry = frames.get(Number(frame)) ?? { ...size, shapes: [], ignored: [] };
     frames.set(Number(frame), entry);
     if (entry.width !== size.width || entry.height !== size.height) throw invalidInput(`line ${k + 1}: the frame has had another size`);
-    const draw = (canvas: Canvas, label: number) => canvas.columns(decompressed(runs), label);
+    const draw = (canvas: Canvas, label: number) => canvas.columns(countsOf(runs), label);
     if (Number(id) === IGNORED) entry.ignored.push((canvas) => within(`line ${k + 1}`, () => draw(canvas, UNLABELLED)));
-    else entry.shapes.push(placed(`line ${k + 1}`, () => ({ ...objectOf(Number(id), names), draw })));
+    else
+      entry.shapes.push(
+        ...shapesOf(
+          `line ${k + 1}`,
+          () => [{ draw }],
+          () => objectOf(Number(id), names),
+        ),
+      );
   }
   if (firstFrame === undefined && !frames.has(0) && !frames.has(count ?? 0)) {
     context.note({
@@ -77,12 +82,9 @@ export function readMots(source: Source, text: string, context: Context): ReadFr
 }
 
 export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
-  const names = classesOf(source);
-  const { samples, width, height } = decoding('it', () => decodePng(source.bytes));
-  const seen = new Set<number>();
-  // Level by level a set would take most of the time.
-  for (let at = 0; at < samples.length; at++) if (samples[at] !== samples[at - 1]) seen.add(samples[at] as number);
-  const values = [...seen].filter((value) => value !== 0);
+  const names = classesOf(source.name);
+  const { samples, width, height } = decodePng(source.bytes);
+  const values = [...valuesIn(samples)].filter((value) => value !== 0);
   return {
     name: stemOf(source.name),
     file: source.name,
@@ -96,6 +98,13 @@ export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
       for (let at = 0; at < samples.length; at++) labels[at] = numbers[samples[at] as number] as number;
     },
   };
+}
+
+/** Most pixels have the value of the one before: one by one a set would take most of the time. */
+export function valuesIn(values: ArrayLike<number>): Set<number> {
+  const seen = new Set<number>();
+  for (let at = 0; at < values.length; at++) if (values[at] !== values[at - 1]) seen.add(values[at] as number);
+  return seen;
 }
 
 function keyOf(id: number): string {

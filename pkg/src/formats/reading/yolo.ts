@@ -2,17 +2,19 @@
 // text without lines says that there is nothing.
 
 import { invalidInput } from '../../common/checks.js';
+import { headOf, type Size } from '../png-reader.js';
 import {
   type Context,
   type Drawing,
   frameOfShapes,
+  isPng,
   known,
-  placed,
   type ReadFrame,
-  type Shape,
+  shapesOf,
   type Source,
   stemOf,
   Unnumbered,
+  within,
 } from './frame.js';
 
 /** How far outside a share may be: outlines are rounded, and moved. */
@@ -28,21 +30,27 @@ export function readYolo({ name: file }: Source, text: string, context: Context)
   const { width, height } = context.sizeOf(file);
   const names = context.namesOf(file);
   const unnumbered = new Unnumbered();
-  const shapes = text.split('\n').flatMap((written, at): Shape[] => {
+  const shapes = text.split('\n').flatMap((written, at) => {
     if (written.trim() === '') return [];
-    return [
-      placed(`line ${at + 1}`, () => {
-        const line = lineOf(written);
-        if (!line) throw invalidInput('it must have the number of a class, then a box, or three vertices or more');
-        if (line.shares.some((share) => share < -SLACK || share > 1 + SLACK))
-          throw invalidInput('its numbers are no shares of the sides, from 0 to 1');
-        const called = names[line.class] ?? `class-${line.class}`;
-        const places = line.shares.map((share, k) => share * (k % 2 === 0 ? width : height)) as [number, number, number, number];
-        return { ...known(unnumbered.keyOf(called), undefined, called), ...drawing(places) };
-      }),
-    ];
+    const place = `line ${at + 1}`;
+    const line = within(place, () => checkedLine(written));
+    const called = names[line.class] ?? `class-${line.class}`;
+    const places = line.shares.map((share, k) => share * (k % 2 === 0 ? width : height));
+    return shapesOf(
+      place,
+      () => [drawing(places)],
+      () => known(unnumbered.keyOf(called), undefined, called),
+    );
   });
   return frameOfShapes({ name, file, width, height }, shapes, context);
+}
+
+function checkedLine(written: string): Line {
+  const line = lineOf(written);
+  if (!line) throw invalidInput('it must have the number of a class, then a box, or three vertices or more');
+  if (line.shares.some((share) => share < -SLACK || share > 1 + SLACK))
+    throw invalidInput('its numbers are no shares of the sides, from 0 to 1');
+  return line;
 }
 
 function drawing(places: readonly number[]): Drawing {
@@ -51,8 +59,14 @@ function drawing(places: readonly number[]): Drawing {
   return { box: [x - width / 2, y - height / 2, width, height] };
 }
 
-/** A class, and columns and rows of vertices, or the middle, width and height of a box. Programs that find objects write their confidence behind it. */
-function lineOf(text: string): { class: number; shares: number[] } | undefined {
+/** A class, and columns and rows of vertices, or the middle, width and height of a box. */
+interface Line {
+  class: number;
+  shares: number[];
+}
+
+/** Programs that find objects write their confidence behind it. */
+function lineOf(text: string): Line | undefined {
   const [number = '', ...rest] = text.trim().split(/\s+/);
   if (!/^\d+$/.test(number) || rest.length < 4 || !rest.every((share) => Number.isFinite(Number(share)))) return undefined;
   return { class: Number(number), shares: rest.slice(0, rest.length - (rest.length % 2)).map(Number) };
@@ -73,4 +87,18 @@ export function namesInYaml(text: string): string[] {
 function plain(name: string): string {
   const [quote] = name;
   return quote === '"' || quote === "'" ? name.slice(1, -1).replace(quote === '"' ? /\\(.)/g : /'(')/g, '$1') : name;
+}
+
+/** The size of a PNG or JPEG file, from its beginning; undefined of another one, or if it is not within the bytes. */
+export function sizeOfPicture(bytes: Uint8Array): Size | undefined {
+  if (isPng(bytes)) return headOf(bytes);
+  const word = (at: number) => ((bytes[at] as number) << 8) | (bytes[at + 1] as number);
+  // Segments of a JPEG: FF, what it is, its length. The one that begins a frame has the size.
+  for (let at = 2; bytes[0] === 0xff && bytes[1] === 0xd8 && at + 9 < bytes.length; at += 2 + word(at + 2)) {
+    while (bytes[at + 1] === 0xff) at++;
+    const kind = bytes[at + 1] as number;
+    if (bytes[at] !== 0xff) return undefined;
+    if (kind >= 0xc0 && kind <= 0xcf && ![0xc4, 0xc8, 0xcc].includes(kind)) return { width: word(at + 7), height: word(at + 5) };
+  }
+  return undefined;
 }
