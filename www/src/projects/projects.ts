@@ -114,13 +114,12 @@ export class Projects {
     this.#opened.delete(of);
     const journal = await this.#journalOf(of, project?.header.name ?? of);
     const hasOwn = (await journal.read().catch(() => undefined)) !== undefined;
-    if (project !== undefined && hasOwn) return { restored: project.journal, found: this.#headers.get(of)?.found ?? 0 };
-    if (project !== undefined) {
-      await journal.replace(project.journal);
-      return { found: project.header.found };
-    }
     const header = this.#headers.get(of) ?? (await shelf.headerOf(of).catch(() => null));
-    return { known: await shelf.masksOf(of).catch(() => null), found: header?.found ?? 0 };
+    const { found = 0, at = 0 } = project?.header ?? header ?? {};
+    if (project === undefined) return { known: await shelf.masksOf(of).catch(() => null), found, at };
+    if (hasOwn) return { restored: project.journal, found: header?.found ?? 0, at };
+    await journal.replace(project.journal);
+    return { found, at };
   }
 
   /** Puts what is known beside the journal into the state, with the clip of this pair. */

@@ -47,6 +47,8 @@ export interface Remembered {
   readonly found?: number;
   /** A clip that was saved, which it takes over. */
   readonly restored?: Uint8Array;
+  /** The frame that is shown first: its masks are there when the clip is open. */
+  readonly at?: number;
 }
 
 /** Where the clip is kept. */
@@ -94,15 +96,15 @@ export class Living {
   #found: number;
 
   /** `known`: what is known of it from before. `after`: what has to end before it can be opened. */
-  constructor(clip: Clip, parts: Parts, { known = null, found = 0, restored }: Remembered, after: Promise<unknown>) {
+  constructor(clip: Clip, parts: Parts, remembered: Remembered, after: Promise<unknown>) {
     this.clip = clip;
     this.#parts = parts;
-    this.#found = found;
+    this.#found = remembered.found ?? 0;
     const frames = Array.from({ length: clip.count }, () => null);
     this.#base = { frames, status: [], objects: [], annotated: new Map() };
     const { store } = parts;
     this.#frames = new ClipFrames(clip, () => this.longestSide, () => [store.get().pair.first, store.get().pair.second]);
-    this.opened = this.#open(known, restored, after);
+    this.opened = this.#open(remembered, after);
     this.opened.catch(() => undefined);
   }
 
@@ -247,7 +249,7 @@ export class Living {
     return this.#package;
   }
 
-  async #open(known: KnownMasks | null, restored: Uint8Array | undefined, after: Promise<unknown>): Promise<void> {
+  async #open({ known = null, restored, at = 0 }: Remembered, after: Promise<unknown>): Promise<void> {
     const { segmenter, keeper, store } = this.#parts;
     const { markUnknown } = store.get().settings;
     await after;
@@ -259,6 +261,7 @@ export class Living {
     const frames = clip.frames.map(({ revision }, index) => (revision > 0 && known?.revisions[index] === revision ? (known.frames[index] ?? null) : null));
     this.#base = { ...this.#base, frames, status: clip.frames, objects: clip.objects };
     clip.frames.forEach(({ hasMasks }, index) => hasMasks && frames[index] === null && this.#stale.add(index));
+    if (this.#stale.delete(at)) this.#take(at, masksOf(await clip.labels(at)));
     await this.#readAnnotations(this.#annotatedFrames());
     const { run, solved, before } = this.tracked;
     this.#show({ run, solved, before });
