@@ -301,12 +301,13 @@ describe('veronese clip VIDEO', () => {
   });
 
   test('frames stand as they are shown', { skip }, async (t) => {
-    const { file, path } = video(t, 'a.mp4', '-c:v', 'mpeg4', '-q:v', '1');
-    const turned = path('turned.mp4');
-    // From 6 on by an option; before, by a tag. One of them is refused.
-    const ways = [['-display_rotation', '90', '-i', file], ['-i', file, '-metadata:s:v', 'rotate=270']];
-    assert.ok(ways.some((way) => spawnSync('ffmpeg', ['-v', 'error', '-y', ...way, '-c', 'copy', turned]).status === 0));
-    const { pictures: [first] } = await read(turned);
+    const { file } = video(t, 'a.mp4', '-c:v', 'mpeg4', '-q:v', '1');
+    // A quarter counter-clockwise, in the header of the track: the options of ffmpeg for it differ from version to version.
+    const content = readFileSync(file);
+    const matrix = content.indexOf('tkhd') + 44;
+    [0, -(2 ** 16), 0, 2 ** 16, 0, 0, 0, SIZE.width * 2 ** 16, 2 ** 30].forEach((value, k) => content.writeInt32BE(value, matrix + 4 * k));
+    writeFileSync(file, content);
+    const { pictures: [first] } = await read(file);
     assert.deepEqual([first.width, first.height], [48, 64]);
     const { width } = SIZE;
     assert.ok(difference(first, clipFrame(0), (x, y) => [y, width - 1 - x]) < 5);
