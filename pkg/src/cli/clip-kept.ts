@@ -8,7 +8,7 @@ import { VeroneseError } from '../common/errors.js';
 import { openFile } from '../entries/journal-file.js';
 import { HIDDEN } from './clip-folder.js';
 import type { ClipFrames } from './clip-frames.js';
-import { lookAt, makeFolder, readWritten, sha256, writeFailed, writing } from './files.js';
+import { lookAt, makeFolder, parsedJson, sha256, writeFailed, writing } from './files.js';
 import type { Output } from './output.js';
 
 const KEY = `${HIDDEN}/key`;
@@ -38,16 +38,16 @@ export class KeptClip {
   /** `settings`: what decides about the masks. */
   static async open(segmenter: Segmenter, output: Output, frames: ClipFrames, settings: object, markUnknown: boolean): Promise<KeptClip> {
     const own: Key = { clip: sha256(JSON.stringify({ settings, frames: frames.files.map(({ sha256 }) => sha256) })) };
-    const path = (name: string) => join(output.folder, name);
+    const log = join(output.folder, LOG);
     await writing(output.folder, () => {
       output.add([HIDDEN]);
-      makeFolder(path(HIDDEN));
+      makeFolder(join(output.folder, HIDDEN));
       // A link would lead elsewhere.
-      if (lookAt(path(LOG))?.isFile() === false) rmSync(path(LOG));
+      if (lookAt(log)?.isFile() === false) rmSync(log);
     });
-    const known = keyIn(path(KEY));
-    for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG)); ; isNew = true) {
-      const journal = await openFile(path(LOG)).catch((thrown: unknown) => {
+    const known = parsedJson<Key>(join(output.folder, KEY));
+    for (let isNew = known?.clip !== own.clip || !lookAt(log); ; isNew = true) {
+      const journal = await openFile(log).catch((thrown: unknown) => {
         const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
         throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;
       });
@@ -55,13 +55,11 @@ export class KeptClip {
         await journal.replace(new Uint8Array());
         await write(output, own);
       }
-      const clip = await segmenter
-        .openClip({ length: frames.length, read: frames.read }, { journal, markUnknown })
-        .catch((thrown: unknown) => {
-          if (isNew) throw thrown;
-          return undefined;
-        });
-      rmSync(path(`${LOG}.damaged`), { force: true });
+      const clip = await segmenter.openClip(frames, { journal, markUnknown }).catch((thrown: unknown) => {
+        if (isNew) throw thrown;
+        return undefined;
+      });
+      rmSync(`${log}.damaged`, { force: true });
       const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
       if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });
       // The range of a frame that could not be read.
@@ -89,14 +87,6 @@ export class KeptClip {
   #hash(annotations: unknown): string {
     const { frames, objects } = this.clip;
     return sha256(JSON.stringify({ annotations, frames, objects }));
-  }
-}
-
-function keyIn(path: string): Key | undefined {
-  try {
-    return JSON.parse(readWritten(path)?.toString() ?? '') as Key;
-  } catch {
-    return undefined; // Missing or damaged.
   }
 }
 

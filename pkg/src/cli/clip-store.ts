@@ -4,7 +4,7 @@ import { join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipChange, ClipTracks } from '../../types/index.js';
 import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
-import { lookAt, readWritten, sha256, writing } from './files.js';
+import { lookAt, parsedJson, sha256, writing } from './files.js';
 import { type Output, removeIfEmpty } from './output.js';
 import { jsonLine } from './pair.js';
 import { isShown, pathsOf } from './showing.js';
@@ -39,38 +39,42 @@ export interface FrameFile {
 
 const OVERLAY = 'overlay';
 
+/** Methods that write throw `write-failed`. */
 export class ClipStore {
   readonly #output: Output;
+  readonly #frames: readonly FrameFile[];
   readonly #settings: ClipManifest['settings'];
 
-  constructor(output: Output, settings: ClipManifest['settings']) {
+  constructor(output: Output, frames: readonly FrameFile[], settings: ClipManifest['settings']) {
     this.#output = output;
+    this.#frames = frames;
     this.#settings = settings;
   }
 
   /** The manifest of a finished run on the same frames with the same settings. */
-  finished(frames: readonly FrameFile[]): ClipManifest | undefined {
-    return this.#manifest(frames, this.#settings);
+  finished(): ClipManifest | undefined {
+    const manifest = this.#manifest();
+    return manifest?.job === this.#job(this.#settings) ? manifest : undefined;
   }
 
-  /** The manifest of a finished run on the same frames, with any settings, if all files are there. */
-  before(frames: readonly FrameFile[]): ClipManifest | undefined {
-    const manifest = this.#manifest(frames);
-    return manifest && this.#areThere(imagesOf(frames, manifest.settings)) ? manifest : undefined;
+  /** Whether there is a finished run on the same frames, with any settings, with all its files. */
+  get isSeen(): boolean {
+    const manifest = this.#manifest();
+    return manifest?.job === this.#job(manifest?.settings) && this.#areThere(imagesOf(this.#frames, manifest.settings));
   }
 
-  /** Whether all images of a frame are there, and what is shown of the clip. */
-  isThere(frame: FrameFile): boolean {
-    return this.#areThere(imagesOf([frame], this.#settings));
+  /** Indices of the frames of which an image is missing, or something that is shown of the clip. */
+  missing(): number[] {
+    return this.#frames.flatMap((frame, index) => (this.#areThere(imagesOf([frame], this.#settings)) ? [] : [index]));
   }
 
-  #manifest(frames: readonly FrameFile[], settings?: ClipManifest['settings']): ClipManifest | undefined {
-    try {
-      const manifest = JSON.parse(readWritten(join(this.#output.folder, TRACKS))?.toString() ?? '') as ClipManifest;
-      return manifest.job === jobOf(settings ?? manifest.settings, frames) ? manifest : undefined;
-    } catch {
-      return undefined; // Missing or foreign.
-    }
+  #manifest(): ClipManifest | undefined {
+    return parsedJson<ClipManifest>(join(this.#output.folder, TRACKS));
+  }
+
+  /** Hash of settings, and of the frames' names and contents. */
+  #job(settings: unknown): string {
+    return sha256(JSON.stringify({ settings, frames: this.#frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));
   }
 
   #areThere(paths: readonly string[]): boolean {
@@ -78,11 +82,11 @@ export class ClipStore {
   }
 
   /** Checks the places of all files. Throws `file-exists`. */
-  check(frames: readonly FrameFile[], inputs: readonly string[]): void {
-    this.#output.check([TRACKS, ...imagesOf(frames, this.#settings), HIDDEN], inputs);
+  check(inputs: readonly string[]): void {
+    this.#output.check([TRACKS, ...imagesOf(this.#frames, this.#settings), HIDDEN], inputs);
   }
 
-  /** Marks the folder as unfinished. Throws `write-failed`, as all methods that write do. */
+  /** Marks the folder as unfinished. */
   async begin(): Promise<void> {
     await writing(this.#output.folder, () => {
       this.#output.removeLeftovers();
@@ -98,35 +102,33 @@ export class ClipStore {
   }
 
   /** Puts films, which are complete in the folder of what is not, and others of that kind in their places. */
-  async show(films: readonly string[], sheet: Uint8Array | undefined): Promise<void> {
+  async show({ films, sheet }: { films: readonly string[]; sheet: Uint8Array | undefined }): Promise<void> {
     await writing(this.#output.folder, () => {
       if (sheet) this.#output.write('sheet.png', sheet);
-      this.#output.place(this.#output.begin(), films, () => false);
+      if (films.length > 0) this.#output.place(this.#output.begin(), films, () => false);
     });
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the manifest. */
   async end(
-    frames: readonly FrameFile[],
     about: Pick<ClipManifest, 'width' | 'height' | 'frameRate' | 'timestamps'>,
     tracks: ClipTracks,
     changes: readonly ClipChange[],
     notes: readonly AnnotationNote[],
   ): Promise<void> {
-    const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
-    const [settings, job] = [this.#settings, jobOf(this.#settings, frames)];
     const manifest: ClipManifest = {
       version: 1,
       ...about,
-      ...names,
+      frames: this.#frames.map(({ stem }) => stem),
+      files: this.#frames.map(({ file }) => file),
       ...tracks,
       ...(changes.length > 0 && { changes }),
       ...(notes.length > 0 && { notes }),
-      settings,
-      job,
+      settings: this.#settings,
+      job: this.#job(this.#settings),
     };
     await writing(this.#output.folder, () => {
-      this.#output.removeOld((path) => /^(labels|overlay)\//.test(path) || isShown(path), imagesOf(frames, settings));
+      this.#output.removeOld((path) => /^(labels|overlay)\//.test(path) || isShown(path), imagesOf(this.#frames, this.#settings));
       this.#output.write(TRACKS, jsonLine(manifest));
       removeIfEmpty(join(this.#output.folder, HIDDEN));
       this.#output.settle();
@@ -136,17 +138,7 @@ export class ClipStore {
 
 /** The paths of the images of all frames, and of what is shown of them. */
 function imagesOf(frames: readonly FrameFile[], { overlay, show = [] }: ClipManifest['settings']): string[] {
-  const images = (overlay ? [LABELS, OVERLAY] : [LABELS]).flatMap((folder) => frames.map(({ stem }) => `${folder}/${stem}.png`));
-  return [
-    ...images,
-    ...pathsOf(
-      show,
-      frames.map(({ stem }) => stem),
-    ),
-  ];
-}
-
-/** Hash of the settings, names and contents. */
-function jobOf(settings: object, frames: readonly FrameFile[]): string {
-  return sha256(JSON.stringify({ settings, frames: frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));
+  const stems = frames.map(({ stem }) => stem);
+  const folders = overlay ? [LABELS, OVERLAY] : [LABELS];
+  return [...folders.flatMap((folder) => stems.map((stem) => `${folder}/${stem}.png`)), ...pathsOf(show, stems)];
 }

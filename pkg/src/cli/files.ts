@@ -113,8 +113,17 @@ export function taken(place: string, reason: string): VeroneseError {
 }
 
 /** The content of a file that the program may have written. Undefined where there is none, or something else, which may keep a reader waiting. */
-export function readWritten(path: string): Buffer | undefined {
-  return lstatSync(path, { throwIfNoEntry: false })?.isFile() ? readFileSync(path) : undefined;
+export function readWritten(path: string): string | undefined {
+  return lstatSync(path, { throwIfNoEntry: false })?.isFile() ? readFileSync(path, 'utf8') : undefined;
+}
+
+/** The value in such a file of JSON. Undefined where it is missing, damaged or not ours. */
+export function parsedJson<T extends object>(path: string): T | undefined {
+  try {
+    return JSON.parse(readWritten(path) ?? '') as T;
+  } catch {
+    return undefined;
+  }
 }
 
 export const sha256 = (bytes: Uint8Array | string): string => createHash('sha256').update(bytes).digest('hex');

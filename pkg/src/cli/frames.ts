@@ -10,7 +10,7 @@ import { VeroneseError } from '../common/errors.js';
 import { notFound, readInput } from './files.js';
 import { isFileName } from './sequence.js';
 
-const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
+export const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
 /** Pictures that are not read. */
 export const UNREAD_IMAGE = /\.(tiff?|avif|jp2|j2k|jxl|heic|heif|gif|exr|dng)$/i;
 const READ = 'PNG, JPEG, WebP, BMP or PNM';

@@ -4,7 +4,7 @@ import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { join } from 'node:path';
 import type { ClipFrame, Pixels } from '../../types/index.js';
-import { isWhole, UNLABELLED } from '../common/checks.js';
+import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaled } from '../common/scaling.js';
 import { encodePng } from '../entries/codecs.js';
@@ -12,16 +12,8 @@ import { overlay } from './overlay.js';
 
 /** N is the number of an object. */
 export const SHOWN = [
-  'overlay.mp4',
-  'overlay.webm',
-  'overlay.gif',
-  'beside.mp4',
-  'beside.webm',
-  'beside.gif',
-  'sheet.png',
-  'cutout-N',
-  'cutout-N.webm',
-  'cutout-N.mov',
+  ...['overlay', 'beside'].flatMap((kind) => ['mp4', 'webm', 'gif'].map((format) => `${kind}.${format}`)),
+  ...['sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'],
 ];
 
 /** A file, or a folder of a picture for each frame. */
@@ -55,17 +47,11 @@ const SHEET = { most: 12, columns: 4, longest: 480, space: 4 };
 
 /** What a name stands for; undefined where it stands for nothing. */
 export function shownOf(name: string): Shown | undefined {
-  const [, kind, number, end] = /^(overlay|beside|sheet|cutout)(?:-(\d+))?(?:\.(\w+))?$/.exec(name) ?? [];
-  const object = Number(number);
-  const known = kind === 'cutout' ? isWhole(object, 0, UNLABELLED - 1) && String(object) === number : number === undefined;
-  const pattern = kind === 'cutout' ? name.replace(/\d+/, 'N') : name;
-  if (!known || !SHOWN.includes(pattern)) return undefined;
-  return {
-    name,
-    kind: kind as Shown['kind'],
-    object,
-    format: end === undefined || end === 'png' ? undefined : (end as keyof typeof ENCODERS),
-  };
+  const [, kind, number = '0', end] = /^(overlay|beside|sheet|cutout(?=-\d))(?:-(0|[1-9]\d*))?(?:\.(\w+))?$/.exec(name) ?? [];
+  const pattern = name.replace(/-\d+/, '-N');
+  if (kind === undefined || !SHOWN.includes(pattern) || Number(number) >= UNLABELLED) return undefined;
+  const format = end === 'png' ? undefined : (end as Shown['format']);
+  return { name, kind: kind as Shown['kind'], object: Number(number), format };
 }
 
 /** The paths of what is shown of frames with these names. */
@@ -163,22 +149,10 @@ class Film {
 
   constructor({ name, kind, format }: Shown, path: string, { width, height, rate }: { width: number; height: number; rate: number }) {
     this.#name = name;
-    const { opaque = [], transparent = [] }: { opaque?: readonly string[]; transparent?: readonly string[] } =
-      ENCODERS[format as keyof typeof ENCODERS];
-    const cut = kind === 'cutout';
-    const input = [
-      '-f',
-      'rawvideo',
-      '-pix_fmt',
-      cut ? 'rgba' : 'rgb24',
-      '-s',
-      `${width}x${height}`,
-      '-framerate',
-      String(rate),
-      '-i',
-      'pipe:0',
-    ];
-    const args = ['-v', 'error', '-y', ...input, ...(cut ? transparent : opaque), `file:${path}`];
+    const encoder: { opaque?: readonly string[]; transparent?: readonly string[] } = ENCODERS[format as keyof typeof ENCODERS];
+    const [pixels, output = []] = kind === 'cutout' ? ['rgba', encoder.transparent] : ['rgb24', encoder.opaque];
+    const input = `-v error -y -f rawvideo -pix_fmt ${pixels} -s ${width}x${height} -framerate ${rate} -i pipe:0`;
+    const args = [...input.split(' '), ...output, `file:${path}`];
     this.#ffmpeg = spawn('ffmpeg', args, { stdio: ['pipe', 'ignore', 'pipe'] });
     this.#ffmpeg.stderr?.on('data', (piece) => (this.#messages += String(piece)));
     // Why it takes no more shows when it ends.

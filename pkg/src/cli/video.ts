@@ -67,27 +67,16 @@ export function timesOf({ times, frameRate }: VideoInfo, count: number, every: n
 
 /** What is assumed of the video. */
 export function notesOnVideo(file: string, { light, aspect, isInterlaced, size, change }: VideoInfo): Note[] {
-  const notes: Note[] = [];
-  if (light)
-    notes.push({
-      code: 'video-hdr',
-      message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping`,
-    });
-  if (aspect)
-    notes.push({
-      code: 'video-aspect',
-      message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file`,
-    });
-  if (isInterlaced) {
-    const remedy = `what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away`;
-    notes.push({ code: 'video-interlaced', message: `'${file}' is interlaced, its frames are of two moments each: ${remedy}` });
-  }
-  if (change)
-    notes.push({
-      code: 'video-size',
-      message: `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}`,
-    });
-  return notes;
+  const combed = "what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away";
+  const messages = {
+    'video-hdr': light && `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping`,
+    'video-aspect': aspect && `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file`,
+    'video-interlaced': isInterlaced && `'${file}' is interlaced, its frames are of two moments each: ${combed}`,
+    'video-size':
+      change &&
+      `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}`,
+  };
+  return Object.entries(messages).flatMap(([code, message]) => (message ? [{ code, message }] : []));
 }
 
 /** Enters what a line of ffmpeg reports about the video. */
@@ -122,27 +111,15 @@ export async function* videoFrames(
   const status = statusOf(file);
   if (!status) throw notFound(file);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
-  const input = [
-    '-nostdin',
-    '-hide_banner',
-    '-nostats',
-    '-v',
-    'level+info',
-    '-protocol_whitelist',
-    'file,pipe',
-    '-i',
-    `file:${file}`,
-    '-map',
-    '0:v:0',
-  ];
-  const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter(
-    (_, __, [, chain]) => chain,
-  );
+  const input = '-nostdin -hide_banner -nostats -v level+info -protocol_whitelist file,pipe -i'.split(' ');
+  const filters = [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])];
   // Each frame that is in the file, and none twice, whatever its time is.
-  const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
-  const ffmpeg = spawn('ffmpeg', [...input, ...filters, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', '-pix_fmt', 'rgb24', 'pipe:1'], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
+  const exact = [...(await framesAsTheyAre()), ...'-an -sn -f image2pipe -c:v ppm -pix_fmt rgb24 pipe:1'.split(' ')];
+  const ffmpeg = spawn(
+    'ffmpeg',
+    [...input, `file:${file}`, '-map', '0:v:0', ...(filters.length > 0 ? ['-vf', filters.join()] : []), ...exact],
+    { stdio: ['ignore', 'pipe', 'pipe'] },
+  );
   const end = () => void ffmpeg.kill('SIGKILL');
   io.signal.addEventListener('abort', end);
   let messages = '';
