@@ -1,6 +1,5 @@
 // Folders of annotations: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
 
-import { readdirSync, statSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import type { AnnotationNote, Levels } from '../../types/formats.js';
 import type { ClipAnnotation, ClipDeclaration } from '../../types/index.js';
@@ -13,7 +12,7 @@ import { Canvas } from '../formats/reading/canvas.js';
 import { isPng } from '../formats/reading/frame.js';
 import type { ClipCommand } from './arguments.js';
 import type { ClipFrames } from './clip-frames.js';
-import { notFound, readInput, sha256 } from './files.js';
+import { entriesOf, isFolder, readInput, sha256 } from './files.js';
 import { IMAGE, UNREAD_IMAGE } from './frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { decoded } from './pair.js';
@@ -285,10 +284,6 @@ async function pngOf(path: string): Promise<Uint8Array> {
   return encodePng(width, height, data);
 }
 
-function isFolder(path: string): boolean {
-  return statSync(path, { throwIfNoEntry: false })?.isDirectory() === true;
-}
-
 /** Whether something in a folder that is not read may be meant to be: a picture, an annotation, or a folder of them. */
 function isMeant(folder: string, name: string): boolean {
   if (basename(name).startsWith('.') || name === EDITS) return false;
@@ -304,16 +299,7 @@ function stemOf(name: string): string {
 }
 
 function namesIn(folder: string): string[] {
-  try {
-    return readdirSync(folder).sort();
-  } catch (thrown) {
-    const { code, message } = thrown as NodeJS.ErrnoException;
-    if (code === 'ENOENT') throw notFound(folder);
-    throw new VeroneseError(
-      'unreadable-file',
-      code === 'ENOTDIR' ? `'${folder}' is not a folder` : `'${folder}' cannot be read: ${message}`,
-    );
-  }
+  return entriesOf(folder).map(({ name }) => name);
 }
 
 /** Frames are called by their names. */

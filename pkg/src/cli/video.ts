@@ -1,7 +1,6 @@
 // Frames of a video, one after another, as the program ffmpeg decodes them.
 
 import { execFile, spawn } from 'node:child_process';
-import { type Stats, statSync } from 'node:fs';
 import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { createInterface } from 'node:readline';
@@ -9,7 +8,7 @@ import { promisify } from 'node:util';
 import type { Note } from '../../types/index.js';
 import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
-import { notFound } from './files.js';
+import { checkedFile } from './files.js';
 import { checkName, type Frame } from './frames.js';
 import type { Io } from './io.js';
 import { warn } from './terminal.js';
@@ -108,9 +107,7 @@ export async function* videoFrames(
   about?: VideoInfo,
 ): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
-  const status = statusOf(file);
-  if (!status) throw notFound(file);
-  if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
+  const { size } = checkedFile(file);
   const input = '-nostdin -hide_banner -nostats -v level+info -protocol_whitelist file,pipe -i'.split(' ');
   const filters = [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])];
   // Each frame that is in the file, and none twice, whatever its time is.
@@ -135,12 +132,12 @@ export async function* videoFrames(
   try {
     let number = 0;
     for await (const bytes of pixmaps(ffmpeg.stdout, file)) {
-      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, number, bytes };
+      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, bytes };
       number += every;
     }
     const problem = await ended;
     if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(messages, file) ?? problem}`);
-    const damage = lastLine(messages) ?? (await missingEnd(file, status.size));
+    const damage = lastLine(messages) ?? (await missingEnd(file, size));
     if (damage === undefined || (allowDamaged && quiet)) return;
     const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
     if (!allowDamaged) throw new VeroneseError('unreadable-video', `${sentence}; '--allow-damaged' takes them as they are`);
@@ -219,14 +216,6 @@ export class VideoReader {
       this.#kept.delete(index);
       this.#size -= length;
     }
-  }
-}
-
-function statusOf(file: string): Stats | undefined {
-  try {
-    return statSync(file, { throwIfNoEntry: false });
-  } catch (thrown) {
-    throw new VeroneseError('unreadable-file', `'${file}' cannot be read: ${(thrown as Error).message}`);
   }
 }
 
