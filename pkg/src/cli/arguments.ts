@@ -67,8 +67,10 @@ const READERS = {
 };
 
 type Texts = ReturnType<typeof parsed>['values'];
+type Camel<name extends string> = name extends `${infer one}-${infer more}` ? `${one}${Capitalize<Camel<more>>}` : name;
+/** The values by names as `lookAhead`. */
 type Values = {
-  [name in keyof Texts]: name extends keyof typeof READERS
+  [name in OptionName as Camel<name>]: name extends keyof typeof READERS
     ? ReturnType<(typeof READERS)[name]> | Extract<Texts[name], undefined>
     : Texts[name];
 };
@@ -110,10 +112,10 @@ export function parseCommand(args: string[]): Command {
   try {
     const entries = Object.entries(values).map(([name, value]) => {
       const read = READERS[name as keyof typeof READERS] as ((text: string, name: string) => unknown) | undefined;
-      return [name, read ? read(value as string, name) : value];
+      return [name.replace(/-(.)/g, (_, letter: string) => letter.toUpperCase()), read ? read(value as string, name) : value];
     });
     const names = given.map((option) => option.name);
-    return { ...READ[command](Object.fromEntries(entries) as Values, files, names), quiet: values.quiet };
+    return READ[command](Object.fromEntries(entries) as Values, files, names);
   } catch (thrown) {
     if (!(thrown instanceof VeroneseError) || thrown.code !== 'usage') throw thrown;
     throw usage(`${thrown.message}${hint(command)}`);
@@ -126,28 +128,13 @@ function commandNamed(name: string): CommandName {
   throw usage(`there is no command '${name}'${question(word) ?? hint(undefined)}`);
 }
 
-function points({ motions, seed, method }: Values, files: string[]) {
+function points({ quiet, motions, seed, method }: Values, files: string[]) {
   const [file] = exactly(1, files, "'points' takes one file") as [string];
-  return { name: 'points' as const, file, options: { motions, seed, method } };
+  return { name: 'points' as const, quiet, file, options: { motions, seed, method } };
 }
 
 function convert(values: Values, files: string[], given: readonly string[]) {
-  const {
-    to,
-    out,
-    clip,
-    grouped,
-    background,
-    image,
-    video,
-    force,
-    tolerance,
-    from,
-    until,
-    shapes,
-    levels,
-    'frame-rate': frameRate,
-  } = values;
+  const { to, out, from, until, firstFrame } = values;
   const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
   if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
   const back = to === BACK;
@@ -158,76 +145,44 @@ function convert(values: Values, files: string[], given: readonly string[]) {
   }
   if (back) {
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
-    const first = values['first-frame'];
-    const firstFrame = first && (Number(first) as 0 | 1);
-    return { name: BACK, source: folder, out, clip, force, levels, firstFrame } as const;
+    return { ...values, name: BACK, source: folder, out, firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
   }
   if (until !== undefined && until < from) throw invalid('until', `a frame from ${from}, where '--from' is`, String(until));
-  const range = { from, ...(until !== undefined && { until }) };
-  return { name: 'convert' as const, folder, to, tolerance, range, shapes, frameRate, grouped, background, image, video, out, force };
+  return { ...values, name: 'convert' as const, folder, to, range: { from, ...(until !== undefined && { until }) } };
 }
 
-function clip(values: Values, files: string[]) {
-  const {
-    list,
-    out,
-    overlay,
-    masks,
-    corrections,
-    force,
-    levels,
-    every,
-    motions,
-    quality,
-    subject,
-    show = [],
-    'frame-rate': frameRate,
-  } = values;
-  const lookAhead = values['look-ahead'] ?? ('all' as const);
-  checkFrames('clip', files, list);
+function clip(values: Values, frames: string[]) {
+  const { list, out, masks, corrections, levels, motions, quality, lookAhead = 'all' as const, markUnknown, subject, show, jobs } = values;
+  checkFrames('clip', frames, list);
   if (out === undefined) throw usage("'clip' needs '--out DIR'");
   const isAnnotated = masks !== undefined || corrections !== undefined;
   if (lookAhead !== 'all' && isAnnotated)
     throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
-  if (frameRate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
+  if (values.frameRate !== undefined && show === undefined) throw usage("'--frame-rate' needs '--show'");
   if (levels !== undefined && !isAnnotated) throw usage("'--levels' needs '--masks' or '--corrections'");
-  return {
-    ...{ name: 'clip' as const, frames: files, list, masks, corrections, levels, every, show, frameRate, overlay, out, force },
-    options: { motions, quality, lookAhead, markUnknown: values['mark-unknown'], subject },
-    jobs: values.jobs ?? availableParallelism(),
-    maxSize: values['max-size'],
-    allowDamaged: values['allow-damaged'],
-  };
+  const options = { motions, quality, lookAhead, markUnknown, subject };
+  return { ...values, name: 'clip' as const, frames, out, options, show: show ?? [], jobs: jobs ?? availableParallelism() };
 }
 
 function pair(values: Values, files: string[]) {
   const settings = ofPairs(values);
   const [first, second] = exactly(2, files, "'pair' takes two files") as [string, string];
-  return { name: 'pair' as const, first, second, ...settings };
+  return { ...settings, name: 'pair' as const, first, second };
 }
 
 function batch(values: Values, frames: string[]) {
   const settings = ofPairs(values);
-  const { list, every, jobs = availableParallelism(), shard } = values;
-  checkFrames('batch', frames, list);
-  return { name: 'batch' as const, frames, list, ...settings, every, jobs, shard };
+  checkFrames('batch', frames, values.list);
+  return { ...settings, name: 'batch' as const, frames, jobs: values.jobs ?? availableParallelism() };
 }
 
 function ofPairs(values: Values) {
-  const { out, subject, overlay, confidence, force, motions, quality } = values;
+  const { out, motions, quality, markUnknown, subject, confidence } = values;
   for (const name of ['overlay', 'confidence', 'force'] as const) {
     if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  return {
-    options: { motions, quality, markUnknown: values['mark-unknown'], subject, confidence },
-    // The subject's masks are of the whole of it.
-    grouped: values.grouped || subject,
-    overlay,
-    allowDamaged: values['allow-damaged'],
-    maxSize: values['max-size'],
-    out,
-    force,
-  };
+  // The subject's masks are of the whole of it.
+  return { ...values, options: { motions, quality, markUnknown, subject, confidence }, grouped: values.grouped || subject };
 }
 
 function parsed(args: string[]) {

@@ -116,10 +116,8 @@ export async function readCorrections(
   const edits = both.map((folder) => folder.edits);
   const numbers = numbersOf(edits, wrong);
   const names = new Map(edits.flatMap((each) => Object.entries(each.names ?? {})).map(([object, name]) => [Number(object), name]));
-  const locked = withMerged(
-    edits.flatMap((each) => each.locked ?? []),
-    numbers,
-  );
+  const ownLocks = edits.flatMap((each) => each.locked ?? []);
+  const locked = withMerged(ownLocks, numbers);
   const deleted = locked.find((object) => numbers.get(object) === 0);
   if (deleted !== undefined) throw new VeroneseError('object-locked', `object ${deleted} is locked: unlock it to change it`);
   const prompts = both.flatMap((folder) => folder.prompts);
@@ -327,26 +325,21 @@ async function readEdits(path: string, target: Target): Promise<Content> {
       if (unknown !== undefined) throw bad(`there is no ${unknown}`);
       if (typeof entry['frame'] !== 'string') throw bad('must have a frame, the name of one');
       if (!isObjectNumber(entry['object'])) throw bad(`must have an object, ${RANGE}`);
-      return { ...entry, frame: frameOf(list, entry['frame']), object: entry['object'], bad };
+      return { ...(entry as { points?: unknown }), frame: frameOf(list, entry['frame']), object: entry['object'], bad };
     });
   };
-  const outlines = new Map<string, Labelled>();
-  for (const { frame, object, points, bad } of entriesOf('polygons', polygons, ['points']) as (Labelled & {
-    points: unknown;
-    bad: Wrong;
-  })[]) {
+  const outlines = new Map<string, Labelled & { object: number }>();
+  for (const { frame, object, bad, points } of entriesOf('polygons', polygons, ['points'])) {
     const isPoint = (point: unknown): point is number[] => isListOf(point, isNumber) && point.length === 2;
     if (!isListOf(points, isPoint) || points.length < 3) throw bad('must have points, three or more [x, y]');
     const canvas = new Canvas(target.width, target.height);
     // Whole numbers are centres of pixels here, corners there.
-    canvas.polygon(
-      points.flat().map((value) => scale * (value + 0.5)),
-      object as number,
-    );
-    if (!canvas.labels.includes(object as number)) throw bad('has no pixel of the frame');
+    const ring = points.flat().map((value) => scale * (value + 0.5));
+    canvas.polygon(ring, object);
+    if (!canvas.labels.includes(object)) throw bad('has no pixel of the frame');
     // Several are parts of one.
     const before = outlines.get(`${frame} ${object}`)?.labels;
-    outlines.set(`${frame} ${object}`, { frame, object, labels: canvas.labels.map((label, p) => label || (before?.[p] ?? 0)) } as Labelled);
+    outlines.set(`${frame} ${object}`, { frame, object, labels: canvas.labels.map((label, p) => label || (before?.[p] ?? 0)) });
   }
   if (!isObject(propagate))
     throw wrong("'propagate' must be an object, from names of frames to the directions in which annotations spread");
