@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { byNumbers, findFrames } from '../build/cli/frames.js';
-import { ProgressBar } from '../build/cli/terminal.js';
+import { progressBar } from '../build/cli/terminal.js';
 import { enter, notesOnVideo, pixmaps } from '../build/cli/video.js';
 import { clip as framesOf, lines, tree } from './support/folders.mjs';
 import { frame, png, ppm } from './support/frames.mjs';
@@ -225,7 +225,7 @@ describe('frames', () => {
 describe('the progress bar', () => {
   const drawn = (isTTY, total, options) => {
     let [text, now] = ['', 0];
-    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, { now: () => now, ...options });
+    const bar = progressBar(total, { isTTY, write: (piece) => (text += piece) }, { now: () => now, ...options });
     for (let done = 1; done <= 4; done++) {
       now += 500;
       bar.update({ done, skipped: 1, failed: 0 });

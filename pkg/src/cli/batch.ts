@@ -12,7 +12,7 @@ import { Output } from './output.js';
 import { possibleFiles } from './pair-folder.js';
 import { jsonLine, type Report } from './pair.js';
 import { writePair } from './store.js';
-import { complain, note, print, ProgressBar, type Tally } from './terminal.js';
+import { complain, note, print, progressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
 import { notesOnVideo, videoFrames, type VideoInfo } from './video.js';
 import type { PairTask, TaskResult } from './work.js';
@@ -36,7 +36,7 @@ export async function batch(command: BatchCommand, io: Io): Promise<void> {
   const about: VideoInfo = { times: [] };
   const frames = video === undefined ? (paths ?? []).map((name) => ({ name })) : videoFrames({ ...command, file: video }, io, about);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
-  const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
+  const bar = progressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
   const failures: VeroneseError[] = [];
   const work = (pair: Pair) => perform(pair, command, output);

@@ -12,7 +12,7 @@ import { findFrames, leftOutNotes, readList, videoIn } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
 import { decoded, type Decoding, narrowRange, type Range, rangeNote } from './pair.js';
-import { notesOnVideo, timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
+import { notesOnVideo, timesOf, type Video, videoFrames, type VideoInfo, videoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */
 interface Seen extends FrameFile {
@@ -150,10 +150,10 @@ async function framesOfVideo(video: Video, maxSize: number | undefined, io: Io):
     if (files.length === 0) throw thrown;
     add({ sha256: undefined, failure: { thrown } });
   }
-  const reader = new VideoReader({ ...video, quiet: true }, io);
+  const { read, close } = videoReader({ ...video, quiet: true }, io);
   return new ClipFrames(files, [file], {
-    content: (index) => reader.read(index),
-    close: () => reader.close(),
+    content: read,
+    close,
     decoding: { maxSize },
     times: timesOf(about, files.length, every),
     notes: notesOnVideo(file, about),

@@ -19,8 +19,8 @@ import { readLabels } from './label-files.js';
 import { Output } from './output.js';
 import { overlay } from './overlay.js';
 import { jsonLine } from './pair.js';
-import { checkFilms, Showing } from './showing.js';
-import { note, print, ProgressBar, warn } from './terminal.js';
+import { checkFilms, type Showing, shownOn } from './showing.js';
+import { note, print, progressBar, warn } from './terminal.js';
 import { oneForEach } from './threads.js';
 
 const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
@@ -43,7 +43,7 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const segmenter = segmenters(command.jobs);
   const progress = passes(frames.length, io);
   const rate = command.frameRate ?? frames.times.frameRate;
-  const showing = new Showing(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
+  const showing = shownOn(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
   let kept: KeptClip | undefined;
   try {
     const corrections = await readCorrections(command, frames);
@@ -192,12 +192,12 @@ type Progress = ReturnType<typeof passes>;
 
 /** The progress bar of each pass over the frames. */
 function passes(count: number, { stderr }: Io) {
-  let [pass, bar] = ['', undefined as ProgressBar | undefined];
+  let [pass, bar] = ['', undefined as ReturnType<typeof progressBar> | undefined];
   return {
     update({ stage, frame }: { stage: string; frame: number }): void {
       // Annotations come to some frames, and to some of them more than once.
       const total = stage === 'annotations' ? undefined : count;
-      if (stage !== pass) bar = new ProgressBar(total, stderr, { unit: 'frames', title: `${stage}: ` });
+      if (stage !== pass) bar = progressBar(total, stderr, { unit: 'frames', title: `${stage}: ` });
       pass = stage;
       bar?.update({ done: frame, skipped: 0, failed: 0 });
     },

@@ -15,7 +15,7 @@ const LARGEST = 512 * 1024 * 1024;
  */
 export async function readInput(path: string, most = Infinity): Promise<Uint8Array> {
   const { size } = checkedFile(path);
-  if (size > LARGEST) throw new VeroneseError('unreadable-file', `'${path}' is larger than ${LARGEST / 1024 / 1024} MB`);
+  if (Math.min(size, most) > LARGEST) throw new VeroneseError('unreadable-file', `'${path}' is larger than ${LARGEST / 1024 / 1024} MB`);
   try {
     if (size <= most) return new Uint8Array(await readFile(path));
     const file = await open(path);

@@ -1,14 +1,13 @@
 // Frames of a video, one after another, as the program ffmpeg decodes them.
 
 import { execFile, spawn } from 'node:child_process';
-import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { createInterface } from 'node:readline';
 import { promisify } from 'node:util';
 import type { Note } from '../../types/index.js';
 import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
-import { checkedFile } from './files.js';
+import { checkedFile, readInput } from './files.js';
 import { checkName, type Frame } from './frames.js';
 import type { Io } from './io.js';
 import { warn } from './terminal.js';
@@ -152,71 +151,47 @@ export async function* videoFrames(
  * Frames of a video in any order. Those that follow each other come from one run of ffmpeg; those before it from the frames that are
  * kept, else from another run.
  */
-export class VideoReader {
-  readonly #video: Video;
-  readonly #io: Io;
-  #run: AsyncGenerator<Frame, void, undefined> | undefined;
-  /** Index of the frame that the run gives next. */
-  #next = 0;
-  readonly #kept = new Map<number, Uint8Array>();
+export function videoReader(video: Video, io: Io) {
+  const kept = new Map<number, Uint8Array>();
+  let run: ReturnType<typeof videoFrames> | undefined;
+  /** Index of the frame that the run gives next, and bytes of those that are kept. */
+  let [next, size] = [0, 0];
   /** Reads run one at a time: a frame may be read ahead while an earlier one is wanted again. */
-  #queue: Promise<unknown> = Promise.resolve();
-  #size = 0;
-
-  constructor(video: Video, io: Io) {
-    this.#video = video;
-    this.#io = io;
-  }
-
-  /** The content of a frame, by its index among those that are taken; undefined after the last one. */
-  read(index: number): Promise<Uint8Array | undefined> {
-    return this.#inTurn(() => this.#read(index));
-  }
-
-  /** Ends the run. */
-  close(): Promise<void> {
-    return this.#inTurn(() => this.#close());
-  }
-
-  #inTurn<T>(work: () => Promise<T>): Promise<T> {
-    const turn = this.#queue.then(work);
-    this.#queue = turn.catch(() => undefined);
+  let queue: Promise<unknown> = Promise.resolve();
+  const inTurn = <T>(work: () => Promise<T>): Promise<T> => {
+    const turn = queue.then(work);
+    queue = turn.catch(() => undefined);
     return turn;
-  }
-
-  async #read(index: number): Promise<Uint8Array | undefined> {
-    const kept = this.#kept.get(index);
-    if (kept) return kept;
-    if (index < this.#next) await this.#close();
-    this.#run ??= videoFrames(this.#video, this.#io);
-    for (;;) {
-      const { value } = await this.#run.next();
-      if (!value) {
-        await this.#close();
-        return undefined;
+  };
+  const close = async () => {
+    await run?.return();
+    run = undefined;
+    [next, size] = [0, 0];
+    kept.clear();
+  };
+  const read = async (index: number) => {
+    if (index < next && !kept.has(index)) await close();
+    run ??= videoFrames(video, io);
+    while (!kept.has(index)) {
+      const { value } = await run.next();
+      if (!value) return close();
+      const { bytes } = value as { bytes: Uint8Array };
+      kept.set(next++, bytes);
+      size += bytes.length;
+      for (const [old, { length }] of kept) {
+        if (size <= WINDOW || kept.size === 1) break;
+        kept.delete(old);
+        size -= length;
       }
-      this.#keep(value.bytes as Uint8Array);
-      if (this.#next > index) return value.bytes;
     }
-  }
-
-  async #close(): Promise<void> {
-    await this.#run?.return();
-    this.#run = undefined;
-    this.#next = 0;
-    this.#size = 0;
-    this.#kept.clear();
-  }
-
-  #keep(bytes: Uint8Array): void {
-    this.#kept.set(this.#next++, bytes);
-    this.#size += bytes.length;
-    for (const [index, { length }] of this.#kept) {
-      if (this.#size <= WINDOW || this.#kept.size === 1) return;
-      this.#kept.delete(index);
-      this.#size -= length;
-    }
-  }
+    return kept.get(index);
+  };
+  return {
+    /** The content of a frame, by its index among those that are taken; undefined after the last one. */
+    read: (index: number): Promise<Uint8Array | undefined> => inTurn(async () => (await read(index)) ?? undefined),
+    /** Ends the run. */
+    close: () => inTurn(close),
+  };
 }
 
 /** The option has had this name since 5.1; the older one went later. */
@@ -243,15 +218,10 @@ function reasonIn(messages: string, file: string): string | undefined {
 
 /** The missing bytes of a file that states its length (RIFF, as AVI). A cut between two frames is no error to ffmpeg. */
 async function missingEnd(file: string, size: number): Promise<string | undefined> {
-  const handle = await open(file);
-  try {
-    const { buffer } = await handle.read(Buffer.alloc(8), 0, 8, 0);
-    const length = buffer.toString('latin1', 0, 4) === 'RIFF' ? buffer.readUInt32LE(4) + 8 : 0;
-    // A file that was written to a pipe states no length, or the largest.
-    return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
-  } finally {
-    await handle.close();
-  }
+  const head = Buffer.from(await readInput(file, 8));
+  const length = head.toString('latin1', 0, 4) === 'RIFF' && head.length === 8 ? head.readUInt32LE(4) + 8 : 0;
+  // A file that was written to a pipe states no length, or the largest.
+  return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
 }
 
 function lastLine(text: string): string | undefined {
