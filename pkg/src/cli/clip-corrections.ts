@@ -1,7 +1,7 @@
 // Folders of annotations: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
 
 import { basename, extname, join } from 'node:path';
-import type { AnnotationNote, Levels } from '../../types/formats.js';
+import type { Levels } from '../../types/formats.js';
 import type { ClipAnnotation, ClipDeclaration } from '../../types/index.js';
 import { invalidInput, isListOf, isNumber, isObject, isWhole, UNLABELLED, unknownOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
@@ -54,55 +54,12 @@ interface Edits {
   locked?: number[];
 }
 
-/** The content of edits.json. */
-interface Content {
-  edits: Edits;
-  prompts: Prompt[];
-  /** Of polygons. */
-  outlines: Labelled[];
-  /** Frames, where there is a list of them. */
-  accepted: number[] | undefined;
-  /** By frame. */
-  propagate: Map<number, Propagation>;
-}
-
-/** What is in a folder. */
-interface Found {
-  images: { path: string; stem: string; labels: Uint8Array; width: number; height: number }[];
-  /** The label images that are not in the folder itself. */
-  paths: string[];
-  notes: AnnotationNote[];
-  names: string[];
-  /** What of it may be meant and is not read. */
-  left: string[];
-  /** What is read. */
-  expected: string;
-}
-
-interface Folder extends Content {
-  labels: Labelled[];
-  notes: AnnotationNote[];
-  paths: string[];
-  sha256: string;
-}
-
-export interface Corrections {
-  declaration: ClipDeclaration & { annotations: ClipAnnotation[]; accepted: number[] };
-  /** Objects that are edited, and not annotated as well. */
-  edited: number[];
-  /** The files of all. */
-  paths: string[];
-  /** Hash of the content of each folder that has annotations. */
-  hashes: { masks?: string; corrections?: string };
-  /** What masks were taken for. */
-  notes: AnnotationNote[];
-}
+type Content = Awaited<ReturnType<typeof readEdits>>;
+type Found = Awaited<ReturnType<typeof givenMasks>>;
+export type Corrections = NonNullable<Awaited<ReturnType<typeof readCorrections>>>;
 
 /** Undefined where no folder is given. Throws an error that names the file, or the folder of which nothing is read. */
-export async function readCorrections(
-  command: Pick<ClipCommand, 'masks' | 'corrections' | 'levels' | 'maxSize'>,
-  frames: ClipFrames,
-): Promise<Corrections | undefined> {
+export async function readCorrections(command: Pick<ClipCommand, 'masks' | 'corrections' | 'levels' | 'maxSize'>, frames: ClipFrames) {
   const { levels, maxSize } = command;
   if (command.masks === undefined && command.corrections === undefined) return undefined;
   const { width, height } = frames.size ?? (await frames.read(0));
@@ -145,16 +102,21 @@ export async function readCorrections(
     ...[...prompts, ...outlines].map(({ object }) => object),
   ]);
   const edited = [...[...numbers].flat(), ...names.keys(), ...locked].filter((object) => object > 0 && !annotated.has(object));
+  const declaration: ClipDeclaration & { annotations: ClipAnnotation[]; accepted: number[] } = {
+    ...declared(numbers, names),
+    locked,
+    annotations: annotations.map((each) => ({ ...each, propagate: propagate.get(each.frame) })),
+    accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
+  };
   return {
-    declaration: {
-      ...declared(numbers, names),
-      locked,
-      annotations: annotations.map((each) => ({ ...each, propagate: propagate.get(each.frame) })),
-      accepted: [...new Set(both.flatMap(({ accepted }) => accepted ?? []))],
-    },
+    declaration,
+    /** Objects that are edited, and not annotated as well. */
     edited: [...new Set(edited)].sort((one, other) => one - other),
+    /** The files of all. */
     paths: both.flatMap(({ paths }) => paths),
+    /** Hash of the content of each folder that has annotations. */
     hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
+    /** What masks were taken for. */
     notes: both.flatMap(({ notes }) => notes),
   };
 }
@@ -201,7 +163,7 @@ function outsideOf(outlines: readonly Labelled[], numbers: ReadonlyMap<number, n
   );
 }
 
-async function readFolder(folder: string, found: Found, target: Target): Promise<Folder> {
+async function readFolder(folder: string, found: Found, target: Target) {
   const { images, names, left, expected } = found;
   const labelled: Labelled[] = [];
   for (const { path, stem, ...image } of images) {
@@ -217,9 +179,8 @@ async function readFolder(folder: string, found: Found, target: Target): Promise
   }
   labelled.sort((one, other) => one.frame - other.frame);
   const hasEdits = names.includes(EDITS);
-  const content = hasEdits
-    ? await readEdits(join(folder, EDITS), target)
-    : { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map<number, Propagation>() };
+  const none: Content = { edits: {}, prompts: [], outlines: [], accepted: undefined, propagate: new Map() };
+  const content = hasEdits ? await readEdits(join(folder, EDITS), target) : none;
   const { edits, prompts, outlines, accepted, propagate } = content;
   if ([labelled, prompts, outlines, accepted ?? [], ...Object.values(edits)].every((list) => Object.keys(list as object).length === 0)) {
     const [first = ''] = left;
@@ -252,7 +213,7 @@ async function paintedLabels(folder: string, levels: Levels | undefined): Promis
 }
 
 /** Masks as people have them, in the folder or in one for each object. */
-async function givenMasks(folder: string, levels: Levels | undefined): Promise<Found> {
+async function givenMasks(folder: string, levels: Levels | undefined) {
   const names = namesIn(folder);
   const isOfObject = (name: string) => /^\d+$/.test(name) && isFolder(join(folder, name));
   const inside = names.filter(isOfObject).reduce(
@@ -270,7 +231,14 @@ async function givenMasks(folder: string, levels: Levels | undefined): Promise<F
     width: frame.width,
     height: frame.height,
   }));
-  return { images, paths, notes, names, left, expected: 'masks are NAME.png, or 3/NAME.png of object 3' };
+  return {
+    images,
+    /** Those that are not in the folder itself, too. */ paths,
+    notes,
+    names,
+    left,
+    expected: 'masks are NAME.png, or 3/NAME.png of object 3',
+  };
 }
 
 /** A mask as PNG; of the other formats its pixels. */
@@ -301,7 +269,7 @@ function namesIn(folder: string): string[] {
 }
 
 /** Frames are called by their names. */
-async function readEdits(path: string, target: Target): Promise<Content> {
+async function readEdits(path: string, target: Target) {
   const wrong = (reason: string) => invalidInput(`'${path}': ${reason}`);
   const all = await readJson(path);
   const { annotationOf } = await import('../calls/session/clip.js');
@@ -345,6 +313,7 @@ async function readEdits(path: string, target: Target): Promise<Content> {
     throw wrong("'propagate' must be an object, from names of frames to the directions in which annotations spread");
   if (accepted !== undefined && !Array.isArray(accepted)) throw wrong("'accepted' must be a list of names of frames");
   return {
+    /** Of objects. */
     edits: editsIn(content, wrong),
     // One after another: the first keeps its pixels.
     prompts: entriesOf('prompts', prompts, ['clicks', 'box']).map(({ bad, ...entry }) => {
@@ -353,10 +322,12 @@ async function readEdits(path: string, target: Target): Promise<Content> {
       annotationOf(target, prompt, bad);
       return prompt as unknown as Prompt;
     }),
+    /** Of polygons. */
     outlines: [...outlines.values()],
+    /** Frames, where there is a list of them. */
     accepted: (accepted as unknown[] | undefined)?.map((name) => frameOf('accepted', name)),
     propagate: new Map(
-      Object.entries(propagate).map(([name, way]) => {
+      Object.entries(propagate).map(([name, way]): [number, Propagation] => {
         const frame = frameOf('propagate', name);
         if (['both', 'forward', 'backward', 'none'].includes(way as string)) return [frame, way as Propagation];
         throw wrong(`'propagate' must have 'both', 'forward', 'backward' or 'none' for '${name}'`);

@@ -13,7 +13,7 @@ import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
-import { type ClipManifest, ClipStore } from './clip-store.js';
+import { type ClipManifest, clipStore } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
@@ -51,9 +51,8 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     const software = `veronese ${version}`;
     const shown = show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate };
     const settings = { ...options, every, maxSize, ...corrections?.hashes, overlay: wanted, ...shown, software };
-    const store = new ClipStore(output, frames.files, settings);
-    const before = store.finished();
-    const missing = store.missing();
+    const store = clipStore(output, frames.files, settings);
+    const { finished: before, missing } = store;
     if (before && missing.length === 0) return await report(before, io);
     store.check([...frames.paths, ...(corrections?.paths ?? [])]);
 
