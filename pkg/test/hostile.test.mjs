@@ -194,20 +194,6 @@ describe('pictures and labels', () => {
   });
 });
 
-describe('init', () => {
-  test('a source that is none', async () => {
-    // Instances of their own, which have loaded nothing yet.
-    const fresh = async (call) => call(await import(`../dist/slim.js?${Math.random()}`));
-    for (const value of Object.values(VALUES)) {
-      for (const name of ['init', 'initPoints']) {
-        const error = await failure(fresh((entry) => entry[name](value)));
-        assert.equal(error.name, 'VeroneseError');
-        assert.equal(checked(error).code, 'wasm-load-failed');
-      }
-    }
-  });
-});
-
 describe('formats', () => {
   const labels = Uint8Array.of(0, 1, 255, 1);
   const frame = { labels, width: 2, height: 2 };
