@@ -12,7 +12,7 @@ import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
 import { LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
-import { KeptClip } from './clip-kept.js';
+import { clearKept, type KeptClip, keptClip } from './clip-kept.js';
 import { type ClipManifest, clipStore } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
@@ -57,8 +57,8 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     store.check([...frames.paths, ...(corrections?.paths ?? [])]);
 
     const masks = { motions, quality, subject };
-    if (options.lookAhead !== 'all') await KeptClip.clear(output);
-    else kept = await KeptClip.open(segmenter, output, frames, { ...masks, maxSize, range: frames.range, software }, markUnknown);
+    if (options.lookAhead !== 'all') await clearKept(output);
+    else kept = await keptClip(segmenter, output, frames, { ...masks, maxSize, range: frames.range, software }, markUnknown);
     const write = async (frame: ClipFrame) => {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted, show.length > 0 ? showing : undefined));
