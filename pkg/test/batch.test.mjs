@@ -276,11 +276,8 @@ describe('veronese batch VIDEO', () => {
   test('refuses what is no video', { skip }, async (t) => {
     const { path, file } = temporaryFolder(t);
     ffmpeg('-f', 'lavfi', '-i', 'sine=duration=0.1', path('sound.wav'));
-    for (const [name, sentence] of [
-      [path('none.mp4'), /file-not-found: /],
-      [file('text.mp4', 'no video'), /unreadable-video: /],
-      [path('sound.wav'), /unreadable-video: [^\n]*sound\.wav' has no pictures: there is no video stream in it\n$/],
-    ]) {
+    const cases = [[path('none.mp4'), /file-not-found: /], [file('text.mp4', 'no video'), /unreadable-video: /], [path('sound.wav'), /unreadable-video: [^\n]*sound\.wav' has no pictures: there is no video stream in it\n$/]];
+    for (const [name, sentence] of cases) {
       const { stdout, stderr } = await batch([name], { code: 1 });
       assert.match(stderr, sentence);
       assert.equal(stdout, '');

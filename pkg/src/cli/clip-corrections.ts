@@ -345,7 +345,7 @@ function editsIn(content: Record<string, unknown>, wrong: Wrong): Edits {
   const isNamed = ([number, name]: [string, unknown]) => isObjectNumber(Number(number)) && typeof name === 'string' && name !== '';
   if (!isObject(names) || !Object.entries(names).every(isNamed))
     throw wrong(`'names' must be an object with a text for each object, ${RANGE}`);
-  return content as Edits;
+  return content;
 }
 
 /** The factor by which annotations in pixels of a size are scaled, as the frames are. */

@@ -36,7 +36,7 @@ export async function keptClip(segmenter: Segmenter, output: Output, frames: Cli
     // A link would lead elsewhere.
     if (lookAt(log)?.isFile() === false) rmSync(log);
   });
-  const known = parsedJson<Key>(join(output.folder, KEY));
+  const known = parsedJson(join(output.folder, KEY)) as Key | undefined;
   for (let isNew = known?.clip !== own.clip || !lookAt(log); ; isNew = true) {
     const journal = await openFile(log).catch((thrown: unknown) => {
       const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';

@@ -42,7 +42,7 @@ const OVERLAY = 'overlay';
 /** The results of a clip of these frames, made with these settings. Methods that write throw `write-failed`. */
 export function clipStore(output: Output, frames: readonly FrameFile[], settings: ClipManifest['settings']) {
   const { folder } = output;
-  const manifest = parsedJson<ClipManifest>(join(folder, TRACKS));
+  const manifest = parsedJson(join(folder, TRACKS)) as ClipManifest | undefined;
   /** Hash of settings, and of the frames' names and contents. */
   const jobOf = (settings: unknown) =>
     sha256(JSON.stringify({ settings, frames: frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));

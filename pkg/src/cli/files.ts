@@ -134,9 +134,9 @@ export function readWritten(path: string): string | undefined {
 }
 
 /** The value in such a file of JSON. Undefined where it is missing, damaged or not ours. */
-export function parsedJson<T extends object>(path: string): T | undefined {
+export function parsedJson(path: string): unknown {
   try {
-    return JSON.parse(readWritten(path) ?? '') as T;
+    return JSON.parse(readWritten(path) ?? '');
   } catch {
     return undefined;
   }

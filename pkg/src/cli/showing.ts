@@ -13,7 +13,10 @@ import { overlay } from './overlay.js';
 /** N is the number of an object. */
 export const SHOWN = [
   ...['overlay', 'beside'].flatMap((kind) => ['mp4', 'webm', 'gif'].map((format) => `${kind}.${format}`)),
-  ...['sheet.png', 'cutout-N', 'cutout-N.webm', 'cutout-N.mov'],
+  'sheet.png',
+  'cutout-N',
+  'cutout-N.webm',
+  'cutout-N.mov',
 ];
 
 /** A file, or a folder of a picture for each frame. */

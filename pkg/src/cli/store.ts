@@ -23,7 +23,7 @@ export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay,
 
 /** The manifest in a pair's folder if it is of this job, and all images are there. */
 export function finished(folder: string, job: string, { options, grouped, overlay }: PairSettings): PairManifest | undefined {
-  const manifest = parsedJson<PairManifest>(join(folder, RESULT));
+  const manifest = parsedJson(join(folder, RESULT)) as PairManifest | undefined;
   if (manifest?.job !== job) return undefined;
   const labels = manifest.motions.map(({ label, group }) => (grouped ? group : label));
   const files = filesOfPair(labels, { overlay, confidence: options.confidence });
