@@ -204,6 +204,7 @@ describe('veronese clip --corrections', () => {
         ['{"propagate": {"f1": "none"}, "accepted": ["f2"]}', /'propagate' has 'f1', which has no annotation/],
         ['{"prompts": {"f1": 1}}', /edits\.json': 'prompts' must be a list of \{ frame, object, clicks, box \}/],
         ['{"prompts": [{"frame": "f1", "object": 3}]}', /'prompts', number 0: must have clicks, a box, or both/],
+        ['{"prompts": [{"frame": "f1", "object": 3, "box": [9, 3, 9, 9], "clicks": [[1, 2, 1]]}]}', /'prompts', number 0: has a click at 1, 2 that belongs to object 3 and is not in its box/],
         ['{"prompts": [{"frame": "f1", "object": 3, "clicks": [[96, 2, 1]]}]}', /'prompts', number 0: 'clicks' must be .*, within the frame/],
         ['{"prompts": [{"frame": "f1", "object": 3, "box": [9, 3, 9, 9]}, {"frame": "f1", "object": 3, "clicks": [[1, 2, 1]]}]}', /object 3 is annotated in 'f1' twice/],
         ['{"polygons": [{"frame": "f1", "object": 3, "points": [[1, 2], [9, 2], [9]]}]}', /'polygons', number 0: must have points, three or more \[x, y\]/],

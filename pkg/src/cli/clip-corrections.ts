@@ -320,6 +320,12 @@ async function readEdits(path: string, target: Target) {
       const prompt = scaledPrompt(entry, scale);
       if (prompt['clicks'] === undefined && prompt['box'] === undefined) throw bad('must have clicks, a box, or both');
       annotationOf(target, prompt, bad);
+      const { clicks = [], box, ...rest } = prompt as unknown as Prompt;
+      const own = clicks.filter(([, , sign]) => sign === 1);
+      if (!box && own.length === 0) throw bad(`must have a box or a click that belongs to object ${rest.object}`);
+      const [left, top, width, height] = box ?? [0, 0, Infinity, Infinity];
+      const stray = own.find(([x, y]) => x < left || x >= left + width || y < top || y >= top + height);
+      if (stray) throw bad(`has a click at ${stray[0]}, ${stray[1]} that belongs to object ${rest.object} and is not in its box`);
       return prompt as unknown as Prompt;
     }),
     /** Of polygons. */

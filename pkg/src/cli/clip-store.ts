@@ -3,32 +3,11 @@
 import { join } from 'node:path';
 import type { AnnotationNote } from '../../types/formats.js';
 import type { ClipChange, ClipTracks } from '../../types/index.js';
-import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
+import { type ClipManifest, HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { lookAt, parsedJson, sha256, writing } from './files.js';
 import { type Output, removeIfEmpty } from './output.js';
 import { jsonLine } from './pair.js';
 import { isShown, pathsOf } from './showing.js';
-
-/** The content of tracks.json. */
-export interface ClipManifest extends Omit<ClipTracks, 'notes'> {
-  version: 1;
-  width: number;
-  height: number;
-  /** Of a video: frames per second on average, and the time of each frame in seconds from the first. */
-  frameRate?: number;
-  timestamps?: number[];
-  /** Names of the frames' images. */
-  frames: string[];
-  /** Names of the frames' own files. */
-  files: string[];
-  /** The changes by corrections, where there are any. */
-  changes?: readonly ClipChange[];
-  /** What was assumed, where something was. */
-  notes?: readonly AnnotationNote[];
-  settings: { overlay: boolean; show?: readonly string[]; [name: string]: unknown };
-  /** Hash of the settings and the frames. */
-  job: string;
-}
 
 /** A frame's name, file and content, none if it cannot be read. */
 export interface FrameFile {

@@ -230,40 +230,32 @@ function lastLine(text: string): string | undefined {
 
 /** Cuts a stream of binary pixmaps into its pictures. */
 export async function* pixmaps(stream: AsyncIterable<Uint8Array>, file: string): AsyncGenerator<Uint8Array, void, undefined> {
-  let chunks: Uint8Array[] = [];
-  let held = 0;
-  let needed: number | undefined;
+  let held: Uint8Array[] = [];
+  /** Bytes that the next picture needs at least. */
+  let missing = 0;
   for await (const chunk of stream) {
-    chunks.push(chunk);
-    held += chunk.length;
-    for (;;) {
-      if (needed === undefined) {
-        if (held === 0) break;
-        chunks = [Buffer.concat(chunks)];
-        needed = lengthOf(chunks[0] as Buffer, file);
-        if (needed === undefined) break; // The header is not whole yet.
-      }
-      if (held < needed) break;
-      const all = Buffer.concat(chunks);
-      yield new Uint8Array(all.subarray(0, needed));
-      chunks = [all.subarray(needed)];
-      held -= needed;
-      needed = undefined;
+    held.push(chunk);
+    missing -= chunk.length;
+    if (missing > 0) continue;
+    let rest = Buffer.concat(held);
+    let length = lengthOf(rest, file);
+    for (; length <= rest.length; length = lengthOf(rest, file)) {
+      yield new Uint8Array(rest.subarray(0, length));
+      rest = rest.subarray(length);
     }
+    [held, missing] = [[rest], length - rest.length];
   }
-  if (held > 0) throw new VeroneseError('unreadable-video', `'${file}': the last frame is cut off`);
+  if (held.some(({ length }) => length > 0)) throw new VeroneseError('unreadable-video', `'${file}': the last frame is cut off`);
 }
 
-/** The length in bytes of the pixmap that begins here, or undefined while its header is not whole. */
-function lengthOf(bytes: Buffer, file: string): number | undefined {
+/** The length in bytes of the pixmap that begins here, or more than there is while its header is not whole. */
+function lengthOf(bytes: Buffer, file: string): number {
   const header = bytes.subarray(0, 40).toString('latin1');
   const [text, width, height] = /^P6\s(\d+)\s(\d+)\s255\s/.exec(header) ?? [];
   if (text === undefined) {
-    if (bytes.length < 40) return undefined;
-    throw new VeroneseError(
-      'unreadable-video',
-      `'${file}': ffmpeg gave something else than frames of 8 bits: ${JSON.stringify(header.slice(0, 20))}`,
-    );
+    if (bytes.length < 40) return bytes.length + 1;
+    const found = JSON.stringify(header.slice(0, 20));
+    throw new VeroneseError('unreadable-video', `'${file}': ffmpeg gave something else than frames of 8 bits: ${found}`);
   }
   const sides = [Number(width), Number(height)] as const;
   if (Math.max(...sides) > LONGEST_SIDE)
