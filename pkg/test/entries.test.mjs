@@ -29,12 +29,6 @@ describe('veronese/inline', () => {
     assert.equal(error.code, 'invalid-option');
     assert.match(error.message, /'worker'/);
   });
-
-  test('takes another module all the same', async (t) => {
-    const pool = new inline.SegmenterPool({ jobs: 1, worker, source: bytes });
-    t.after(() => pool.close());
-    assert.equal((await pool.segmentPair(...pair())).width, 64);
-  });
 });
 
 describe('veronese/slim', () => {

@@ -2,7 +2,6 @@
 // never `internal`; workers say the same as direct calls, word for word, and go on working.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
 import { after, before, describe, test } from 'node:test';
 import { inspect, isDeepStrictEqual } from 'node:util';
 import { Worker } from 'node:worker_threads';
@@ -10,20 +9,11 @@ import * as index from 'veronese';
 import * as codecs from 'veronese/codecs';
 import { VeroneseSegmenterElement } from 'veronese/element-class';
 import * as formats from 'veronese/formats';
-import * as inline from 'veronese/inline';
-import * as slim from 'veronese/slim';
-import { glue } from '../build/module/glue.js';
 import { optionsOf } from '../build/element/options.js';
 import { png } from './support/frames.mjs';
 import { temporaryFolder } from './support/program.mjs';
 import { CALLS, COMMANDS, EMPTY, FINITE, OPENINGS, OPTIONS, STREAMS, VALUES, all, checked, first, found, measurements, named, outcome, second } from './support/hostile.mjs';
 import { failure } from './support/shapes.mjs';
-import { soaking } from './support/soak.mjs';
-
-const read = (path) => readFileSync(new URL(path, import.meta.url));
-
-const { throwing, text, floats, NaN: none, 'detached bytes': detached } = VALUES;
-const SOME = { throwing, text, floats, none, detached };
 
 /** All values in one place. */
 async function everywhere(call, harmless, also = async () => {}) {
@@ -56,108 +46,57 @@ function segmenterOf() {
   };
 }
 
+/** In a worker everything is as it is directly. */
+const alike = ([direct, there], harmless) => everywhere(direct, harmless, async (value, became) => {
+  const other = await outcome(() => there(value));
+  if (!isDeepStrictEqual(other, became)) assert.fail(`in a worker: ${inspect(other)}, directly: ${inspect(became)}`);
+});
+
 describe('direct calls and workers', () => {
   const { segmenter, checkWorker } = segmenterOf();
-  for (const [place, [name, args, harmless]] of Object.entries(CALLS)) {
-    test(place, async () => {
-      await everywhere((value) => index[name](...args(value)), harmless, async (value, direct) => {
-        const there = await outcome(() => segmenter[name](...args(value)));
-        if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
-      });
-      await checkWorker();
-    });
-  }
-
-  // They have the checks in common: with npm run soak all values.
-  test('the other entries say the same', async () => {
-    await slim.init(read('../wasm/veronese_bg.wasm'));
-    await slim.initPoints(read('../wasm/points/veronese_points_bg.wasm'));
-    for (const [place, [name, args]] of Object.entries(CALLS)) {
-      for (const value of Object.values(soaking ? VALUES : SOME)) {
-        // In Node alone the entry reads files.
-        const isFile = typeof value === 'string' && value !== '' && /^segmentPair: (first|second)$/.test(place);
-        const [expected, ...others] = await Promise.all([...(isFile ? [] : [index]), slim, inline, codecs.api].map(
-          (entry) => entry[name](...args(value)).then(() => 'done', ({ name, code, message }) => `${name} ${code}: ${message}`),
-        ));
-        for (const other of others) assert.equal(other, expected, place);
-      }
-    }
-  });
-
-  test('frames are refused in the words of the core', async () => {
-    const cases = [
-      [{ data: new Uint8Array(4), width: 1, height: 1 }, second],
-      [{ data: new Uint8Array(4 * 16 * 4097), width: 4097, height: 16 }, second],
-      [{ ...first, data: new Uint8Array(5) }, second],
-      [first, { ...second, data: new Uint8Array(16 * 16 * 3) }],
-    ];
-    await index.init();
-    await glue.instantiate(new WebAssembly.Module(read('../wasm/veronese_bg.wasm')));
-    for (const frames of cases) {
-      const { code, message } = await failure(index.segmentPair(...frames));
-      // The package knows a remedy, too.
-      assert.throws(() => glue.segmentPair(...frames, {}, () => {}), { code, message: message.replace(/; option 'maxSize'.*/, '') });
-    }
-  });
+  for (const [place, [name, args, harmless]] of Object.entries(CALLS)) test(place, () => alike([index, segmenter].map((calls) => (value) => calls[name](...args(value))), harmless));
+  test('the worker is the same', checkWorker);
 });
 
 describe('streams, directly and in workers', () => {
   const { segmenter, checkWorker } = segmenterOf();
-  for (const [place, [args, harmless]] of Object.entries(STREAMS)) {
-    test(place, async () => {
-      await everywhere((value) => all(index.segmentStream(...args(value))), harmless, async (value, direct) => {
-        const there = await outcome(() => all(segmenter.segmentStream(...args(value))));
-        if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
-      });
-      await checkWorker();
-    });
-  }
+  const calls = [index.segmentStream, (...args) => segmenter.segmentStream(...args)];
+  for (const [place, [args, harmless]] of Object.entries(STREAMS)) test(place, () => alike(calls.map((call) => (value) => all(call(...args(value)))), harmless));
+  test('the worker is the same', checkWorker);
 });
 
-describe('clips, directly and in workers', () => {
-  const { segmenter, checkWorker } = segmenterOf();
+describe('clips', () => {
   for (const [place, [args, harmless]] of Object.entries(OPENINGS)) {
     test(`openClip: ${place}`, async (t) => {
       const [{ path }, before] = [temporaryFolder(t), process.cwd()];
       process.chdir(path('.'));
       t.after(() => process.chdir(before));
+      await everywhere(async (value) => (await index.openClip(...args(value))).close(), harmless);
+    });
+  }
+
+  // They are checked where they are called: in a worker nothing is other.
+  let clip;
+  before(async () => {
+    clip = await index.openClip([first, second]);
+    await clip.segment({ quality: 'fast' });
+    await clip.annotate({ frame: 0, object: 1, mask: new Uint8Array(256).fill(1, 0, 64) });
+  });
+  after(() => clip.close());
+  for (const [place, [name, args, harmless]] of Object.entries(COMMANDS)) {
+    test(place, async () => {
+      const { undo } = clip.steps;
       await everywhere(async (value) => {
-        for (const open of [index.openClip, (...given) => segmenter.openClip(...given)]) {
-          const clip = await open(...args(value));
-          await clip.close();
-        }
+        const result = await clip[name](...args(value));
+        while (clip.steps.undo > undo) await clip.undo();
+        return result;
       }, harmless);
+      assert.deepEqual([clip.steps.undo, clip.steps.waiting], [undo, 0]);
     });
   }
-
-  for (const where of ['direct', 'in a worker']) {
-    describe(where, () => {
-      let clip;
-      before(async () => {
-        clip = await (where === 'direct' ? index.openClip([first, second]) : segmenter.openClip([first, second]));
-        await clip.segment({ quality: 'fast' });
-        await clip.annotate({ frame: 0, object: 1, mask: new Uint8Array(256).fill(1, 0, 64) });
-      });
-      after(() => clip.close());
-      for (const [place, [name, args, harmless]] of Object.entries(COMMANDS)) {
-        test(place, async () => {
-          const { undo } = clip.steps;
-          await everywhere(async (value) => {
-            const result = await clip[name](...args(value));
-            while (clip.steps.undo > undo) await clip.undo();
-            return result;
-          }, harmless);
-          assert.deepEqual([clip.steps.undo, clip.steps.waiting], [undo, 0]);
-        });
-      }
-    });
-  }
-
-  test('the worker is the same', checkWorker);
 });
 
 describe('segmentPairs and pools', () => {
-
   test('pairs that are none', () => {
     const iterable = (value) => [VALUES['empty list'], VALUES['list of null'], VALUES['sparse list']].includes(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView)) || value === VALUES.map || typeof value === 'string';
     return everywhere((value) => all(index.segmentPairs(iterable(value) ? 5 : value, { jobs: 1 })), []);
@@ -182,20 +121,15 @@ describe('segmentPairs and pools', () => {
     }
   });
 
-  test('new SegmenterPool', async () => {
-    await everywhere((value) => new index.SegmenterPool(value), OPTIONS);
-    await everywhere((value) => new index.SegmenterPool({ jobs: value }), ['undefined', 'one']);
-    await everywhere((value) => new index.SegmenterPool({ worker: value }), ['undefined', 'function']);
-    await everywhere((value) => new index.SegmenterPool({ nonsense: value }), ['undefined']);
-  });
+  for (const [name, make] of [['SegmenterPool', (options) => new index.SegmenterPool(options)], ['Segmenter', (options) => new index.Segmenter(undefined, options)]]) {
+    test(`new ${name}`, async () => {
+      await everywhere(make, OPTIONS);
+      await everywhere((worker) => make({ worker }), ['undefined', 'function']);
+      await everywhere((nonsense) => make({ nonsense }), ['undefined']);
+    });
+  }
 
-  test('new Segmenter', async () => {
-    await everywhere((value) => new index.Segmenter(undefined, value), OPTIONS);
-    await everywhere((value) => new index.Segmenter(undefined, { worker: value }), ['undefined', 'function']);
-    await everywhere((value) => new index.Segmenter(undefined, { nonsense: value }), ['undefined']);
-  });
-
-  test('a source, a source of points, and what a function makes instead of a worker', async () => {
+  test('jobs, a source, a source of points, and what a function makes instead of a worker', async () => {
     const using = async (segmenter, call) => {
       try {
         return await call(segmenter);
@@ -204,6 +138,7 @@ describe('segmentPairs and pools', () => {
       }
     };
     const segment = (segmenter) => segmenter.segmentPair(first, second);
+    await everywhere((jobs) => new index.SegmenterPool({ jobs }), ['undefined', 'one']);
     await everywhere((value) => using(new index.Segmenter(value), segment), ['undefined', 'null']);
     await everywhere((value) => using(new index.Segmenter(undefined, { points: value }), (segmenter) => segmenter.fitMotions(measurements)), ['undefined', 'null']);
     await everywhere((value) => using(new index.Segmenter(undefined, { worker: () => value }), segment), []);
@@ -256,20 +191,6 @@ describe('pictures and labels', () => {
     }
     assert.deepEqual(optionsOf(() => ''), { subject: true }, 'what is set without a value is on, or as if it were not there');
     assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'name', 'quality', 'required', 'second', 'src', 'subject']);
-  });
-});
-
-describe('init', () => {
-  test('a source that is none', async () => {
-    // Instances of their own, which have loaded nothing yet.
-    const fresh = async (call) => call(await import(`../dist/slim.js?${Math.random()}`));
-    for (const value of Object.values(VALUES)) {
-      for (const name of ['init', 'initPoints']) {
-        const error = await failure(fresh((entry) => entry[name](value)));
-        assert.equal(error.name, 'VeroneseError');
-        assert.equal(checked(error).code, 'wasm-load-failed');
-      }
-    }
   });
 });
 

@@ -37,21 +37,16 @@ describe('init takes', () => {
     'a compiled module': () => new WebAssembly.Module(bytes),
     'a Response': () => new Response(bytes),
     'a promise of any': () => Promise.resolve(bytes),
+    'a URL of a server, whatever type that says': (t) => serving(t, 200, 'text/plain', bytes),
     'a data: URL': () => `data:application/wasm;base64,${Buffer.from(bytes).toString('base64')}`,
   };
   for (const [title, source] of Object.entries(sources)) {
-    test(title, async () => {
+    test(title, async (t) => {
       const api = fresh();
-      await api.init(source());
+      await api.init(await source(t));
       checkPair(await api.segmentPair(...pair()), 64, 48);
     });
   }
-
-  test('a URL of a server, whatever type that says', async (t) => {
-    const api = fresh();
-    await api.init(await serving(t, 200, 'text/plain', bytes));
-    checkPair(await api.segmentPair(...pair()), 64, 48);
-  });
 });
 
 describe('init refuses', () => {
@@ -64,24 +59,19 @@ describe('init refuses', () => {
     'the module of measurements': [readFileSync(new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url)), /no segmentPair/],
     'a module that is not ours': [Uint8Array.of(0, 0x61, 0x73, 0x6d, 1, 0, 0, 0), /./],
     'a number': [42, /source must be/],
+    'an answer that is an error': [(t) => serving(t, 404, 'text/html', '<!doctype html>'), /404/],
     'a promise that is rejected': [() => Promise.reject(new Error('no network')), /no network/],
   };
   for (const [title, [source, reason]] of Object.entries(sources)) {
-    test(title, async () => {
+    test(title, async (t) => {
       const api = fresh(pathToFileURL(path));
-      const error = await failure(api.init(typeof source === 'function' ? source() : source));
+      const error = await failure(api.init(typeof source === 'function' ? source(t) : source));
       assert.equal(error.code, 'wasm-load-failed', error.stack);
       assert.match(error.message, reason);
       // and a later call tries again, from the ordinary place
       checkPair(await api.segmentPair(...pair()), 64, 48);
     });
   }
-
-  test('an answer that is an error', async (t) => {
-    const error = await failure(fresh().init(await serving(t, 404, 'text/html', '<!doctype html>')));
-    assert.equal(error.code, 'wasm-load-failed');
-    assert.match(error.message, /404/);
-  });
 });
 
 test('init may be called twice and at once; the first source stays', async () => {

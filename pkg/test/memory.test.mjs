@@ -24,50 +24,36 @@ function segment([first, second], options) {
 }
 
 describe('after some calls, further ones take no more memory', () => {
-  const small = pair();
-  const larger = pair({ width: 160, height: 120 });
-  const { positions, derivatives } = points(320, 1, 0.5);
-  const calls = {
-    'with everything that can be asked for': () => {
-      segment(small, { quality: 'best', confidence: true, markUnknown: true });
-    },
-    'calls that are refused': () => {
-      assert.throws(() => segment(larger, { quality: 'good' }), { code: 'invalid-option' });
-      assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
-    },
-  };
-  for (const [title, call] of Object.entries(calls)) {
-    test(title, async () => {
-      const size = await freshMemory();
-      // The allocator needs some calls of different needs in turn until its free pieces fit all of them.
-      for (let k = 0; k < 24; k++) call();
-      const settled = size();
-      for (let k = 0; k < (soaking ? 48 : 24); k++) call();
-      assert.equal(size(), settled);
-    });
+  /** Does all rounds of calls; after the first ones the memory has its size. */
+  async function staysAfter(first, rounds, round, ...of) {
+    const size = await freshMemory(...of);
+    for (let k = 0; k < first; k++) round();
+    const settled = size();
+    for (let k = 0; k < rounds; k++) round();
+    assert.equal(size(), settled);
   }
+  const [small, larger] = [pair(), pair({ width: 160, height: 120 })];
+
+  // The allocator needs some calls of different needs in turn until its free pieces fit all of them.
+  test('with everything that can be asked for', () => staysAfter(24, soaking ? 48 : 24, () => segment(small, { quality: 'best', confidence: true, markUnknown: true })));
+
+  test('calls that are refused', () => staysAfter(24, soaking ? 48 : 24, () => {
+    assert.throws(() => segment(larger, { quality: 'good' }), { code: 'invalid-option' });
+    assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
+  }));
 
   test('many pairs of different sizes and motions', async () => {
-    const size = await freshMemory();
     const sizes = [[64, 48], [160, 120], [96, 128], [200, 150]];
     const pairs = Array.from({ length: soaking ? 20 : 8 }, (_, k) => {
       const [width, height] = sizes[k % sizes.length];
       return pair({ width, height, background: [k % 3, (k % 5) / 4], square: [2 - (k % 7), 1 + (k % 4)] });
     });
-    const round = () => pairs.forEach((of, k) => segment(of, { quality: k % 3 === 0 ? 'best' : 'fast', confidence: k % 2 === 0 }));
-    for (let k = 0; k < 3; k++) round();
-    const settled = size();
-    for (let k = 3; k < (soaking ? 100 : 6); k++) round();
-    assert.equal(size(), settled);
+    await staysAfter(3, soaking ? 97 : 3, () => pairs.forEach((of, k) => segment(of, { quality: k % 3 === 0 ? 'best' : 'fast', confidence: k % 2 === 0 })));
   });
 
-  test('measurements', async () => {
-    const size = await freshMemory(pointsGlue, pointsModule);
-    const call = () => pointsGlue.fitMotions(positions, derivatives, {}, () => {});
-    for (let k = 0; k < 4; k++) call();
-    const settled = size();
-    for (let k = 0; k < 24; k++) call();
-    assert.equal(size(), settled);
+  test('measurements', () => {
+    const { positions, derivatives } = points(320, 1, 0.5);
+    return staysAfter(4, 24, () => pointsGlue.fitMotions(positions, derivatives, {}, () => {}), pointsGlue, pointsModule);
   });
 });
 

@@ -10,7 +10,6 @@ import { segmentPair, segmentStream, Segmenter, SegmenterPool, VeroneseError } f
 import { streamOf } from '../build/calls/stream.js';
 import { frame, pair } from './support/frames.mjs';
 import { all, checkMatrix, failure, timeless, until } from './support/shapes.mjs';
-import { cases } from './support/soak.mjs';
 
 const COUNT = 7;
 const SIZE = { width: 64, height: 48 };
@@ -87,48 +86,24 @@ describe('segmentStream', () => {
     assert.deepEqual(background, given.slice(0, -1).flatMap(({ index, background }) => (background ? [{ frame: index, matrix: background }] : [])));
   });
 
-  test('takes iterables, promises and async iterables', async () => {
+  test('takes iterables, promises and async iterables; asks for frames only when the reader waits for one, and lets the source reuse its buffer', async () => {
     const expected = await all(segmentStream(frames(), FAST));
     assert.deepEqual(await all(segmentStream(frames().map((one) => Promise.resolve(one)), FAST)), expected);
     assert.deepEqual(await all(segmentStream((async function* () { yield* frames(); })(), FAST)), expected);
-  });
-
-  test('waits for 8 frames, unless told otherwise', async () => {
-    const taken = async (options) => {
-      let count = 0;
-      const list = frames(12).map((one) => () => ((count += 1), one));
-      const stream = (function* () { for (const one of list) yield one(); })();
-      const clip = segmentStream(stream, { quality: 'fast', ...options });
-      await clip.next();
-      await clip.return();
-      return count;
-    };
-    // One more is read while the last of them is worked on.
-    assert.equal(await taken({}), 9 + 1);
-    assert.equal(await taken({ lookAhead: 0 }), 1 + 1);
-    assert.equal(await taken({ lookAhead: 2 }), 3 + 1);
-  });
-
-  test('asks for frames only when the reader waits for one, and lets the source reuse its buffer', async () => {
     const buffer = frame(0, SIZE);
-    let asked = 0;
-    const reusing = (function* () {
-      for (const one of frames()) {
-        asked += 1;
-        buffer.data.set(one.data);
-        yield buffer;
-      }
-    })();
-    const clip = segmentStream(reusing, FAST);
-    // While another one is read to its end.
-    const expected = await all(segmentStream(frames(), FAST));
-    assert.equal(asked, 0);
-    const given = [(await clip.next()).value];
-    assert.equal(asked, 2 + 1);
-    await all(segmentStream(frames(2), FAST));
-    assert.equal(asked, 2 + 1);
-    given.push(...(await all(clip)));
-    assert.deepEqual(given, expected);
+    const reusing = (function* () { for (const one of frames()) yield (buffer.data.set(one.data), buffer); })();
+    assert.deepEqual(await all(segmentStream(reusing, FAST)), expected);
+    // It waits for 8 frames unless told otherwise, and one more is read while the last of them is worked on.
+    for (const [options, count] of [[{}, 9], [{ lookAhead: 0 }, 1], [{ lookAhead: 2 }, 3]]) {
+      const taken = source(frames(12));
+      const clip = segmentStream(taken.frames, { quality: 'fast', ...options });
+      assert.equal(taken.count, 0);
+      await clip.next();
+      assert.equal(taken.count, count + 1);
+      await all(segmentStream(frames(2), FAST));
+      assert.equal(taken.count, count + 1);
+      await clip.return();
+    }
   });
 
   test('reads one frame while another is worked on, and waits neither for it nor for more', async () => {
@@ -152,17 +127,11 @@ describe('segmentStream', () => {
     await clip.return();
   });
 
-  test('transfers frames where it is asked to', async () => {
-    const list = frames(2);
-    await all(segmentStream(list, { ...FAST, transfer: true }));
-    assert.deepEqual(list.map(({ data }) => data.length), [0, 0]);
-  });
-
-  test('reports progress', async () => {
-    const progress = [];
-    const onProgress = (one) => progress.push(one);
-    await all(segmentStream(frames(2), { ...FAST, onProgress }));
+  test('reports progress, and transfers frames where it is asked to', async () => {
+    const [list, progress] = [frames(2), []];
+    await all(segmentStream(list, { ...FAST, transfer: true, onProgress: (one) => progress.push(one) }));
     assert.deepEqual(progress, [{ frame: 0 }, { frame: 1 }]);
+    assert.deepEqual(list.map(({ data }) => data.length), [0, 0]);
   });
 
   test('no frames and one frame are no clip, but of a live stream, whose frames are answered as they come', async () => {
@@ -173,15 +142,6 @@ describe('segmentStream', () => {
       }
       const live = await all(segmentStream(frames(count), { lookAhead: 0 }));
       assert.deepEqual(live.map(({ objects, background }) => [objects, background]), Array(count).fill([[], null]));
-    }
-  });
-
-  test('several clips in one thread do not disturb each other', async () => {
-    const expected = await all(segmentStream(frames(4), FAST));
-    const [one, other] = [segmentStream(frames(4), FAST), segmentStream(frames(4), FAST)];
-    for (const frame of expected) {
-      assert.deepEqual((await one.next()).value, frame);
-      assert.deepEqual((await other.next()).value, frame);
     }
   });
 
@@ -196,21 +156,42 @@ describe('segmentStream', () => {
     assert.deepEqual([error.code, /lost/.test(error.message)], ['internal', true]);
     assert.deepEqual([first, ...(await all(next))], await all(segmentStream(frames(), FAST)));
   });
+
+  test('a clip whose source throws gives first what there was', async () => {
+    const mine = new Error('mine');
+    const failing = async function* () {
+      yield* frames(3);
+      throw mine;
+    };
+    assert.deepEqual(await until(segmentStream(failing(), FAST)), { given: [0, 1, 2], error: mine });
+  });
+
+  test('a clip with a frame that does not fit gives first those before it, and closes its source', async () => {
+    const cases = [
+      ['frame-size-mismatch', frame(0, { width: 70, height: 48 })],
+      ['invalid-input', { ...SIZE, data: 'text' }],
+      ['invalid-input', undefined],
+      ['frame-size-unsupported', { width: 1, height: 1, data: new Uint8Array(4) }],
+      ['pixel-count-mismatch', { ...SIZE, data: new Uint8Array(4) }],
+    ];
+    for (const [code, bad] of cases) {
+      const taken = source([...frames(3), bad, ...frames(3)]);
+      const { given, error } = await until(segmentStream(taken.frames, FAST));
+      assert.ok(error instanceof VeroneseError);
+      assert.deepEqual([given, error.code, taken.count, taken.closed], [[0, 1, 2], code, 4, true]);
+      assert.match(error.message, /frame/);
+    }
+    assert.match((await until(segmentStream([frame(0, SIZE), {}], FAST))).error.message, /^frame 1 /);
+  });
+
+  test('refuses options before it takes anything', async () => {
+    const taken = source(frames(2));
+    const { error } = await until(segmentStream(taken.frames, { lookAhead: 9 }));
+    assert.deepEqual([error.code, /lookAhead/.test(error.message), taken.count], ['invalid-option', true, 0]);
+  });
 });
 
-/** Both ways to segment a clip. */
-const WAYS = [
-  ['directly', () => segmentStream],
-  [
-    'in a worker',
-    (t) => {
-      const { segmenter: made } = segmenter(t);
-      return (...args) => made.segmentStream(...args);
-    },
-  ],
-];
-
-for (const [way, make] of WAYS) {
+for (const [way, make] of [['directly', () => segmentStream], ['in a worker', (t) => (...args) => segmenter(t).segmenter.segmentStream(...args)]]) {
   describe(`a clip ${way}`, () => {
     test('is cancelled between frames, and closes its source', async (t) => {
       const controller = new AbortController();
@@ -224,8 +205,7 @@ for (const [way, make] of WAYS) {
       })());
       assert.deepEqual([given, error.code, error.cause, taken.closed], [[0, 1], 'cancelled', 'enough', true]);
       const before = source(frames());
-      const early = await until(make(t)(before.frames, { signal: AbortSignal.abort() }));
-      assert.deepEqual([early.error.code, before.count], ['cancelled', 0]);
+      assert.deepEqual([(await until(make(t)(before.frames, { signal: AbortSignal.abort() }))).error.code, before.count], ['cancelled', 0]);
     });
 
     test('is cancelled by a timer while a source without pauses feeds it, and while a source lets it wait', async (t) => {
@@ -266,57 +246,18 @@ for (const [way, make] of WAYS) {
   });
 }
 
-// Of this the way changes nothing.
-for (const [way, make] of cases(WAYS.slice(0, 1), WAYS.slice(1))) {
-  describe(`a clip ${way}`, () => {
-    test('whose source throws gives first what there was', async (t) => {
-      const mine = new Error('mine');
-      const failing = async function* () {
-        yield* frames(3);
-        throw mine;
-      };
-      assert.deepEqual(await until(make(t)(failing(), FAST)), { given: [0, 1, 2], error: mine });
-    });
-
-    test('with a frame that does not fit gives first those before it, and closes its source', async (t) => {
-      const cases = [
-        ['frame-size-mismatch', frame(0, { width: 70, height: 48 })],
-        ['invalid-input', { ...SIZE, data: 'text' }],
-        ['invalid-input', undefined],
-        ['frame-size-unsupported', { width: 1, height: 1, data: new Uint8Array(4) }],
-        ['pixel-count-mismatch', { ...SIZE, data: new Uint8Array(4) }],
-      ];
-      for (const [code, bad] of cases) {
-        const taken = source([...frames(3), bad, ...frames(3)]);
-        const { given, error } = await until(make(t)(taken.frames, FAST));
-        assert.ok(error instanceof VeroneseError);
-        assert.deepEqual([given, error.code, taken.count, taken.closed], [[0, 1, 2], code, 4, true]);
-        assert.match(error.message, /frame/);
-      }
-      assert.match((await until(make(t)([frame(0, SIZE), {}], FAST))).error.message, /^frame 1 /);
-    });
-
-    test('refuses options and frames before it takes anything', async (t) => {
-      const cases = [
-        [{ lookAhead: 9 }, /lookAhead/],
-        [{ before: frame(0) }, /there is no option 'before'/],
-        [{ signal: {} }, /signal/],
-      ];
-      for (const [options, message] of cases) {
-        const taken = source(frames(2));
-        const { error } = await until(make(t)(taken.frames, options));
-        assert.deepEqual([error.code, taken.count], ['invalid-option', 0]);
-        assert.match(error.message, message);
-      }
-    });
-  });
-}
-
 describe('Segmenter.segmentStream', () => {
-  test('gives the same bits as a direct call, in one worker', async (t) => {
+  test('gives the same bits as a direct call, in one worker, and one may be in the loop of another', async (t) => {
     const counted = segmenter(t);
-    const [there, here] = [counted.segmenter.segmentStream(frames(), FAST), segmentStream(frames(), FAST)];
-    assert.deepEqual(await all(there), await all(here));
+    const here = segmentStream(frames(), FAST);
+    const expected = await all(here);
+    const there = counted.segmenter.segmentStream(frames(), FAST);
+    const given = [];
+    for await (const frame of there) {
+      given.push(frame);
+      if (frame.index === 0) assert.deepEqual(await all(counted.segmenter.segmentStream(frames(), FAST)), expected);
+    }
+    assert.deepEqual(given, expected);
     assert.deepEqual(there.tracks(), here.tracks());
     assert.equal(counted.started, 1);
   });
@@ -346,36 +287,19 @@ describe('Segmenter.segmentStream', () => {
     assert.equal(counted.started, 1, 'one worker did all of it');
   });
 
-  test('several streams share a worker, and one may be in the loop of another', async (t) => {
-    const { segmenter: made } = segmenter(t);
-    const expected = await all(segmentStream(frames(3), FAST));
-    const given = [];
-    for await (const frame of made.segmentStream(frames(3), FAST)) {
-      given.push(frame);
-      if (frame.index === 0) assert.deepEqual(await all(made.segmentStream(frames(3), FAST)), expected);
-    }
-    assert.deepEqual(given, expected);
-  });
-
   test('a clip that was dropped after a frame gives its memory back', { timeout: 120_000 }, async (t) => {
     setFlagsFromString('--expose-gc');
     const collect = runInNewContext('gc');
     // The caller keeps nothing of the clip.
     const drop = async (segment) => void (await segment(frames(3), FAST).next());
-    const collectUntil = async (isFreed) => {
-      while (!isFreed()) {
-        t.signal.throwIfAborted();
-        collect();
-        await setImmediate();
-      }
-    };
     const calls = [];
-    const perform = async ({ call }) => {
-      calls.push(call);
-      return { index: 0, objects: [], background: null };
-    };
+    const perform = async ({ call }) => (calls.push(call), { index: 0, objects: [], background: null });
     await drop((...args) => streamOf(...args, () => ({ perform, release: () => calls.push('release') })));
-    await collectUntil(() => calls.includes('release'));
+    while (!calls.includes('release')) {
+      t.signal.throwIfAborted();
+      collect();
+      await setImmediate();
+    }
     assert.deepEqual(calls, ['beginStream', 'pushStream', 'finishStream', 'release']);
   });
 

@@ -73,7 +73,8 @@ describe('a task that gives way in the pool', () => {
   });
 
   test('is never begun if another comes while the module loads, and waits behind all others', async () => {
-    const { promise, resolve } = Promise.withResolvers?.() ?? deferred();
+    let resolve;
+    const promise = new Promise((done) => (resolve = done));
     const { pool, requests, reply } = told({ supplied: promise });
     const rest = pool.rest('rest');
     const first = pool.run('first');
@@ -112,10 +113,7 @@ test('a call ends the warm-up of its worker and gives the same bits; so does a c
   for await (const { index } of segmenter.segmentStream(pair(), { quality: 'fast' })) indices.push(index);
   await again;
   assert.deepEqual(indices, [0, 1]);
+  const closed = failure(segmenter.warmUp());
+  segmenter.close();
+  assert.equal((await closed).code, 'cancelled');
 });
-
-function deferred() {
-  const made = {};
-  made.promise = new Promise((resolve, reject) => Object.assign(made, { resolve, reject }));
-  return made;
-}

@@ -2,23 +2,81 @@
 
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
+import type { Format } from '../../types/formats.js';
 import { FRAME_RATES, LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
+import { FORMATS, isFormat } from '../formats/encode.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
 import { BACK, type CommandName, COMMANDS, isCommand, meant, type Option, type OptionName, OPTIONS, optionsOf } from './commands.js';
-import type { Range } from './sequence.js';
 import { type Shown, SHOWN, shownOf } from './showing.js';
-import type { Format } from '../../types/formats.js';
-import { FORMATS, isFormat } from '../formats/encode.js';
 
 /** Shortest side of a frame, and largest look-ahead, as in the core. */
 const SHORTEST_SIDE = 16;
 const LONGEST_LOOK_AHEAD = 8;
 
-/** The reader of arguments of each command. */
-const READ = { pair, batch, clip, convert, points };
+const EXACT = /^\d+$/;
 
-type Values = ReturnType<typeof parsed>['values'];
+/** Reads a value; undefined where it is not what is wanted, in words. */
+function reader<const T>(wanted: string, read: (text: string) => T | undefined) {
+  return (text: string, name: string): T => {
+    const value = read(text);
+    if (value !== undefined) return value;
+    throw invalid(name, wanted, text);
+  };
+}
+
+const within = (pattern: RegExp, least: number, most: number) => (text: string) =>
+  pattern.test(text) && Number(text) >= least && Number(text) <= most ? Number(text) : undefined;
+const whole = (least: number, most: number) => reader(`a whole number from ${least} to ${most}`, within(EXACT, least, most));
+const decimal = (least: number, most: number) =>
+  reader(`a number from ${least} to ${most}, in digits`, within(/^\d+(\.\d+)?$/, least, most));
+const choice = <const T extends string>(...words: T[]) =>
+  reader(words.map((word) => `'${word}'`).join(' or '), (text) => words.find((word) => word === text));
+const index = reader('the number of a frame, from 0', within(/^\d{1,9}$/, 0, Infinity));
+
+/** The readers of options with values. */
+const READERS = {
+  motions: reader("'auto' or a whole number from 1 to 10", (text) => (text === 'auto' ? text : within(/^[1-9]\d?$/, 1, 10)(text))),
+  quality: choice('fast', 'best'),
+  method: choice('paper', 'best'),
+  seed: whole(0, Number.MAX_SAFE_INTEGER),
+  every: whole(1, 1_000_000),
+  'look-ahead': whole(0, LONGEST_LOOK_AHEAD),
+  levels: reader("'exact' or a level from 1 to 65535", (text) => (text === 'exact' ? text : within(EXACT, 1, 65_535)(text))),
+  'first-frame': choice('0', '1'),
+  show: (text: string): Shown[] =>
+    listed(text, (name) => shownOf(name) ?? missing('show', `nothing is known as '${name}'`, name, SHOWN, 'known')),
+  'max-size': whole(SHORTEST_SIDE, LONGEST_SIDE),
+  jobs: whole(1, MOST_JOBS),
+  /** The part of all pairs to process is counted from 0. */
+  shard: reader("'I/N', part I from 1 to N of N parts", (text) => {
+    const [, part = 0, of = 0] = (/^(\d{1,9})\/(\d{1,9})$/.exec(text) ?? []).map(Number);
+    return part >= 1 && part <= of ? { index: part - 1, of } : undefined;
+  }),
+  to: (text: string): Format[] | typeof BACK => {
+    if (text === BACK) return BACK;
+    if (text.split(',').includes(BACK)) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
+    const known = Object.keys(FORMATS);
+    return listed(text, (name) => (isFormat(name) ? name : missing('to', `there is no format '${name}'`, name, known, 'the formats')));
+  },
+  tolerance: decimal(0, LONGEST_SIDE),
+  from: index,
+  until: index,
+  shapes: choice('polygon', 'box'),
+  'frame-rate': decimal(FRAME_RATES.least, FRAME_RATES.most),
+};
+
+type Texts = ReturnType<typeof parsed>['values'];
+type Camel<name extends string> = name extends `${infer one}-${infer more}` ? `${one}${Capitalize<Camel<more>>}` : name;
+/** The values by names as `lookAhead`. */
+type Values = {
+  [name in OptionName as Camel<name>]: name extends keyof typeof READERS
+    ? ReturnType<(typeof READERS)[name]> | Extract<Texts[name], undefined>
+    : Texts[name];
+};
+
+/** What each command makes of its values. */
+const READ = { pair, batch, clip, convert, points };
 
 export type PairCommand = ReturnType<typeof pair>;
 export type PointsCommand = ReturnType<typeof points>;
@@ -52,14 +110,12 @@ export function parseCommand(args: string[]): Command {
     if (value === '') throw valueOf(option, command);
   }
   try {
-    return {
-      ...READ[command](
-        values,
-        files,
-        given.map((option) => option.name),
-      ),
-      quiet: values.quiet,
-    };
+    const entries = Object.entries(values).map(([name, value]) => {
+      const read = READERS[name as keyof typeof READERS] as ((text: string, name: string) => unknown) | undefined;
+      return [name.replace(/-(.)/g, (_, letter: string) => letter.toUpperCase()), read ? read(value as string, name) : value];
+    });
+    const names = given.map((option) => option.name);
+    return READ[command](Object.fromEntries(entries) as Values, files, names);
   } catch (thrown) {
     if (!(thrown instanceof VeroneseError) || thrown.code !== 'usage') throw thrown;
     throw usage(`${thrown.message}${hint(command)}`);
@@ -68,134 +124,65 @@ export function parseCommand(args: string[]): Command {
 
 function commandNamed(name: string): CommandName {
   if (isCommand(name)) return name;
-  throw usage(
-    `there is no command '${name}'${question(name === 'video' ? 'batch' : meant(name, Object.keys(COMMANDS))) ?? hint(undefined)}`,
-  );
+  const word = name === 'video' ? 'batch' : meant(name, Object.keys(COMMANDS));
+  throw usage(`there is no command '${name}'${question(word) ?? hint(undefined)}`);
 }
 
-function points(values: Values, files: string[]) {
+function points({ quiet, motions, seed, method }: Values, files: string[]) {
   const [file] = exactly(1, files, "'points' takes one file") as [string];
-  const options = { motions: motions(values.motions), seed: seed(values.seed), method: choice('method', values.method, 'paper', 'best') };
-  return { name: 'points' as const, file, options };
+  return { name: 'points' as const, quiet, file, options: { motions, seed, method } };
 }
 
 function convert(values: Values, files: string[], given: readonly string[]) {
-  const { to, out, clip, grouped, background, image, video, force, 'first-frame': first } = values;
+  const { to, out, from, until, firstFrame } = values;
   const [folder] = exactly(1, files, "'convert' takes one folder") as [string];
   if (to === undefined) throw usage("'convert' needs '--to FORMATS'");
-  const back = to.split(',').includes(BACK);
+  const back = to === BACK;
   for (const option of given) {
     const isOfBack = ['clip', 'levels', 'first-frame'].includes(option);
     if (back ? isOfBack || ['to', 'out', 'force', 'quiet'].includes(option) : !isOfBack) continue;
     throw usage(back ? `'--to ${BACK}' has no option '--${option}'` : `'--${option}' needs '--to ${BACK}'`);
   }
   if (back) {
-    if (to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
     if (out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
-    const firstFrame = first === undefined ? undefined : choice('first-frame', first, '0', '1');
-    return {
-      name: BACK,
-      source: folder,
-      out,
-      clip,
-      force,
-      levels: levels(values.levels),
-      firstFrame: firstFrame && (Number(firstFrame) as 0 | 1),
-    } as const;
+    return { ...values, name: BACK, source: folder, out, firstFrame: firstFrame && (Number(firstFrame) as 0 | 1) } as const;
   }
-  const { shapes, 'frame-rate': rate } = values;
-  const settings = {
-    tolerance: decimal('tolerance', values.tolerance),
-    range: range(values.from, values.until),
-    shapes: shapes === undefined ? undefined : choice('shapes', shapes, 'polygon', 'box'),
-    frameRate: frameRate(rate),
-  };
-  return { name: 'convert' as const, folder, to: formats(to), ...settings, grouped, background, image, video, out, force };
+  if (until !== undefined && until < from) throw invalid('until', `a frame from ${from}, where '--from' is`, String(until));
+  return { ...values, name: 'convert' as const, folder, to, range: { from, ...(until !== undefined && { until }) } };
 }
 
-function clip(values: Values, files: string[]) {
-  const {
-    list,
-    out,
-    overlay,
-    masks,
-    corrections,
-    force,
-    'look-ahead': lookAhead,
-    'allow-damaged': allowDamaged,
-    'frame-rate': rate,
-  } = values;
-  checkFrames('clip', files, list);
+function clip(values: Values, frames: string[]) {
+  const { list, out, masks, corrections, levels, motions, quality, lookAhead = 'all' as const, markUnknown, subject, show, jobs } = values;
+  checkFrames('clip', frames, list);
   if (out === undefined) throw usage("'clip' needs '--out DIR'");
-  const options = {
-    motions: motions(values.motions),
-    quality: quality(values),
-    lookAhead: lookAhead === undefined ? ('all' as const) : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
-    markUnknown: values['mark-unknown'],
-    subject: values.subject,
-  };
-  if (lookAhead !== undefined && (masks ?? corrections) !== undefined)
+  const isAnnotated = masks !== undefined || corrections !== undefined;
+  if (lookAhead !== 'all' && isAnnotated)
     throw usage("'--look-ahead' goes without '--masks' and '--corrections', whose numbers are those of the whole clip");
-  if (rate !== undefined && values.show === undefined) throw usage("'--frame-rate' needs '--show'");
-  const shared = {
-    every: every(values.every),
-    jobs: jobs(values.jobs, availableParallelism()),
-    show: shown(values.show),
-    frameRate: frameRate(rate),
-    maxSize: maxSize(values['max-size']),
-  };
-  if (values.levels !== undefined && masks === undefined && corrections === undefined)
-    throw usage("'--levels' needs '--masks' or '--corrections'");
-  return {
-    name: 'clip' as const,
-    frames: files,
-    list,
-    masks,
-    corrections,
-    levels: levels(values.levels),
-    ...shared,
-    options,
-    overlay,
-    allowDamaged,
-    out,
-    force,
-  };
+  if (values.frameRate !== undefined && show === undefined) throw usage("'--frame-rate' needs '--show'");
+  if (levels !== undefined && !isAnnotated) throw usage("'--levels' needs '--masks' or '--corrections'");
+  const options = { motions, quality, lookAhead, markUnknown, subject };
+  return { ...values, name: 'clip' as const, frames, out, options, show: show ?? [], jobs: jobs ?? availableParallelism() };
 }
 
 function pair(values: Values, files: string[]) {
   const settings = ofPairs(values);
   const [first, second] = exactly(2, files, "'pair' takes two files") as [string, string];
-  return { name: 'pair' as const, first, second, ...settings };
+  return { ...settings, name: 'pair' as const, first, second };
 }
 
-/** The part of all pairs to process is counted from 0. */
 function batch(values: Values, frames: string[]) {
-  const settings = {
-    ...ofPairs(values),
-    every: every(values.every),
-    jobs: jobs(values.jobs, availableParallelism()),
-    shard: shard(values.shard),
-  };
+  const settings = ofPairs(values);
   checkFrames('batch', frames, values.list);
-  return { name: 'batch' as const, frames, list: values.list, ...settings };
+  return { ...settings, name: 'batch' as const, frames, jobs: values.jobs ?? availableParallelism() };
 }
 
 function ofPairs(values: Values) {
-  const { out, subject, overlay, confidence, force } = values;
+  const { out, motions, quality, markUnknown, subject, confidence } = values;
   for (const name of ['overlay', 'confidence', 'force'] as const) {
     if (values[name] && out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  const options = { motions: motions(values.motions), quality: quality(values), markUnknown: values['mark-unknown'], subject, confidence };
   // The subject's masks are of the whole of it.
-  return {
-    options,
-    grouped: values.grouped || subject,
-    overlay,
-    allowDamaged: values['allow-damaged'],
-    maxSize: maxSize(values['max-size']),
-    out,
-    force,
-  };
+  return { ...values, options: { motions, quality, markUnknown, subject, confidence }, grouped: values.grouped || subject };
 }
 
 function parsed(args: string[]) {
@@ -232,97 +219,14 @@ function exactly(count: number, files: string[], sentence: string): string[] {
   return files;
 }
 
-function quality(values: Values): 'fast' | 'best' {
-  return choice('quality', values.quality, 'fast', 'best');
+/** Different names, separated by commas. */
+function listed<T>(text: string, read: (name: string) => T): T[] {
+  return [...new Set(text.split(','))].map(read);
 }
 
-function motions(text: string): 'auto' | number {
-  if (text === 'auto') return text;
-  if (/^([1-9]|10)$/.test(text)) return Number(text);
-  throw invalid('motions', "'auto' or a whole number from 1 to 10", text);
-}
-
-function seed(text: string): number {
-  if (/^\d+$/.test(text) && Number.isSafeInteger(Number(text))) return Number(text);
-  throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
-}
-
-function formats(text: string): Format[] {
-  return [...new Set(text.split(','))].map((name) => {
-    if (isFormat(name)) return name;
-    const known = Object.keys(FORMATS);
-    throw new VeroneseError(
-      'invalid-option',
-      `option '--to': there is no format '${name}'${question(meant(name, known)) ?? `; the formats are ${known.join(', ')}`}`,
-    );
-  });
-}
-
-function shown(text: string | undefined): Shown[] {
-  return [...new Set(text?.split(','))].map((name) => {
-    const known = shownOf(name);
-    if (known) return known;
-    const sentence = `option '--show': nothing is known as '${name}'${question(meant(name, SHOWN)) ?? `; known are ${SHOWN.join(', ')}`}`;
-    throw new VeroneseError('invalid-option', sentence);
-  });
-}
-
-function levels(text: string | undefined): 'exact' | number | undefined {
-  if (text === undefined || text === 'exact') return text;
-  if (/^\d{1,5}$/.test(text) && Number(text) >= 1 && Number(text) <= 65_535) return Number(text);
-  throw invalid('levels', "'exact' or a level from 1 to 65535", text);
-}
-
-function maxSize(text: string | undefined): number | undefined {
-  return text === undefined ? undefined : whole('max-size', text, SHORTEST_SIDE, LONGEST_SIDE);
-}
-
-function frameRate(text: string | undefined): number | undefined {
-  return text === undefined ? undefined : decimal('frame-rate', text, FRAME_RATES.least, FRAME_RATES.most);
-}
-
-function range(from: string, until?: string): Range {
-  const index = (name: string, text: string) => {
-    if (/^\d{1,9}$/.test(text)) return Number(text);
-    throw invalid(name, 'the number of a frame, from 0', text);
-  };
-  const first = index('from', from);
-  if (until === undefined) return { from: first };
-  const last = index('until', until);
-  if (last < first) throw invalid('until', `a frame from ${first}, where '--from' is`, until);
-  return { from: first, until: last };
-}
-
-function decimal(name: string, text: string, least = 0, most = LONGEST_SIDE): number {
-  const value = Number(text);
-  if (/^\d+(\.\d+)?$/.test(text) && value >= least && value <= most) return value;
-  throw invalid(name, `a number from ${least} to ${most}, in digits`, text);
-}
-
-function jobs(text: string | undefined, unasked: number): number {
-  return text === undefined ? unasked : whole('jobs', text, 1, MOST_JOBS);
-}
-
-function every(text: string): number {
-  return whole('every', text, 1, 1_000_000);
-}
-
-function whole(name: string, text: string, least: number, most: number): number {
-  const value = Number(text);
-  if (/^\d+$/.test(text) && value >= least && value <= most) return value;
-  throw invalid(name, `a whole number from ${least} to ${most}`, text);
-}
-
-function shard(text: string): { index: number; of: number } {
-  const [, index, of] = (/^(\d{1,9})\/(\d{1,9})$/.exec(text) ?? []).map(Number);
-  if (index !== undefined && of !== undefined && index >= 1 && index <= of) return { index: index - 1, of };
-  throw invalid('shard', "'I/N', part I from 1 to N of N parts", text);
-}
-
-function choice<const T extends string>(name: string, text: string, ...choices: T[]): T {
-  const found = choices.find((word) => word === text);
-  if (found !== undefined) return found;
-  throw invalid(name, choices.map((word) => `'${word}'`).join(' or '), text);
+function missing(option: string, sentence: string, name: string, known: readonly string[], all: string): never {
+  const remedy = question(meant(name, known)) ?? `; ${all} are ${known.join(', ')}`;
+  throw new VeroneseError('invalid-option', `option '--${option}': ${sentence}${remedy}`);
 }
 
 function invalid(name: string, wanted: string, found: string): VeroneseError {

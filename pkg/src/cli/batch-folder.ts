@@ -1,9 +1,9 @@
 // The folder of a batch: one folder for each pair, called by its number and its first frame, which the labels belong to.
 
-import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
 import { keyOf, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
+import { entriesOf } from './files.js';
 import { readPair } from './pair-folder.js';
 import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFrame, sequenceName } from './sequence.js';
 
@@ -16,19 +16,12 @@ interface PairFolder {
 
 /** The pairs' folders by their numbers. Throws `unreadable-file`. */
 export function pairFolders(folder: string): PairFolder[] {
-  const found = foldersIn(folder).flatMap((name): PairFolder[] => {
+  const found = entriesOf(folder).flatMap((entry): PairFolder[] => {
+    const { name } = entry;
     const [, index, frame] = /^(\d{6,})-(.+)$/.exec(name) ?? [];
-    return frame === undefined ? [] : [{ index: Number(index), name, frame }];
+    return frame === undefined || !entry.isDirectory() ? [] : [{ index: Number(index), name, frame }];
   });
   return found.sort((a, b) => a.index - b.index);
-}
-
-function foldersIn(folder: string): string[] {
-  try {
-    return readdirSync(folder, { withFileTypes: true }).flatMap((entry) => (entry.isDirectory() ? [entry.name] : []));
-  } catch (thrown) {
-    throw new VeroneseError('unreadable-file', `'${folder}' cannot be read: ${(thrown as Error).message}`);
-  }
 }
 
 /** A label is a motion of one pair: it has no counterpart in the next pair. */

@@ -2,7 +2,7 @@
 
 import { existsSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
-import { VeroneseError, veroneseError } from '../common/errors.js';
+import { errorMessage, VeroneseError } from '../common/errors.js';
 import { inOrder } from '../calls/ordered.js';
 import type { BatchCommand } from './arguments.js';
 import { pairFolders } from './batch-folder.js';
@@ -12,7 +12,7 @@ import { Output } from './output.js';
 import { possibleFiles } from './pair-folder.js';
 import { jsonLine, type Report } from './pair.js';
 import { writePair } from './store.js';
-import { complain, note, print, ProgressBar, type Tally } from './terminal.js';
+import { complain, note, print, progressBar, type Tally } from './terminal.js';
 import { threads } from './threads.js';
 import { notesOnVideo, videoFrames, type VideoInfo } from './video.js';
 import type { PairTask, TaskResult } from './work.js';
@@ -21,10 +21,8 @@ interface Pair {
   /** Position among all pairs, also those of other shards. */
   index: number;
   name: string;
-  frames: Frame[];
+  frames: [Frame, Frame];
 }
-
-type Outcome = { pair: Pair; result: TaskResult } | { pair: Pair; error: VeroneseError };
 
 /** Throws `pairs-failed` at the end where some did, or at once what concerns all pairs. */
 export async function batch(command: BatchCommand, io: Io): Promise<void> {
@@ -38,27 +36,28 @@ export async function batch(command: BatchCommand, io: Io): Promise<void> {
   const about: VideoInfo = { times: [] };
   const frames = video === undefined ? (paths ?? []).map((name) => ({ name })) : videoFrames({ ...command, file: video }, io, about);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
-  const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
+  const bar = progressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard), io.stderr);
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
   const failures: VeroneseError[] = [];
   const work = (pair: Pair) => perform(pair, command, output);
   try {
-    for await (const { pair, ...outcome } of inOrder(pairs, work, { room: 2 * jobs, stop: () => undefined })) {
-      const { first, second } = namesOf(pair);
+    for await (const { pair, result, error } of inOrder(pairs, work, { room: 2 * jobs, stop: () => undefined })) {
+      const [first, second] = pair.frames.map(({ name }) => name);
       bar.clear();
       const line = { index: pair.index, name: pair.name, first, second };
-      if ('result' in outcome) {
-        const { done, report } = outcome.result;
+      const named = (message: string) => `pair ${pair.index} (${first}, ${second}): ${message}`;
+      if (result) {
+        const { done, report } = result;
         // Why a pair has one motion is in its line: of many pairs that is nothing out of the ordinary.
         for (const { message } of ((report as Report).notes ?? []).filter(({ code }) => OF_FILES.includes(code)))
-          note(io, { message: `pair ${pair.index} (${first}, ${second}): ${message}` });
+          note(io, { message: named(message) });
         tally[done ? 'done' : 'skipped'] += 1;
         await print(io, jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
       } else {
-        const { code, message } = outcome.error;
+        const failure = errorMessage(error);
         tally.failed += 1;
-        failures.push(new VeroneseError(code, `pair ${pair.index} (${first}, ${second}): ${message}`));
-        await print(io, jsonLine({ ...line, status: 'failed', error: { code, message } }));
+        failures.push(new VeroneseError(failure.code, named(failure.message)));
+        await print(io, jsonLine({ ...line, status: 'failed', error: failure }));
       }
       bar.update(tally);
     }
@@ -86,20 +85,20 @@ function checkPlaces(output: Output, command: BatchCommand, paths: readonly stri
 }
 
 /** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
-async function perform(pair: Pair, command: BatchCommand, out: Output | undefined): Promise<Outcome> {
+async function perform(
+  pair: Pair,
+  command: BatchCommand,
+  out: Output | undefined,
+): Promise<{ pair: Pair; result?: TaskResult; error?: unknown }> {
   const { options, grouped, overlay, allowDamaged, maxSize, jobs, force } = command;
   try {
-    const task: PairTask = {
-      kind: 'pair',
-      frames: pair.frames.map(contentOf),
-      settings: { options, grouped, overlay, allowDamaged, maxSize },
-      withImages: out !== undefined,
-    };
+    const settings = { options, grouped, overlay, allowDamaged, maxSize };
+    const task: PairTask = { kind: 'pair', frames: pair.frames, settings, withImages: out !== undefined };
     const result = await threads(jobs).run({ ...task, ...(out && { folder: join(out.folder, pair.name) }) });
     if (out && result.done) await writePair(out, pair.name, result.files, force);
     return { pair, result: { ...result, files: [] } };
-  } catch (thrown) {
-    return { pair, error: veroneseError(thrown) };
+  } catch (error) {
+    return { pair, error };
   }
 }
 
@@ -121,10 +120,6 @@ async function* pairsOf(
     first = second;
   }
   checkCount(used);
-}
-
-function contentOf({ name, bytes }: Frame): PairTask['frames'][number] {
-  return { name, ...(bytes && { bytes }) };
 }
 
 function checkCount(frames: number): void {
@@ -149,8 +144,4 @@ const LONGEST_STEM = 200;
 /** The pair's number, and its first frame for people who look for it. */
 function nameOf(index: number, { name, stem = basename(name, extname(name)) }: Frame): string {
   return `${String(index).padStart(6, '0')}-${stem.slice(0, LONGEST_STEM).replace(/[^\w.-]/g, '_')}`;
-}
-
-function namesOf({ frames: [first, second] }: Pair): { first: string | undefined; second: string | undefined } {
-  return { first: first?.name, second: second?.name };
 }

@@ -1,8 +1,8 @@
 // The folder of a clip: labels/NAME.png for each frame, and tracks.json, which is written last.
 
 import { join } from 'node:path';
-import type { Metadata, FormatMotion } from '../../types/formats.js';
-import type { Matrix } from '../../types/index.js';
+import type { AnnotationNote, FormatMotion, Metadata } from '../../types/formats.js';
+import type { ClipChange, ClipTracks, Matrix } from '../../types/index.js';
 import { FRAME_RATES, isFrameRate, isListOf, isObject, isRising, isWhole, keyOf, LONGEST_SIDE, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { readJson, readLabels } from './label-files.js';
@@ -16,25 +16,31 @@ export const HIDDEN = '.clip';
 /** Latest time of a frame, seconds. */
 const LATEST = 1e9;
 
-/** The part of tracks.json that is read. */
-interface Tracks {
+/** The content of tracks.json. */
+export interface ClipManifest extends Omit<ClipTracks, 'notes'> {
+  version: 1;
   width: number;
   height: number;
-  /** Names of the label images, and of the frames' files. */
-  frames: string[];
-  files: string[];
-  objects: { id: number; name?: string; frames: Sighting[] }[];
-  background: { frame: number; matrix: Matrix | null }[];
+  /** Of a video: frames per second on average, and the time of each frame in seconds from the first. */
   frameRate?: number;
   timestamps?: number[];
+  /** Names of the frames' images. */
+  frames: string[];
+  /** Names of the frames' own files. */
+  files: string[];
+  /** The changes by corrections, where there are any. */
+  changes?: readonly ClipChange[];
+  /** What was assumed, where something was. */
+  notes?: readonly AnnotationNote[];
+  settings: { overlay: boolean; show?: readonly string[]; [name: string]: unknown };
+  /** Hash of the settings and the frames. */
+  job: string;
 }
 
+/** The part of tracks.json that is read. */
+type Tracks = Pick<ClipManifest, 'width' | 'height' | 'frames' | 'files' | 'objects' | 'background' | 'frameRate' | 'timestamps'>;
 /** An object in a frame. */
-interface Sighting {
-  frame: number;
-  pixels: number;
-  matrix: Matrix | null;
-}
+type Sighting = Tracks['objects'][number]['frames'][number];
 
 /** Reads tracks.json at once, each frame when it is asked for. `frameRate` goes before that of tracks.json. */
 export async function openClip(folder: string, range: Range, background: boolean, frameRate?: number): Promise<Sequence> {

@@ -3,7 +3,7 @@
 import { basename, extname } from 'node:path';
 import type { Picture } from '../../types/codecs.js';
 import type { Note } from '../../types/index.js';
-import { keyOf } from '../common/checks.js';
+import { invalidInput, keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipCommand } from './arguments.js';
 import type { FrameFile } from './clip-store.js';
@@ -11,8 +11,8 @@ import { readInput, sha256 } from './files.js';
 import { findFrames, leftOutNotes, readList, videoIn } from './frames.js';
 import type { Io } from './io.js';
 import { decodeImage } from '../entries/codecs.js';
-import { decoded, narrowRange, type Range, rangeNote } from './pair.js';
-import { notesOnVideo, timesOf, type Video, videoFrames, type VideoInfo, VideoReader } from './video.js';
+import { decoded, type Decoding, narrowRange, type Range, rangeNote } from './pair.js';
+import { notesOnVideo, timesOf, type Video, videoFrames, type VideoInfo, videoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */
 interface Seen extends FrameFile {
@@ -21,20 +21,13 @@ interface Seen extends FrameFile {
   failure?: { thrown: unknown };
 }
 
-interface Times {
-  frameRate?: number;
-  timestamps?: number[];
-}
-
 /** Where frames come from, and what is known of all of them. */
 interface Source {
   content: (index: number) => Promise<Uint8Array | undefined>;
   close?: () => Promise<void>;
-  allowDamaged?: boolean;
-  maxSize: number | undefined;
-  range?: Range | undefined;
-  times?: Times;
-  notes?: Note[];
+  decoding: Decoding;
+  times?: { frameRate?: number; timestamps?: number[] };
+  notes: Note[];
 }
 
 export class ClipFrames {
@@ -44,9 +37,9 @@ export class ClipFrames {
   /** Width and height of all frames, once one was read. */
   size: { width: number; height: number } | undefined;
   /** The first frame that could not be read. */
-  failure: { index: number; thrown: unknown } | undefined;
+  failure: { thrown: unknown } | undefined;
   /** When frames were taken, where that is known. */
-  readonly times: Times;
+  readonly times: NonNullable<Source['times']>;
   /** Samples of 16 bits that are black and white, where that was chosen. */
   readonly range: Range | undefined;
   /** What was assumed, as far as frames were read. */
@@ -59,8 +52,8 @@ export class ClipFrames {
     this.paths = paths;
     this.#source = source;
     this.times = source.times ?? {};
-    this.range = source.range;
-    this.notes = [...(source.notes ?? []), ...(source.range ? [rangeNote(source.range)] : [])];
+    this.range = source.decoding.range;
+    this.notes = [...source.notes, ...(this.range ? [rangeNote(this.range)] : [])];
     if (files.length < 2) {
       throw new VeroneseError('too-few-frames', `a clip needs two frames, found ${files.length === 0 ? 'none' : 'one'}`);
     }
@@ -75,7 +68,7 @@ export class ClipFrames {
     try {
       return await this.#read(index);
     } catch (thrown) {
-      this.failure ??= { index, thrown };
+      this.failure ??= { thrown };
       throw thrown;
     }
   };
@@ -96,10 +89,7 @@ export class ClipFrames {
     if (!bytes)
       throw new VeroneseError('unreadable-video', `${name} is missing: the video had ${this.length} frames when it was read before`);
     if (sha256(bytes) !== known) throw new VeroneseError('invalid-input', `${name} has changed since it was read before`);
-    const picture = await decoded(
-      { name, bytes },
-      { allowDamaged: this.#source.allowDamaged, maxSize: this.#source.maxSize, range: this.range, onNote: (note) => this.#add(note) },
-    );
+    const picture = await decoded({ name, bytes }, { ...this.#source.decoding, onNote: (note) => this.#add(note) });
     const { width, height } = picture;
     if (!this.size) [this.size, this.#first] = [{ width, height }, name];
     if (width !== this.size.width || height !== this.size.height) {
@@ -115,11 +105,15 @@ export async function clipFrames({ frames: names, list, every, allowDamaged, max
   const video = await videoIn({ frames: names, list });
   if (video !== undefined) return framesOfVideo({ file: video, every, allowDamaged }, maxSize, io);
   const paths = findFrames(names, await readList(list, io.stdin)).filter((_, index) => index % every === 0);
-  checkStems(paths);
   const files: Seen[] = [];
   const ranges: (Range | undefined)[] = [];
+  const known = new Map<string, string>();
   for (const path of paths) {
-    const frame = { name: path, stem: stemOf(path), file: basename(path) };
+    const stem = basename(path, extname(path));
+    const other = known.get(keyOf(stem));
+    if (other !== undefined) throw invalidInput(`'${other}' and '${path}' would both be written to '${stem}.png'`);
+    known.set(keyOf(stem), path);
+    const frame = { name: path, stem, file: basename(path) };
     try {
       const bytes = await readInput(path);
       files.push({ ...frame, sha256: sha256(bytes) });
@@ -128,13 +122,8 @@ export async function clipFrames({ frames: names, list, every, allowDamaged, max
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, paths, {
-    content: (index) => readInput(paths[index] as string),
-    allowDamaged,
-    maxSize,
-    range: narrowRange(ranges),
-    notes: leftOutNotes(names),
-  });
+  const decoding = { allowDamaged, maxSize, range: narrowRange(ranges) };
+  return new ClipFrames(files, paths, { content: (index) => readInput(paths[index] as string), decoding, notes: leftOutNotes(names) });
 }
 
 /** The range of the samples in a file that has 16 bits of each. What cannot be read is an error when it is. */
@@ -145,44 +134,28 @@ async function rangeOf(bytes: Uint8Array, maxSize: number | undefined): Promise<
   return (await decodeImage(bytes, { maxSize }).catch(() => undefined))?.range;
 }
 
-function checkStems(paths: readonly string[]): void {
-  const stems = new Map<string, string>();
-  for (const path of paths) {
-    const stem = stemOf(path);
-    const other = stems.get(keyOf(stem));
-    if (other !== undefined) throw new VeroneseError('invalid-input', `'${other}' and '${path}' would both be written to '${stem}.png'`);
-    stems.set(keyOf(stem), path);
-  }
-}
-
-function stemOf(path: string): string {
-  return basename(path, extname(path));
-}
-
 /** A video that breaks off has a last frame that cannot be read. */
 async function framesOfVideo(video: Video, maxSize: number | undefined, io: Io): Promise<ClipFrames> {
   const { file, every } = video;
   const files: Seen[] = [];
   const about: VideoInfo = { times: [] };
-  const seen = (number: number) => ({
-    name: `${basename(file)}#${number}`,
-    stem: String(number).padStart(5, '0'),
-    file: `${basename(file)}#${number}`,
-  });
+  const add = (more: Pick<Seen, 'sha256' | 'failure'>) => {
+    const number = files.length * every;
+    const name = `${basename(file)}#${number}`;
+    files.push({ name, stem: String(number).padStart(5, '0'), file: name, ...more });
+  };
   try {
-    for await (const { bytes } of videoFrames(video, io, about))
-      files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
+    for await (const { bytes } of videoFrames(video, io, about)) add({ sha256: sha256(bytes as Uint8Array) });
   } catch (thrown) {
     if (files.length === 0) throw thrown;
-    files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
+    add({ sha256: undefined, failure: { thrown } });
   }
-  const reader = new VideoReader({ ...video, quiet: true }, io);
-  const source = {
-    content: (index: number) => reader.read(index),
-    close: () => reader.close(),
-    maxSize,
+  const { read, close } = videoReader({ ...video, quiet: true }, io);
+  return new ClipFrames(files, [file], {
+    content: read,
+    close,
+    decoding: { maxSize },
     times: timesOf(about, files.length, every),
     notes: notesOnVideo(file, about),
-  };
-  return new ClipFrames(files, [file], source);
+  });
 }

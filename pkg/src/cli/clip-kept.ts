@@ -8,7 +8,7 @@ import { VeroneseError } from '../common/errors.js';
 import { openFile } from '../entries/journal-file.js';
 import { HIDDEN } from './clip-folder.js';
 import type { ClipFrames } from './clip-frames.js';
-import { lookAt, makeFolder, readWritten, sha256, writeFailed, writing } from './files.js';
+import { lookAt, makeFolder, parsedJson, sha256, writeFailed, writing } from './files.js';
 import type { Output } from './output.js';
 
 const KEY = `${HIDDEN}/key`;
@@ -24,80 +24,60 @@ interface Key {
   changes?: readonly ClipChange[];
 }
 
-export class KeptClip {
-  readonly clip: Clip;
-  readonly #output: Output;
-  #key: Key;
+export type KeptClip = Awaited<ReturnType<typeof keptClip>>;
 
-  private constructor(clip: Clip, output: Output, key: Key) {
-    this.clip = clip;
-    this.#output = output;
-    this.#key = key;
-  }
-
-  /** `settings`: what decides about the masks. */
-  static async open(segmenter: Segmenter, output: Output, frames: ClipFrames, settings: object, markUnknown: boolean): Promise<KeptClip> {
-    const own: Key = { clip: sha256(JSON.stringify({ settings, frames: frames.files.map(({ sha256 }) => sha256) })) };
-    const path = (name: string) => join(output.folder, name);
-    await writing(output.folder, () => {
-      output.add([HIDDEN]);
-      makeFolder(path(HIDDEN));
-      // A link would lead elsewhere.
-      if (lookAt(path(LOG))?.isFile() === false) rmSync(path(LOG));
+/** `settings`: what decides about the masks. */
+export async function keptClip(segmenter: Segmenter, output: Output, frames: ClipFrames, settings: object, markUnknown: boolean) {
+  const own: Key = { clip: sha256(JSON.stringify({ settings, frames: frames.files.map(({ sha256 }) => sha256) })) };
+  const log = join(output.folder, LOG);
+  await writing(output.folder, () => {
+    output.add([HIDDEN]);
+    makeFolder(join(output.folder, HIDDEN));
+    // A link would lead elsewhere.
+    if (lookAt(log)?.isFile() === false) rmSync(log);
+  });
+  const known = parsedJson(join(output.folder, KEY)) as Key | undefined;
+  for (let isNew = known?.clip !== own.clip || !lookAt(log); ; isNew = true) {
+    const journal = await openFile(log).catch((thrown: unknown) => {
+      const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
+      throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;
     });
-    const known = keyIn(path(KEY));
-    for (let isNew = known?.clip !== own.clip || !lookAt(path(LOG)); ; isNew = true) {
-      const journal = await openFile(path(LOG)).catch((thrown: unknown) => {
-        const isLocked = thrown instanceof VeroneseError && thrown.code === 'invalid-option';
-        throw isLocked ? writeFailed(output.folder, 'another run is writing there') : thrown;
-      });
-      if (isNew) {
-        await journal.replace(new Uint8Array());
-        await write(output, own);
-      }
-      const clip = await segmenter
-        .openClip({ length: frames.length, read: frames.read }, { journal, markUnknown })
-        .catch((thrown: unknown) => {
-          if (isNew) throw thrown;
-          return undefined;
-        });
-      rmSync(path(`${LOG}.damaged`), { force: true });
-      const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
-      if (clip && (masks === 0 || masks === frames.length)) return new KeptClip(clip, output, isNew ? own : { ...own, ...known });
-      // The range of a frame that could not be read.
-      await clip?.close();
+    if (isNew) {
+      await journal.replace(new Uint8Array());
+      await write(output, own);
     }
-  }
-
-  /** Removes what is kept. */
-  static clear(output: Output): Promise<void> {
-    const names = [KEY, ...['', '.veronese-lock', '.new', '.damaged'].map((ending) => LOG + ending)];
-    return writing(output.folder, () => names.forEach((name) => rmSync(join(output.folder, name), { force: true })));
-  }
-
-  /** What these annotations have changed; undefined unless the clip has them, and no others. */
-  changes(annotations: unknown): readonly ClipChange[] | undefined {
-    return this.#key.annotated === this.#hash(annotations) ? (this.#key.changes ?? []) : undefined;
-  }
-
-  /** The clip has these annotations now. */
-  async annotated(annotations: unknown, changes: readonly ClipChange[]): Promise<void> {
-    this.#key = { ...this.#key, annotated: this.#hash(annotations), changes };
-    await write(this.#output, this.#key);
-  }
-
-  #hash(annotations: unknown): string {
-    const { frames, objects } = this.clip;
-    return sha256(JSON.stringify({ annotations, frames, objects }));
+    const clip = await segmenter.openClip(frames, { journal, markUnknown }).catch((thrown: unknown) => {
+      if (isNew) throw thrown;
+      return undefined;
+    });
+    rmSync(`${log}.damaged`, { force: true });
+    const masks = clip?.frames.filter(({ hasMasks }) => hasMasks).length;
+    if (clip && (masks === 0 || masks === frames.length)) return withKey(clip, output, isNew ? own : { ...own, ...known });
+    // The range of a frame that could not be read.
+    await clip?.close();
   }
 }
 
-function keyIn(path: string): Key | undefined {
-  try {
-    return JSON.parse(readWritten(path)?.toString() ?? '') as Key;
-  } catch {
-    return undefined; // Missing or damaged.
-  }
+function withKey(clip: Clip, output: Output, own: Key) {
+  let key = own;
+  const hash = (annotations: unknown) => sha256(JSON.stringify({ annotations, frames: clip.frames, objects: clip.objects }));
+  return {
+    clip,
+    /** What these annotations have changed; undefined unless the clip has them, and no others. */
+    changes: (annotations: unknown): readonly ClipChange[] | undefined =>
+      key.annotated === hash(annotations) ? (key.changes ?? []) : undefined,
+    /** The clip has these annotations now. */
+    async annotated(annotations: unknown, changes: readonly ClipChange[]): Promise<void> {
+      key = { ...key, annotated: hash(annotations), changes };
+      await write(output, key);
+    },
+  };
+}
+
+/** Removes what is kept. */
+export function clearKept(output: Output): Promise<void> {
+  const names = [KEY, ...['', '.veronese-lock', '.new', '.damaged'].map((ending) => LOG + ending)];
+  return writing(output.folder, () => names.forEach((name) => rmSync(join(output.folder, name), { force: true })));
 }
 
 function write(output: Output, key: Key): Promise<void> {

@@ -10,17 +10,17 @@ import { SegmenterPool } from '../entries/node.js';
 import { USUAL_RATE } from '../formats/metadata.js';
 import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
-import { LABELS } from './clip-folder.js';
+import { type ClipManifest, LABELS } from './clip-folder.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
-import { KeptClip } from './clip-kept.js';
-import { type ClipManifest, ClipStore } from './clip-store.js';
+import { clearKept, type KeptClip, keptClip } from './clip-kept.js';
+import { clipStore } from './clip-store.js';
 import type { Io } from './io.js';
 import { readLabels } from './label-files.js';
 import { Output } from './output.js';
 import { overlay } from './overlay.js';
 import { jsonLine } from './pair.js';
-import { checkFilms, Showing } from './showing.js';
-import { note, print, ProgressBar, warn } from './terminal.js';
+import { checkFilms, type Showing, shownOn } from './showing.js';
+import { note, print, progressBar, warn } from './terminal.js';
 import { oneForEach } from './threads.js';
 
 const segmenters = oneForEach((jobs) => new SegmenterPool({ jobs }));
@@ -36,36 +36,29 @@ interface Labelled {
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand, io: Io): Promise<void> {
   const { out, options, every, overlay: wanted, show, maxSize, force } = command;
+  const { motions, quality, subject, markUnknown } = options;
   await checkFilms(show);
   const output = new Output(out, { force, signal: io.signal });
   const frames = await clipFrames(command, io);
   const segmenter = segmenters(command.jobs);
-  const progress = new Passes(frames.length, io);
+  const progress = passes(frames.length, io);
   const rate = command.frameRate ?? frames.times.frameRate;
-  const showing = new Showing(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
+  const showing = shownOn(show, { folder: () => output.begin(), count: frames.length, rate: rate ?? USUAL_RATE });
   let kept: KeptClip | undefined;
   try {
     const corrections = await readCorrections(command, frames);
     for (const each of corrections?.notes ?? []) note(io, each);
     const software = `veronese ${version}`;
-    const store = new ClipStore(output, {
-      ...options,
-      every,
-      maxSize,
-      ...corrections?.hashes,
-      overlay: wanted,
-      ...(show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate }),
-      software,
-    });
-    const before = store.finished(frames.files);
-    const missing = frames.files.flatMap((file, index) => (store.isThere(file) ? [] : [index]));
+    const shown = show.length > 0 && { show: show.map(({ name }) => name), frameRate: command.frameRate };
+    const settings = { ...options, every, maxSize, ...corrections?.hashes, overlay: wanted, ...shown, software };
+    const store = clipStore(output, frames.files, settings);
+    const { finished: before, missing } = store;
     if (before && missing.length === 0) return await report(before, io);
-    store.check(frames.files, [...frames.paths, ...(corrections?.paths ?? [])]);
+    store.check([...frames.paths, ...(corrections?.paths ?? [])]);
 
-    const { motions, quality, subject, markUnknown } = options;
     const masks = { motions, quality, subject };
-    if (options.lookAhead !== 'all') await KeptClip.clear(output);
-    else kept = await KeptClip.open(segmenter, output, frames, { ...masks, maxSize, range: frames.range, software }, markUnknown);
+    if (options.lookAhead !== 'all') await clearKept(output);
+    else kept = await keptClip(segmenter, output, frames, { ...masks, maxSize, range: frames.range, software }, markUnknown);
     const write = async (frame: ClipFrame) => {
       const { stem } = frames.files[frame.index] as { stem: string };
       await store.write(stem, await images(frames, frame, wanted, show.length > 0 ? showing : undefined));
@@ -79,8 +72,12 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
     let segmented: Labelled;
     if (kept) {
       kept.clip.subscribe((event) => event.type === 'progress' && progress.update(event));
-      await segment(kept, frames, masks);
-      segmented = await annotated(kept, frames, corrections, store.before(frames.files) && out, progress);
+      if (!kept.clip.frames.every(({ hasMasks }) => hasMasks))
+        await kept.clip.segment(masks).then(undefined, (thrown: unknown) => {
+          // The frames before a bad one have masks.
+          if (!frames.failure) throw thrown;
+        });
+      segmented = await annotated(kept, frames, corrections, store.isSeen ? out : undefined, progress);
     } else segmented = streamed(segmenter, frames, options, progress);
     await store.begin();
     for await (const frame of segmented.frames) {
@@ -88,25 +85,20 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
       await print(io, jsonLine({ frame: frame.index, name, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
-    const { films, sheet } = await showing.end();
-    if (films.length > 0 || sheet) await store.show(films, sheet);
+    const films = await showing.end();
+    await store.show(films);
     const { notes: reasons = [], ...tracks } = await segmented.tracks();
+    if (films.films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
+    const found = [...frames.notes, ...segmented.notes];
     // Of one motion that was asked for, and of what a person has corrected, there is nothing to say.
-    const notes = corrections || motions === 1 ? [] : reasons;
+    for (const { step, ...rest } of corrections || motions === 1 ? [] : reasons)
+      found.push(step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest);
     const { changes } = segmented;
-    if (films.length > 0 && rate === undefined) frames.notes.push(rateNote(command));
-    const found = [
-      ...frames.notes,
-      ...segmented.notes,
-      ...notes.map(({ step, ...rest }) => (step ? { ...rest, message: `${rest.message}: try '--every ${step * every}'`, step } : rest)),
-    ];
-    await store.end(frames.files, { ...(frames.size as { width: number; height: number }), ...frames.times }, tracks, changes, [
-      ...(corrections?.notes ?? []),
-      ...found,
-    ]);
+    const size = frames.size as { width: number; height: number };
+    await store.end({ ...size, ...frames.times }, tracks, changes, [...(corrections?.notes ?? []), ...found]);
     for (const each of found) note(io, each);
-    for (const { name, object } of show) {
-      const isThere = !name.startsWith('cutout') || object === 0 || tracks.objects.some(({ id }) => id === object);
+    for (const { name, kind, object } of show) {
+      const isThere = kind !== 'cutout' || object === 0 || tracks.objects.some(({ id }) => id === object);
       if (!isThere) warn(io, `there is no object ${object}: '${name}' is transparent`);
     }
     if (tracks.dropped > 0)
@@ -124,43 +116,30 @@ export async function clip(command: ClipCommand, io: Io): Promise<void> {
   }
 }
 
-/** Segments the clip unless it has its masks; up to the first bad frame. */
-async function segment(
-  { clip }: KeptClip,
-  frames: ClipFrames,
-  options: Pick<ClipCommand['options'], 'motions' | 'quality' | 'subject'>,
-): Promise<void> {
-  if (clip.frames.every(({ hasMasks }) => hasMasks)) return;
-  try {
-    await clip.segment(options);
-  } catch (thrown) {
-    if (!frames.failure) throw thrown;
-  }
-}
-
 /** The clip with its annotations. `before`: the folder with the results of a finished run on these frames, if there is one. */
 async function annotated(
   kept: KeptClip,
   frames: ClipFrames,
   corrections: Corrections | undefined,
   before: string | undefined,
-  progress: Passes,
+  progress: Progress,
 ): Promise<Labelled> {
   const { clip } = kept;
   const indices = clip.frames.flatMap(({ hasMasks }, index) => (hasMasks ? [index] : []));
   let changes = indices.length > 0 ? kept.changes(corrections?.hashes) : [];
   if (!changes) {
     const { annotations = [], accepted = [], ...edits } = corrections?.declaration ?? {};
-    const isThere = (frame: number) => indices.includes(frame);
-    const stays = accepted.filter(isThere);
+    const stays = accepted.filter((frame) => indices.includes(frame));
     if (before !== undefined) await acceptAsSeen(kept, frames, stays, before);
-    changes = await clip.replaceAnnotations({ ...edits, annotations: annotations.filter(({ frame }) => isThere(frame)), accepted: stays });
+    const of = annotations.filter(({ frame }) => indices.includes(frame));
+    changes = await clip.replaceAnnotations({ ...edits, annotations: of, accepted: stays });
     await kept.annotated(corrections?.hashes, changes);
   }
-  const notes = missingNotes(
-    corrections?.edited ?? [],
-    clip.objects.map(({ number }) => number),
-  );
+  const objects = clip.objects.map(({ number }) => number);
+  const missing = corrections?.edited.filter((object) => !objects.includes(object)) ?? [];
+  const there = objects.length > 0 ? `the objects are ${objects.join(', ')}` : 'there is no object';
+  const message = `edits of objects that are not there change nothing: ${missing.join(', ')}; ${there}`;
+  const notes = missing.length > 0 ? [{ code: 'object-missing', message }] : [];
   return { frames: labelled(kept, indices, progress), tracks: () => clip.tracks(), changes, notes };
 }
 
@@ -180,7 +159,7 @@ async function acceptAsSeen({ clip }: KeptClip, { files }: ClipFrames, accepted:
 }
 
 /** The labels of frames, in order: the next frame is labelled while one is looked at. */
-async function* labelled({ clip }: KeptClip, indices: readonly number[], progress: Passes): AsyncGenerator<ClipFrame, void, undefined> {
+async function* labelled({ clip }: KeptClip, indices: readonly number[], progress: Progress): AsyncGenerator<ClipFrame, void, undefined> {
   const ask = (at: number) => {
     const labels = indices[at] === undefined ? undefined : clip.labels(indices[at]);
     labels?.catch(() => undefined);
@@ -194,7 +173,12 @@ async function* labelled({ clip }: KeptClip, indices: readonly number[], progres
   }
 }
 
-function streamed(segmenter: Segmenter, frames: ClipFrames, { lookAhead, ...options }: ClipCommand['options'], progress: Passes): Labelled {
+function streamed(
+  segmenter: Segmenter,
+  frames: ClipFrames,
+  { lookAhead, ...options }: ClipCommand['options'],
+  progress: Progress,
+): Labelled {
   const source = async function* () {
     for (let index = 0; index < frames.length; index++) yield await frames.read(index);
   };
@@ -203,41 +187,21 @@ function streamed(segmenter: Segmenter, frames: ClipFrames, { lookAhead, ...opti
   return { frames: stream, tracks: () => stream.tracks(), changes: [], notes: [] };
 }
 
-/** Says which edits change nothing. */
-function missingNotes(edited: readonly number[], objects: readonly number[]): Note[] {
-  const missing = edited.filter((object) => !objects.includes(object));
-  const there = objects.length > 0 ? `the objects are ${objects.join(', ')}` : 'there is no object';
-  const message = `edits of objects that are not there change nothing: ${missing.join(', ')}; ${there}`;
-  return missing.length > 0 ? [{ code: 'object-missing', message }] : [];
-}
+type Progress = ReturnType<typeof passes>;
 
 /** The progress bar of each pass over the frames. */
-class Passes {
-  readonly #count: number;
-  readonly #io: Io;
-  #stage: string | undefined;
-  #bar: ProgressBar | undefined;
-
-  constructor(count: number, io: Io) {
-    this.#count = count;
-    this.#io = io;
-  }
-
-  update({ stage, frame }: { stage: string; frame: number }): void {
-    if (stage !== this.#stage) {
+function passes(count: number, { stderr }: Io) {
+  let [pass, bar] = ['', undefined as ReturnType<typeof progressBar> | undefined];
+  return {
+    update({ stage, frame }: { stage: string; frame: number }): void {
       // Annotations come to some frames, and to some of them more than once.
-      this.#bar = new ProgressBar(stage === 'annotations' ? undefined : this.#count, this.#io.stderr, {
-        unit: 'frames',
-        title: `${stage}: `,
-      });
-    }
-    this.#stage = stage;
-    this.#bar?.update({ done: frame, skipped: 0, failed: 0 });
-  }
-
-  clear(): void {
-    this.#bar?.clear();
-  }
+      const total = stage === 'annotations' ? undefined : count;
+      if (stage !== pass) bar = progressBar(total, stderr, { unit: 'frames', title: `${stage}: ` });
+      pass = stage;
+      bar?.update({ done: frame, skipped: 0, failed: 0 });
+    },
+    clear: () => bar?.clear(),
+  };
 }
 
 /** The pictures of a frame by their folders. */

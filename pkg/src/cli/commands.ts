@@ -140,28 +140,21 @@ export interface CommandText {
   examples: readonly (readonly [purpose: string, line: string])[];
 }
 
+/** Names of options. */
+const named = (words: string) => words.split(' ') as OptionName[];
+
 /** Options of all commands. */
 export const ALWAYS: readonly OptionName[] = ['quiet', 'help', 'version'];
 
-const OF_PAIRS: readonly OptionName[] = [
-  'out',
-  'motions',
-  'quality',
-  'grouped',
-  'subject',
-  'mark-unknown',
-  'confidence',
-  'overlay',
-  'max-size',
-];
-const AT_THE_END: readonly OptionName[] = ['allow-damaged', 'force'];
+const OF_PAIRS = 'out motions quality grouped subject mark-unknown confidence overlay max-size';
+const AT_THE_END = 'allow-damaged force';
 
 export const COMMANDS = {
   pair: {
     usage: ['FIRST SECOND [options]'],
     about: 'segment two frames',
     more: 'Frames are PNG, JPEG, WebP, BMP or PNM. Prints one line of JSON.',
-    options: [...OF_PAIRS, ...AT_THE_END],
+    options: named(`${OF_PAIRS} ${AT_THE_END}`),
     texts: { out: 'write labels.png, result.json and mask-K.png to DIR' },
     examples: [
       ['How many motions there are, as JSON', 'veronese pair first.png second.png'],
@@ -172,7 +165,7 @@ export const COMMANDS = {
     usage: ['FRAMES... [options]', 'VIDEO [options]'],
     about: 'segment every pair of consecutive frames',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each pair.",
-    options: ['list', ...OF_PAIRS, 'every', 'jobs', 'shard', ...AT_THE_END],
+    options: named(`list ${OF_PAIRS} every jobs shard ${AT_THE_END}`),
     texts: { out: 'write a folder for each pair to DIR, with the files of pair; skip finished pairs' },
     examples: [
       ['A folder of frames, four pairs at once', 'veronese batch frames -o pairs -j 4 > pairs.jsonl'],
@@ -184,25 +177,9 @@ export const COMMANDS = {
     usage: ['FRAMES... --out DIR [options]', 'VIDEO --out DIR [options]'],
     about: 'follow what moves through a clip; objects keep their number',
     more: "FRAMES are folders, files or 'quoted patterns*.png'; a VIDEO needs the program ffmpeg. Prints one line of JSON for each frame and a last one. An interrupted run goes on where it was.",
-    options: [
-      'out',
-      'list',
-      'every',
-      'motions',
-      'quality',
-      'look-ahead',
-      'masks',
-      'corrections',
-      'levels',
-      'subject',
-      'mark-unknown',
-      'max-size',
-      'overlay',
-      'show',
-      'frame-rate',
-      'jobs',
-      ...AT_THE_END,
-    ],
+    options: named(
+      `out list every motions quality look-ahead masks corrections levels subject mark-unknown max-size overlay show frame-rate jobs ${AT_THE_END}`,
+    ),
     texts: {
       out: 'write labels/NAME.png for each frame, and tracks.json when all are there',
       'mark-unknown': 'use label 255 for pixels whose evidence does not tell an object from the background',
@@ -221,23 +198,7 @@ export const COMMANDS = {
     usage: ['DIR --to FORMATS [options]', `SOURCE --to ${BACK} --out DIR [--clip DIR] [--force]`],
     about: 'convert results for annotation tools, and annotations back',
     more: `DIR is a folder of pair, batch or clip. SOURCE is a file, an archive or a folder of annotations: COCO, YouTube-VIS, CVAT, Label Studio, MOTS, YOLO, PNG masks; of them come NAME.png for each annotated frame, and edits.json, for --corrections of clip.`,
-    options: [
-      'to',
-      'out',
-      'tolerance',
-      'background',
-      'grouped',
-      'image',
-      'from',
-      'until',
-      'shapes',
-      'video',
-      'frame-rate',
-      'clip',
-      'levels',
-      'first-frame',
-      'force',
-    ],
+    options: named('to out tolerance background grouped image from until shapes video frame-rate clip levels first-frame force'),
     texts: { out: 'output folder (default: the input folder)', grouped: 'of pair and batch: groups instead of motions' },
     examples: [
       ['A clip for COCO tools and as DAVIS masks', 'veronese convert masks --to coco,davis'],
@@ -248,7 +209,7 @@ export const COMMANDS = {
     usage: ['FILE.json [options]'],
     about: 'fit motions to measurements of points',
     more: 'FILE.json is {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}. Prints one line of JSON.',
-    options: ['motions', 'method', 'seed'],
+    options: named('motions method seed'),
     texts: { motions: 'number of motions' },
     examples: [["The paper's algorithm, with two motions", 'veronese points points.json --method paper --motions 2']],
   },

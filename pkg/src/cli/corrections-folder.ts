@@ -1,15 +1,13 @@
 // `veronese convert SOURCE --to corrections`: annotations, read back into a folder for `clip`.
 
-import { readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import type { AnnotationFile } from '../../types/formats.js';
-import { VeroneseError } from '../common/errors.js';
 import { davisPng } from '../formats/pictures.js';
 import { readAnnotations } from '../formats/reading/annotations.js';
 import type { CorrectionsCommand } from './arguments.js';
 import { EDITS } from './clip-corrections.js';
 import { TRACKS, tracksOf } from './clip-folder.js';
-import { readInput } from './files.js';
+import { entriesOf, isFolder, readInput } from './files.js';
 import { readJson } from './label-files.js';
 import type { Io } from './io.js';
 import type { Output } from './output.js';
@@ -55,17 +53,12 @@ async function framesOf(folder: string): Promise<{ frames: string[]; size: { wid
 
 /** The file, or those in the folder and the folders in it, by name. */
 function pathsOf(source: string): string[] {
-  if (!statSync(source, { throwIfNoEntry: false })?.isDirectory()) return [source];
-  try {
-    return readdirSync(source, { withFileTypes: true })
-      .filter(({ name }) => !name.startsWith('.'))
-      .sort((a, b) => (a.name < b.name ? -1 : 1))
-      .flatMap((entry) => {
-        const path = join(source, entry.name);
-        if (entry.isDirectory()) return pathsOf(path);
-        return POSSIBLE.test(entry.name) ? [path] : [];
-      });
-  } catch (thrown) {
-    throw new VeroneseError('unreadable-file', `'${source}' cannot be read: ${(thrown as Error).message}`);
-  }
+  if (!isFolder(source)) return [source];
+  return entriesOf(source)
+    .filter(({ name }) => !name.startsWith('.'))
+    .flatMap((entry) => {
+      const path = join(source, entry.name);
+      if (entry.isDirectory()) return pathsOf(path);
+      return POSSIBLE.test(entry.name) ? [path] : [];
+    });
 }

@@ -1,8 +1,8 @@
 // Files of the command line: what it reads, and the folders it writes to.
 
 import { createHash } from 'node:crypto';
-import { lstatSync, mkdirSync, readFileSync, type Stats, statSync } from 'node:fs';
-import { open, readFile, stat } from 'node:fs/promises';
+import { type Dirent, existsSync, lstatSync, mkdirSync, readdirSync, readFileSync, type Stats, statSync } from 'node:fs';
+import { open, readFile } from 'node:fs/promises';
 import { dirname, extname, resolve } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
 
@@ -14,37 +14,53 @@ const LARGEST = 512 * 1024 * 1024;
  * process from ending when it is told to. With `most`, of a larger one the beginning alone.
  */
 export async function readInput(path: string, most = Infinity): Promise<Uint8Array> {
+  const { size } = checkedFile(path);
+  if (Math.min(size, most) > LARGEST) throw new VeroneseError('unreadable-file', `'${path}' is larger than ${LARGEST / 1024 / 1024} MB`);
   try {
-    const status = await stat(path);
-    if (status.isDirectory()) throw new VeroneseError('unreadable-file', `'${path}' is a folder`);
-    if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${path}' is a pipe or a device, not a file`);
-    if (status.size > LARGEST) throw tooLarge(path);
-    if (status.size <= most) return new Uint8Array(await readFile(path));
+    if (size <= most) return new Uint8Array(await readFile(path));
     const file = await open(path);
     const { buffer, bytesRead } = await file.read(new Uint8Array(most), 0, most, 0).finally(() => file.close());
     return buffer.subarray(0, bytesRead);
   } catch (thrown) {
-    if (thrown instanceof VeroneseError) throw thrown;
-    const { code, message } = thrown as NodeJS.ErrnoException;
-    if (code === 'ENOENT' || code === 'ENOTDIR') throw notFound(path);
-    throw new VeroneseError('unreadable-file', `'${path}' cannot be read: ${message}`);
+    throw unreadable(path, thrown);
   }
+}
+
+/** The status of a file. Throws as {@link readInput}. */
+export function checkedFile(path: string): Stats {
+  let status: Stats;
+  try {
+    status = statSync(path);
+  } catch (thrown) {
+    throw unreadable(path, thrown);
+  }
+  if (status.isFile()) return status;
+  const kind = status.isDirectory() ? 'a folder' : 'a pipe or a device, not a file';
+  throw new VeroneseError('unreadable-file', `'${path}' is ${kind}`);
+}
+
+/** What is in a folder, by name. Throws as {@link readInput}. */
+export function entriesOf(folder: string): Dirent[] {
+  try {
+    return readdirSync(folder, { withFileTypes: true }).sort((one, other) => (one.name < other.name ? -1 : 1));
+  } catch (thrown) {
+    throw unreadable(folder, thrown);
+  }
+}
+
+/** The error of a place that cannot be read. */
+export function unreadable(path: string, thrown: unknown): VeroneseError {
+  const { code, message } = thrown as NodeJS.ErrnoException;
+  if (code === 'ENOENT' || (code === 'ENOTDIR' && !existsSync(path))) return notFound(path);
+  return new VeroneseError('unreadable-file', `'${path}' cannot be read: ${message}`);
 }
 
 /** Names the first folder on the way that is missing. */
 export function notFound(path: string): VeroneseError {
   let [missing, above] = [path, dirname(path)];
-  for (; above !== dirname(above) && !exists(above); above = dirname(above)) missing = above;
+  for (; above !== dirname(above) && !existsSync(above); above = dirname(above)) missing = above;
   const kind = missing !== path ? 'folder' : extname(path) === '' ? 'file or folder' : 'file';
   return new VeroneseError('file-not-found', `there is no ${kind} '${missing}'${missing === path ? '' : `, and so no '${path}'`}`);
-}
-
-function exists(place: string): boolean {
-  return statSync(place, { throwIfNoEntry: false }) !== undefined;
-}
-
-function tooLarge(path: string): VeroneseError {
-  return new VeroneseError('unreadable-file', `'${path}' is larger than ${LARGEST / 1024 / 1024} MB`);
 }
 
 /** Throws `write-failed` early, before the work, where the output folder cannot be one. */
@@ -94,7 +110,7 @@ export function makeFolder(folder: string): void {
   }
 }
 
-function isFolder(place: string): boolean {
+export function isFolder(place: string): boolean {
   return statSync(place, { throwIfNoEntry: false })?.isDirectory() === true;
 }
 
@@ -113,8 +129,17 @@ export function taken(place: string, reason: string): VeroneseError {
 }
 
 /** The content of a file that the program may have written. Undefined where there is none, or something else, which may keep a reader waiting. */
-export function readWritten(path: string): Buffer | undefined {
-  return lstatSync(path, { throwIfNoEntry: false })?.isFile() ? readFileSync(path) : undefined;
+export function readWritten(path: string): string | undefined {
+  return lstatSync(path, { throwIfNoEntry: false })?.isFile() ? readFileSync(path, 'utf8') : undefined;
+}
+
+/** The value in such a file of JSON. Undefined where it is missing, damaged or not ours. */
+export function parsedJson(path: string): unknown {
+  try {
+    return JSON.parse(readWritten(path) ?? '');
+  } catch {
+    return undefined;
+  }
 }
 
 export const sha256 = (bytes: Uint8Array | string): string => createHash('sha256').update(bytes).digest('hex');

@@ -1,16 +1,16 @@
 // Which frames a batch is made of: folders, patterns, files and lists of them, in a stated order.
 
-import { constants, lstatSync, openSync, readdirSync, statSync } from 'node:fs';
+import { constants, openSync, statSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { Socket } from 'node:net';
 import { basename, extname, join, parse, sep } from 'node:path';
 import { text } from 'node:stream/consumers';
 import type { Note } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
-import { notFound, readInput } from './files.js';
+import { entriesOf, notFound, readInput, unreadable } from './files.js';
 import { isFileName } from './sequence.js';
 
-const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
+export const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
 /** Pictures that are not read. */
 export const UNREAD_IMAGE = /\.(tiff?|avif|jp2|j2k|jxl|heic|heif|gif|exr|dng)$/i;
 const READ = 'PNG, JPEG, WebP, BMP or PNM';
@@ -25,8 +25,6 @@ export interface Frame {
   /** Of a frame that is no file to read: its content, and what its results are called by. */
   bytes?: Uint8Array;
   stem?: string;
-  /** Of a frame of a video: its position there, from 0. */
-  number?: number;
 }
 
 /**
@@ -79,32 +77,28 @@ export function leftOutNotes(names: readonly string[]): Note[] {
     .filter((name) => kindOf(name) === 'folder')
     .flatMap((name) => {
       const [first, ...others] = unreadIn(name);
-      if (first === undefined) return [];
-      return [
-        {
-          code: 'file-left-out',
-          message: `'${name}': not read: ${first}${others.length > 0 ? ` and ${others.length} more` : ''}; frames are ${READ}`,
-        },
-      ];
+      const more = others.length > 0 ? ` and ${others.length} more` : '';
+      return first === undefined ? [] : [{ code: 'file-left-out', message: `'${name}': not read: ${first}${more}; frames are ${READ}` }];
     });
 }
 
-function unreadIn(folder: string): string[] {
+/** The names in a folder that fit and are not hidden, in order. */
+function shownIn(folder: string, fits: RegExp): string[] {
   return entries(folder)
-    .filter((entry) => UNREAD_IMAGE.test(entry) && !entry.startsWith('.'))
+    .filter((entry) => fits.test(entry) && !entry.startsWith('.'))
     .sort(byNumbers);
 }
+
+const unreadIn = (folder: string): string[] => shownIn(folder, UNREAD_IMAGE);
 
 function framesOf(name: string): string[] {
   const kind = kindOf(name);
   if (kind === 'folder') {
-    const frames = entries(name).filter((entry) => IMAGE.test(entry) && !entry.startsWith('.'));
+    const frames = shownIn(name, IMAGE);
     const [unread] = unreadIn(name);
-    if (frames.length === 0 && unread !== undefined) {
-      throw new VeroneseError('unreadable-image', `no image in the folder '${name}' is read, such as '${unread}': frames are ${READ}`);
-    }
-    if (frames.length === 0) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
-    return frames.sort(byNumbers).map((entry) => join(name, entry));
+    if (frames.length > 0) return frames.map((entry) => join(name, entry));
+    if (unread === undefined) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
+    throw new VeroneseError('unreadable-image', `no image in the folder '${name}' is read, such as '${unread}': frames are ${READ}`);
   }
   if (kind || !MAGIC.test(name)) return [name];
   const found = matching(name);
@@ -118,9 +112,7 @@ export async function readList(list: string | undefined, stdin: NodeJS.ReadableS
   try {
     return (await contentOf(list, stdin)).split(/\r?\n/).filter((line) => line.trim() !== '');
   } catch (thrown) {
-    const { code, message } = thrown as NodeJS.ErrnoException;
-    if (code === 'ENOENT') throw notFound(list);
-    throw new VeroneseError('unreadable-file', `'${list}' cannot be read: ${message}`);
+    throw unreadable(list, thrown);
   }
 }
 
@@ -159,11 +151,8 @@ function matching(pattern: string): string[] {
 
 function below(folder: string, depth: number): string[] {
   if (depth === 0) return [];
-  const folders = entries(folder || '.')
-    .filter((name) => !name.startsWith('.'))
-    .map((name) => join(folder, name))
-    .filter((path) => kindOf(path, lstatSync) === 'folder');
-  return folders.flatMap((path) => [path, ...below(path, depth - 1)]);
+  const folders = entriesOf(folder || '.').filter((entry) => entry.isDirectory() && !entry.name.startsWith('.'));
+  return folders.map(({ name }) => join(folder, name)).flatMap((path) => [path, ...below(path, depth - 1)]);
 }
 
 function exists(path: string, asFile: boolean): boolean {
@@ -174,9 +163,9 @@ function exists(path: string, asFile: boolean): boolean {
  * The kind of a path, if anything is there. One that cannot be looked at (a link that leads to itself, something in a locked folder) counts
  * as a file: reading it gives the error, and the other pairs go on.
  */
-function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | undefined {
+function kindOf(path: string): 'file' | 'folder' | 'other' | undefined {
   try {
-    const status = look(path, { throwIfNoEntry: false });
+    const status = statSync(path, { throwIfNoEntry: false });
     return status && (status.isFile() ? 'file' : status.isDirectory() ? 'folder' : 'other');
   } catch {
     return 'file';
@@ -184,22 +173,15 @@ function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | un
 }
 
 function entries(folder: string): string[] {
-  try {
-    return readdirSync(folder);
-  } catch (thrown) {
-    throw new VeroneseError('unreadable-file', `'${folder}' cannot be read: ${(thrown as Error).message}`);
-  }
+  return entriesOf(folder).map(({ name }) => name);
 }
 
 function expression(part: string): RegExp {
   const source = part.replace(/\[!?[^\]]+\]|[\s\S]/g, (piece) => {
     if (piece === '*') return '.*';
     if (piece === '?') return '.';
-    if (piece.length > 1)
-      return `[${piece
-        .slice(1, -1)
-        .replace(/^!/, '^')
-        .replace(/[\\\]]/g, '\\$&')}]`;
+    const letters = piece.slice(1, -1).replace(/^!/, '^');
+    if (piece.length > 1) return `[${letters.replace(/[\\\]]/g, '\\$&')}]`;
     return piece.replace(/[.+^${}()|[\]\\/]/, '\\$&');
   });
   return new RegExp(`^${source}$`, 's');

@@ -181,7 +181,7 @@ export class Output {
 
   /** Reads the list; false where there is none, or something else in its place. */
   #readList(): boolean {
-    const [header, ...paths] = readWritten(join(this.folder, LIST))?.toString().split('\n') ?? [];
+    const [header, ...paths] = readWritten(join(this.folder, LIST))?.split('\n') ?? [];
     if (header !== HEADER) return false;
     // A path may not lead out of the folder.
     for (const path of paths) if (path.split('/').every(isFileName)) this.#listed.set(keyOf(path), path);

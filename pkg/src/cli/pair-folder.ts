@@ -6,7 +6,7 @@ import { groupLabels } from '../calls/labels.js';
 import { isListOf, isObject, isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { readJson, readLabels } from './label-files.js';
-import type { PairSettings } from './pair.js';
+import type { PairSettings, Report } from './pair.js';
 
 /** Most motions of a pair, as in the core. */
 const MOST_MOTIONS = 10;
@@ -30,29 +30,8 @@ export function isImageOfPair(path: string): boolean {
   return /^(mask-\d+|overlay|confidence)\.png$/.test(path);
 }
 
-/** The part of result.json that is read. */
-interface Result {
-  width: number;
-  height: number;
-  motions: SegmentedMotion[];
-  /** In a batch: the frames it was made of. */
-  inputs: { name: string }[];
-}
-
-/** A pair's labels, and the motions that they stand for. */
-export interface Pair {
-  labels: Uint8Array;
-  width: number;
-  height: number;
-  motions: SegmentedMotion[];
-  /** Whether these are groups. */
-  grouped: boolean;
-  /** Names of the frames' files, where the report has them. */
-  inputs: string[];
-}
-
-/** `grouped`: groups instead of motions, also where labels.png has motions. */
-export async function readPair(folder: string, grouped: boolean): Promise<Pair> {
+/** A pair's labels, and the motions that they stand for. `grouped`: groups instead of motions, also where labels.png has motions. */
+export async function readPair(folder: string, grouped: boolean) {
   const [picture, report] = [join(folder, 'labels.png'), join(folder, RESULT)];
   const { labels, width, height } = await readLabels(picture);
   const result = resultOf(await readJson(report), report);
@@ -65,13 +44,15 @@ export async function readPair(folder: string, grouped: boolean): Promise<Pair> 
   if (!single && !belongs(labels, new Map(groups.map(({ label, pixels }) => [label, pixels])))) {
     throw new VeroneseError('invalid-input', `'${picture}' and '${report}' are not of the same result`);
   }
+  /** Names of the frames' files, where the report has them. */
   const inputs = result.inputs.map(({ name }) => name);
   if (single && !grouped) return { labels, width, height, motions: result.motions, grouped: false, inputs };
   const shown = single ? groupLabels({ labels, motions: result.motions }) : labels;
   return { labels: shown, width, height, motions: groups, grouped: true, inputs };
 }
 
-export function resultOf(value: unknown, path: string): Result {
+/** The part of result.json that is read. */
+export function resultOf(value: unknown, path: string) {
   const whole = (value: unknown): boolean => Number.isSafeInteger(value) && (value as number) >= 0;
   const label = (value: unknown): boolean => isWhole(value, 0, UNLABELLED - 1);
   const numbers = (value: unknown, count: number): boolean =>
@@ -87,7 +68,8 @@ export function resultOf(value: unknown, path: string): Result {
   const input = (file: unknown): file is { name: string } => isObject(file) && typeof file['name'] === 'string';
   if (isObject(value) && whole(value['width']) && whole(value['height']) && isListOf(value['motions'], motion)) {
     const inputs = value['inputs'] ?? [];
-    if (isListOf(inputs, input)) return { ...(value as unknown as Result), inputs };
+    const { width, height, motions } = value as unknown as Report;
+    if (isListOf(inputs, input)) return { width, height, motions, inputs };
   }
   throw new VeroneseError('invalid-input', `'${path}' is not a result of 'veronese pair'`);
 }

@@ -4,7 +4,7 @@ import { type ChildProcess, spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { join } from 'node:path';
 import type { ClipFrame, Pixels } from '../../types/index.js';
-import { isWhole, UNLABELLED } from '../common/checks.js';
+import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { scaled } from '../common/scaling.js';
 import { encodePng } from '../entries/codecs.js';
@@ -12,12 +12,7 @@ import { overlay } from './overlay.js';
 
 /** N is the number of an object. */
 export const SHOWN = [
-  'overlay.mp4',
-  'overlay.webm',
-  'overlay.gif',
-  'beside.mp4',
-  'beside.webm',
-  'beside.gif',
+  ...['overlay', 'beside'].flatMap((kind) => ['mp4', 'webm', 'gif'].map((format) => `${kind}.${format}`)),
   'sheet.png',
   'cutout-N',
   'cutout-N.webm',
@@ -55,17 +50,11 @@ const SHEET = { most: 12, columns: 4, longest: 480, space: 4 };
 
 /** What a name stands for; undefined where it stands for nothing. */
 export function shownOf(name: string): Shown | undefined {
-  const [, kind, number, end] = /^(overlay|beside|sheet|cutout)(?:-(\d+))?(?:\.(\w+))?$/.exec(name) ?? [];
-  const object = Number(number);
-  const known = kind === 'cutout' ? isWhole(object, 0, UNLABELLED - 1) && String(object) === number : number === undefined;
-  const pattern = kind === 'cutout' ? name.replace(/\d+/, 'N') : name;
-  if (!known || !SHOWN.includes(pattern)) return undefined;
-  return {
-    name,
-    kind: kind as Shown['kind'],
-    object,
-    format: end === undefined || end === 'png' ? undefined : (end as keyof typeof ENCODERS),
-  };
+  const [, kind, number = '0', end] = /^(overlay|beside|sheet|cutout(?=-\d))(?:-(0|[1-9]\d*))?(?:\.(\w+))?$/.exec(name) ?? [];
+  const pattern = name.replace(/-\d+/, '-N');
+  if (kind === undefined || !SHOWN.includes(pattern) || Number(number) >= UNLABELLED) return undefined;
+  const format = end === 'png' ? undefined : (end as Shown['format']);
+  return { name, kind: kind as Shown['kind'], object: Number(number), format };
 }
 
 /** The paths of what is shown of frames with these names. */
@@ -89,69 +78,50 @@ export async function checkFilms(shown: readonly Shown[]): Promise<void> {
   });
 }
 
-export class Showing {
-  readonly #shown: readonly Shown[];
-  readonly #folder: () => string;
-  readonly #count: number;
-  readonly #rate: number;
-  readonly #films = new Map<string, Film>();
-  readonly #tiles: Pixels[] = [];
+export type Showing = ReturnType<typeof shownOn>;
 
-  /** `folder` is that of what is not complete; `count` is the number of frames, `rate` that of the films. */
-  constructor(shown: readonly Shown[], { folder, count, rate }: { folder: () => string; count: number; rate: number }) {
-    this.#shown = shown;
-    this.#folder = folder;
-    this.#count = count;
-    this.#rate = rate;
-  }
-
-  /** Takes the next frame; returns its pictures by the folders that they belong to. */
-  async add({ index, labels }: ClipFrame, { data, width, height }: Pixels): Promise<{ [folder: string]: Uint8Array }> {
-    const pictures: { [folder: string]: Uint8Array } = {};
-    let painted: Uint8Array | undefined;
-    for (const shown of this.#shown) {
-      const { name, kind, object, format } = shown;
-      if (kind === 'cutout') {
-        const cut = cutOut(data, labels, object);
-        if (format) await this.#film(shown, width, height).take(cut);
-        else pictures[name] = await encodePng(width, height, cut);
-        continue;
-      }
-      painted ??= overlay(data as Uint8Array, labels);
-      if (kind === 'sheet') {
-        if (this.#isOnSheet(index)) this.#tiles.push(scaled({ data: painted, width, height }, SHEET.longest));
-      } else if (kind === 'beside') {
-        await this.#film(shown, 2 * width, height).take(beside(data, painted, width));
-      } else {
-        await this.#film(shown, width, height).take(painted);
-      }
-    }
-    return pictures;
-  }
-
-  /** Ends the films, which are in the folder then; returns the sheet, if one is wanted. */
-  async end(): Promise<{ films: string[]; sheet: Uint8Array | undefined }> {
-    for (const film of this.#films.values()) await film.end();
-    return { films: [...this.#films.keys()], sheet: this.#tiles.length > 0 ? await sheetOf(this.#tiles) : undefined };
-  }
-
-  close(): void {
-    for (const film of this.#films.values()) film.close();
-  }
-
-  #isOnSheet(index: number): boolean {
-    const tiles = Math.min(SHEET.most, this.#count);
-    const at = Math.round((index * (tiles - 1)) / (this.#count - 1));
-    return index === Math.round((at * (this.#count - 1)) / (tiles - 1));
-  }
-
-  #film(shown: Shown, width: number, height: number): Film {
-    const known = this.#films.get(shown.name);
-    if (known) return known;
-    const film = new Film(shown, join(this.#folder(), shown.name), { width, height, rate: this.#rate });
-    this.#films.set(shown.name, film);
+/** What is shown of a clip. `folder` is that of what is not complete; `count` is the number of frames, `rate` that of the films. */
+export function shownOn(all: readonly Shown[], { folder, count, rate }: { folder: () => string; count: number; rate: number }) {
+  const films = new Map<string, Film>();
+  const tiles: Pixels[] = [];
+  const filmOf = (shown: Shown, width: number, height: number): Film => {
+    const film = films.get(shown.name) ?? new Film(shown, join(folder(), shown.name), { width, height, rate });
+    films.set(shown.name, film);
     return film;
-  }
+  };
+  const isOnSheet = (index: number) => {
+    const most = Math.min(SHEET.most, count) - 1;
+    return index === Math.round((Math.round((index * most) / (count - 1)) * (count - 1)) / most);
+  };
+  return {
+    /** Takes the next frame; returns its pictures by the folders that they belong to. */
+    async add({ index, labels }: ClipFrame, { data, width, height }: Pixels): Promise<{ [folder: string]: Uint8Array }> {
+      const pictures: { [folder: string]: Uint8Array } = {};
+      let painted: Uint8Array | undefined;
+      for (const shown of all) {
+        const { name, kind, object, format } = shown;
+        if (kind === 'cutout') {
+          const cut = cutOut(data, labels, object);
+          if (format) await filmOf(shown, width, height).take(cut);
+          else pictures[name] = await encodePng(width, height, cut);
+          continue;
+        }
+        painted ??= overlay(data as Uint8Array, labels);
+        if (kind === 'beside') await filmOf(shown, 2 * width, height).take(beside(data, painted, width));
+        else if (kind === 'overlay') await filmOf(shown, width, height).take(painted);
+        else if (isOnSheet(index)) tiles.push(scaled({ data: painted, width, height }, SHEET.longest));
+      }
+      return pictures;
+    },
+    /** Ends the films, which are in the folder then; returns the sheet, if one is wanted. */
+    async end(): Promise<{ films: string[]; sheet: Uint8Array | undefined }> {
+      for (const film of films.values()) await film.end();
+      return { films: [...films.keys()], sheet: tiles.length > 0 ? await sheetOf(tiles) : undefined };
+    },
+    close(): void {
+      for (const film of films.values()) film.close();
+    },
+  };
 }
 
 /** A film that ffmpeg encodes from RGB, or from RGBA where it has transparency. */
@@ -163,22 +133,10 @@ class Film {
 
   constructor({ name, kind, format }: Shown, path: string, { width, height, rate }: { width: number; height: number; rate: number }) {
     this.#name = name;
-    const { opaque = [], transparent = [] }: { opaque?: readonly string[]; transparent?: readonly string[] } =
-      ENCODERS[format as keyof typeof ENCODERS];
-    const cut = kind === 'cutout';
-    const input = [
-      '-f',
-      'rawvideo',
-      '-pix_fmt',
-      cut ? 'rgba' : 'rgb24',
-      '-s',
-      `${width}x${height}`,
-      '-framerate',
-      String(rate),
-      '-i',
-      'pipe:0',
-    ];
-    const args = ['-v', 'error', '-y', ...input, ...(cut ? transparent : opaque), `file:${path}`];
+    const encoder: { opaque?: readonly string[]; transparent?: readonly string[] } = ENCODERS[format as keyof typeof ENCODERS];
+    const [pixels, output = []] = kind === 'cutout' ? ['rgba', encoder.transparent] : ['rgb24', encoder.opaque];
+    const input = `-v error -y -f rawvideo -pix_fmt ${pixels} -s ${width}x${height} -framerate ${rate} -i pipe:0`;
+    const args = [...input.split(' '), ...output, `file:${path}`];
     this.#ffmpeg = spawn('ffmpeg', args, { stdio: ['pipe', 'ignore', 'pipe'] });
     this.#ffmpeg.stderr?.on('data', (piece) => (this.#messages += String(piece)));
     // Why it takes no more shows when it ends.

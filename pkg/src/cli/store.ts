@@ -3,7 +3,7 @@
 import { renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { version } from '../calls/version.js';
-import { lookAt, makeFolder, type OutputFile, readWritten, sha256, writing } from './files.js';
+import { lookAt, makeFolder, type OutputFile, parsedJson, sha256, writing } from './files.js';
 import { Output } from './output.js';
 import { filesOfPair, isImageOfPair, RESULT } from './pair-folder.js';
 import { type InputFile, jsonLine, type PairSettings, type Report } from './pair.js';
@@ -23,15 +23,11 @@ export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay,
 
 /** The manifest in a pair's folder if it is of this job, and all images are there. */
 export function finished(folder: string, job: string, { options, grouped, overlay }: PairSettings): PairManifest | undefined {
-  try {
-    const manifest = JSON.parse(readWritten(join(folder, RESULT))?.toString() ?? '') as PairManifest;
-    if (manifest.job !== job) return undefined;
-    const labels = manifest.motions.map(({ label, group }) => (grouped ? group : label));
-    const isWhole = filesOfPair(labels, { overlay, confidence: options.confidence }).every((name) => lookAt(join(folder, name))?.isFile());
-    return isWhole ? manifest : undefined;
-  } catch {
-    return undefined; // Not there, or not ours: to be done.
-  }
+  const manifest = parsedJson(join(folder, RESULT)) as PairManifest | undefined;
+  if (manifest?.job !== job) return undefined;
+  const labels = manifest.motions.map(({ label, group }) => (grouped ? group : label));
+  const files = filesOfPair(labels, { overlay, confidence: options.confidence });
+  return files.every((name) => lookAt(join(folder, name))?.isFile()) ? manifest : undefined;
 }
 
 export function manifestFiles(report: Report, job: string, inputs: readonly InputFile[], images: readonly OutputFile[]): OutputFile[] {

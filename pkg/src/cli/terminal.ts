@@ -67,37 +67,25 @@ export interface Tally {
 const INTERVAL = 100;
 const WIDTH = 24;
 
-/** A line that is drawn over and over, only where a person looks: on a terminal. */
-export class ProgressBar {
-  readonly #stream: Stderr;
-  readonly #total: number | undefined;
-  readonly #now: () => number;
-  readonly #unit: string;
-  readonly #title: string;
-  readonly #started: number;
-  #drawn = -Infinity;
-
-  /** `total`: the number of pairs (or of `unit`), where it is known. `title`: what is done with them. */
-  constructor(total: number | undefined, stream: Stderr, { unit = 'pairs', title = '', now = () => performance.now() } = {}) {
-    this.#total = total;
-    this.#unit = unit;
-    this.#title = title;
-    this.#stream = stream;
-    this.#now = now;
-    this.#started = now();
-  }
-
-  update(tally: Tally): void {
-    const now = this.#now();
-    if (!this.#stream.isTTY || this.#stream.quiet || now - this.#drawn < INTERVAL) return;
-    this.#drawn = now;
-    this.#stream.write(`\r\u001b[K${this.#title}${line(tally, this.#total, (now - this.#started) / 1000, this.#unit)}`);
-  }
-
-  /** Takes the line away, for what is to be read there. */
-  clear(): void {
-    if (this.#drawn > -Infinity) this.#stream.write('\r\u001b[K');
-  }
+/**
+ * A line that is drawn over and over, only where a person looks: on a terminal. `total`: the number of pairs (or of `unit`), where it is
+ * known. `title`: what is done with them.
+ */
+export function progressBar(total: number | undefined, stream: Stderr, { unit = 'pairs', title = '', now = () => performance.now() } = {}) {
+  const started = now();
+  let drawn = -Infinity;
+  return {
+    update(tally: Tally): void {
+      const time = now();
+      if (!stream.isTTY || stream.quiet || time - drawn < INTERVAL) return;
+      drawn = time;
+      stream.write(`\r\u001b[K${title}${line(tally, total, (time - started) / 1000, unit)}`);
+    },
+    /** Takes the line away, for what is to be read there. */
+    clear(): void {
+      if (drawn > -Infinity) stream.write('\r\u001b[K');
+    },
+  };
 }
 
 function line({ done, skipped, failed }: Tally, total: number | undefined, seconds: number, unit: string): string {

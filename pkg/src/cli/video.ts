@@ -1,15 +1,13 @@
 // Frames of a video, one after another, as the program ffmpeg decodes them.
 
 import { execFile, spawn } from 'node:child_process';
-import { type Stats, statSync } from 'node:fs';
-import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
 import { createInterface } from 'node:readline';
 import { promisify } from 'node:util';
 import type { Note } from '../../types/index.js';
 import { isFrameRate, isRising } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
-import { notFound } from './files.js';
+import { checkedFile, readInput } from './files.js';
 import { checkName, type Frame } from './frames.js';
 import type { Io } from './io.js';
 import { warn } from './terminal.js';
@@ -67,27 +65,16 @@ export function timesOf({ times, frameRate }: VideoInfo, count: number, every: n
 
 /** What is assumed of the video. */
 export function notesOnVideo(file: string, { light, aspect, isInterlaced, size, change }: VideoInfo): Note[] {
-  const notes: Note[] = [];
-  if (light)
-    notes.push({
-      code: 'video-hdr',
-      message: `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping`,
-    });
-  if (aspect)
-    notes.push({
-      code: 'video-aspect',
-      message: `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file`,
-    });
-  if (isInterlaced) {
-    const remedy = `what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away`;
-    notes.push({ code: 'video-interlaced', message: `'${file}' is interlaced, its frames are of two moments each: ${remedy}` });
-  }
-  if (change)
-    notes.push({
-      code: 'video-size',
-      message: `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}`,
-    });
-  return notes;
+  const combed = "what moves is combed in them; 'ffmpeg -i IN -vf bwdif=0 OUT' takes that away";
+  const messages = {
+    'video-hdr': light && `'${file}' is HDR (${light}): its brightness is taken as that of a usual video, without tone mapping`,
+    'video-aspect': aspect && `the pixels of '${file}' are no squares but ${aspect}: frames have the pixels that are in the file`,
+    'video-interlaced': isInterlaced && `'${file}' is interlaced, its frames are of two moments each: ${combed}`,
+    'video-size':
+      change &&
+      `the frames of '${file}' change from ${size} to ${change.size} pixels, the first time at number ${change.index} of those taken: all are scaled to ${size}`,
+  };
+  return Object.entries(messages).flatMap(([code, message]) => (message ? [{ code, message }] : []));
 }
 
 /** Enters what a line of ffmpeg reports about the video. */
@@ -119,30 +106,16 @@ export async function* videoFrames(
   about?: VideoInfo,
 ): AsyncGenerator<Frame, void, undefined> {
   checkName(file);
-  const status = statusOf(file);
-  if (!status) throw notFound(file);
-  if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
-  const input = [
-    '-nostdin',
-    '-hide_banner',
-    '-nostats',
-    '-v',
-    'level+info',
-    '-protocol_whitelist',
-    'file,pipe',
-    '-i',
-    `file:${file}`,
-    '-map',
-    '0:v:0',
-  ];
-  const filters = ['-vf', [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])].join()].filter(
-    (_, __, [, chain]) => chain,
-  );
+  const { size } = checkedFile(file);
+  const input = '-nostdin -hide_banner -nostats -v level+info -protocol_whitelist file,pipe -i'.split(' ');
+  const filters = [...(every === 1 ? [] : [`select=not(mod(n\\,${every}))`]), ...(about ? ['showinfo'] : [])];
   // Each frame that is in the file, and none twice, whatever its time is.
-  const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
-  const ffmpeg = spawn('ffmpeg', [...input, ...filters, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', '-pix_fmt', 'rgb24', 'pipe:1'], {
-    stdio: ['ignore', 'pipe', 'pipe'],
-  });
+  const exact = [...(await framesAsTheyAre()), ...'-an -sn -f image2pipe -c:v ppm -pix_fmt rgb24 pipe:1'.split(' ')];
+  const ffmpeg = spawn(
+    'ffmpeg',
+    [...input, `file:${file}`, '-map', '0:v:0', ...(filters.length > 0 ? ['-vf', filters.join()] : []), ...exact],
+    { stdio: ['ignore', 'pipe', 'pipe'] },
+  );
   const end = () => void ffmpeg.kill('SIGKILL');
   io.signal.addEventListener('abort', end);
   let messages = '';
@@ -158,12 +131,12 @@ export async function* videoFrames(
   try {
     let number = 0;
     for await (const bytes of pixmaps(ffmpeg.stdout, file)) {
-      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, number, bytes };
+      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, bytes };
       number += every;
     }
     const problem = await ended;
     if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(messages, file) ?? problem}`);
-    const damage = lastLine(messages) ?? (await missingEnd(file, status.size));
+    const damage = lastLine(messages) ?? (await missingEnd(file, size));
     if (damage === undefined || (allowDamaged && quiet)) return;
     const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
     if (!allowDamaged) throw new VeroneseError('unreadable-video', `${sentence}; '--allow-damaged' takes them as they are`);
@@ -178,79 +151,47 @@ export async function* videoFrames(
  * Frames of a video in any order. Those that follow each other come from one run of ffmpeg; those before it from the frames that are
  * kept, else from another run.
  */
-export class VideoReader {
-  readonly #video: Video;
-  readonly #io: Io;
-  #run: AsyncGenerator<Frame, void, undefined> | undefined;
-  /** Index of the frame that the run gives next. */
-  #next = 0;
-  readonly #kept = new Map<number, Uint8Array>();
+export function videoReader(video: Video, io: Io) {
+  const kept = new Map<number, Uint8Array>();
+  let run: ReturnType<typeof videoFrames> | undefined;
+  /** Index of the frame that the run gives next, and bytes of those that are kept. */
+  let [next, size] = [0, 0];
   /** Reads run one at a time: a frame may be read ahead while an earlier one is wanted again. */
-  #queue: Promise<unknown> = Promise.resolve();
-  #size = 0;
-
-  constructor(video: Video, io: Io) {
-    this.#video = video;
-    this.#io = io;
-  }
-
-  /** The content of a frame, by its index among those that are taken; undefined after the last one. */
-  read(index: number): Promise<Uint8Array | undefined> {
-    return this.#inTurn(() => this.#read(index));
-  }
-
-  /** Ends the run. */
-  close(): Promise<void> {
-    return this.#inTurn(() => this.#close());
-  }
-
-  #inTurn<T>(work: () => Promise<T>): Promise<T> {
-    const turn = this.#queue.then(work);
-    this.#queue = turn.catch(() => undefined);
+  let queue: Promise<unknown> = Promise.resolve();
+  const inTurn = <T>(work: () => Promise<T>): Promise<T> => {
+    const turn = queue.then(work);
+    queue = turn.catch(() => undefined);
     return turn;
-  }
-
-  async #read(index: number): Promise<Uint8Array | undefined> {
-    const kept = this.#kept.get(index);
-    if (kept) return kept;
-    if (index < this.#next) await this.#close();
-    this.#run ??= videoFrames(this.#video, this.#io);
-    for (;;) {
-      const { value } = await this.#run.next();
-      if (!value) {
-        await this.#close();
-        return undefined;
+  };
+  const close = async () => {
+    await run?.return();
+    run = undefined;
+    [next, size] = [0, 0];
+    kept.clear();
+  };
+  const read = async (index: number) => {
+    if (index < next && !kept.has(index)) await close();
+    run ??= videoFrames(video, io);
+    while (!kept.has(index)) {
+      const { value } = await run.next();
+      if (!value) return close();
+      const { bytes } = value as { bytes: Uint8Array };
+      kept.set(next++, bytes);
+      size += bytes.length;
+      for (const [old, { length }] of kept) {
+        if (size <= WINDOW || kept.size === 1) break;
+        kept.delete(old);
+        size -= length;
       }
-      this.#keep(value.bytes as Uint8Array);
-      if (this.#next > index) return value.bytes;
     }
-  }
-
-  async #close(): Promise<void> {
-    await this.#run?.return();
-    this.#run = undefined;
-    this.#next = 0;
-    this.#size = 0;
-    this.#kept.clear();
-  }
-
-  #keep(bytes: Uint8Array): void {
-    this.#kept.set(this.#next++, bytes);
-    this.#size += bytes.length;
-    for (const [index, { length }] of this.#kept) {
-      if (this.#size <= WINDOW || this.#kept.size === 1) return;
-      this.#kept.delete(index);
-      this.#size -= length;
-    }
-  }
-}
-
-function statusOf(file: string): Stats | undefined {
-  try {
-    return statSync(file, { throwIfNoEntry: false });
-  } catch (thrown) {
-    throw new VeroneseError('unreadable-file', `'${file}' cannot be read: ${(thrown as Error).message}`);
-  }
+    return kept.get(index);
+  };
+  return {
+    /** The content of a frame, by its index among those that are taken; undefined after the last one. */
+    read: (index: number): Promise<Uint8Array | undefined> => inTurn(async () => (await read(index)) ?? undefined),
+    /** Ends the run. */
+    close: () => inTurn(close),
+  };
 }
 
 /** The option has had this name since 5.1; the older one went later. */
@@ -277,15 +218,10 @@ function reasonIn(messages: string, file: string): string | undefined {
 
 /** The missing bytes of a file that states its length (RIFF, as AVI). A cut between two frames is no error to ffmpeg. */
 async function missingEnd(file: string, size: number): Promise<string | undefined> {
-  const handle = await open(file);
-  try {
-    const { buffer } = await handle.read(Buffer.alloc(8), 0, 8, 0);
-    const length = buffer.toString('latin1', 0, 4) === 'RIFF' ? buffer.readUInt32LE(4) + 8 : 0;
-    // A file that was written to a pipe states no length, or the largest.
-    return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
-  } finally {
-    await handle.close();
-  }
+  const head = Buffer.from(await readInput(file, 8));
+  const length = head.toString('latin1', 0, 4) === 'RIFF' && head.length === 8 ? head.readUInt32LE(4) + 8 : 0;
+  // A file that was written to a pipe states no length, or the largest.
+  return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
 }
 
 function lastLine(text: string): string | undefined {
@@ -294,40 +230,32 @@ function lastLine(text: string): string | undefined {
 
 /** Cuts a stream of binary pixmaps into its pictures. */
 export async function* pixmaps(stream: AsyncIterable<Uint8Array>, file: string): AsyncGenerator<Uint8Array, void, undefined> {
-  let chunks: Uint8Array[] = [];
-  let held = 0;
-  let needed: number | undefined;
+  let held: Uint8Array[] = [];
+  /** Bytes that the next picture needs at least. */
+  let missing = 0;
   for await (const chunk of stream) {
-    chunks.push(chunk);
-    held += chunk.length;
-    for (;;) {
-      if (needed === undefined) {
-        if (held === 0) break;
-        chunks = [Buffer.concat(chunks)];
-        needed = lengthOf(chunks[0] as Buffer, file);
-        if (needed === undefined) break; // The header is not whole yet.
-      }
-      if (held < needed) break;
-      const all = Buffer.concat(chunks);
-      yield new Uint8Array(all.subarray(0, needed));
-      chunks = [all.subarray(needed)];
-      held -= needed;
-      needed = undefined;
+    held.push(chunk);
+    missing -= chunk.length;
+    if (missing > 0) continue;
+    let rest = Buffer.concat(held);
+    let length = lengthOf(rest, file);
+    for (; length <= rest.length; length = lengthOf(rest, file)) {
+      yield new Uint8Array(rest.subarray(0, length));
+      rest = rest.subarray(length);
     }
+    [held, missing] = [[rest], length - rest.length];
   }
-  if (held > 0) throw new VeroneseError('unreadable-video', `'${file}': the last frame is cut off`);
+  if (held.some(({ length }) => length > 0)) throw new VeroneseError('unreadable-video', `'${file}': the last frame is cut off`);
 }
 
-/** The length in bytes of the pixmap that begins here, or undefined while its header is not whole. */
-function lengthOf(bytes: Buffer, file: string): number | undefined {
+/** The length in bytes of the pixmap that begins here, or more than there is while its header is not whole. */
+function lengthOf(bytes: Buffer, file: string): number {
   const header = bytes.subarray(0, 40).toString('latin1');
   const [text, width, height] = /^P6\s(\d+)\s(\d+)\s255\s/.exec(header) ?? [];
   if (text === undefined) {
-    if (bytes.length < 40) return undefined;
-    throw new VeroneseError(
-      'unreadable-video',
-      `'${file}': ffmpeg gave something else than frames of 8 bits: ${JSON.stringify(header.slice(0, 20))}`,
-    );
+    if (bytes.length < 40) return bytes.length + 1;
+    const found = JSON.stringify(header.slice(0, 20));
+    throw new VeroneseError('unreadable-video', `'${file}': ffmpeg gave something else than frames of 8 bits: ${found}`);
   }
   const sides = [Number(width), Number(height)] as const;
   if (Math.max(...sides) > LONGEST_SIDE)

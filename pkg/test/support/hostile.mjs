@@ -94,9 +94,7 @@ export const measurements = points(40, 1, 2);
  */
 export const CALLS = {
   'segmentPair: first': ['segmentPair', (v) => [v, second], []],
-  'segmentPair: second': ['segmentPair', (v) => [first, v], []],
   'segmentPair: data': ['segmentPair', (v) => [{ ...first, data: v }, second], []],
-  'segmentPair: width': ['segmentPair', (v) => [{ ...first, width: v }, second], []],
   'segmentPair: height': ['segmentPair', (v) => [first, { ...second, height: v }], []],
   'segmentPair: options': ['segmentPair', (v) => [first, second, v], OPTIONS],
   'segmentPair: motions': ['segmentPair', (v) => [first, second, { motions: v }], ['undefined', 'one']],
@@ -108,15 +106,12 @@ export const CALLS = {
   'segmentPair: onProgress': ['segmentPair', (v) => [first, second, { onProgress: v }], ['undefined', 'function']],
   'segmentPair: transfer': ['segmentPair', (v) => [structuredClone(first), structuredClone(second), { transfer: v }], ['undefined', 'true', 'false']],
   'segmentPair: an option that does not exist': ['segmentPair', (v) => [first, second, { nonsense: v }], ['undefined']],
-  'segmentPair: an option of fitMotions': ['segmentPair', (v) => [first, second, { method: v }], ['undefined']],
   'fitMotions: measurements': ['fitMotions', (v) => [v], []],
   'fitMotions: positions': ['fitMotions', (v) => [{ ...measurements, positions: v }], []],
-  'fitMotions: derivatives': ['fitMotions', (v) => [{ ...measurements, derivatives: v }], []],
   'fitMotions: options': ['fitMotions', (v) => [measurements, v], OPTIONS],
   'fitMotions: motions': ['fitMotions', (v) => [measurements, { motions: v }], ['undefined', 'one']],
   'fitMotions: method': ['fitMotions', (v) => [measurements, { method: v }], ['undefined']],
   'fitMotions: seed': ['fitMotions', (v) => [measurements, { seed: v }], ['undefined', 'zero', 'one', '300', 'more than 32 bits']],
-  'fitMotions: an option that does not exist': ['fitMotions', (v) => [measurements, { nonsense: v }], ['undefined']],
 };
 
 /** The outcome of a call: its result, or the error's code and sentence. */
@@ -153,15 +148,11 @@ export const STREAMS = {
   frames: [(v) => [iterated(v)], []],
   'a frame': [(v) => [[first, awaited(v)]], []],
   data: [(v) => [[first, { ...second, data: v }]], []],
-  width: [(v) => [[first, { ...second, width: v }]], []],
   options: [(v) => [[first, second], v], OPTIONS],
-  motions: [(v) => [[first, second], { motions: v }], ['undefined', 'one']],
-  quality: [(v) => [[first, second], { quality: v }], ['undefined']],
   lookAhead: [(v) => [[first, second], { lookAhead: v }], ['undefined', 'zero', 'one']],
   signal: [(v) => [[first, second], { signal: v }], ['undefined']],
   onProgress: [(v) => [[first, second], { onProgress: v }], ['undefined', 'function']],
   transfer: [(v) => [[structuredClone(first), structuredClone(second)], { transfer: v }], ['undefined', 'true', 'false']],
-  subject: [(v) => [[first, second], { subject: v }], ['undefined', 'true', 'false']],
   markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined', 'true', 'false']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
 };

@@ -1,9 +1,12 @@
 // The contract of results, field by field.
 
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import Ajv from 'ajv/dist/2020.js';
+
+const isResult = new Ajv().compile(JSON.parse(readFileSync(new URL('../../schemas/result.schema.json', import.meta.url), 'utf8')));
 
 const finite = (value, name) => assert.ok(typeof value === 'number' && Number.isFinite(value), `${name} is ${value}`);
-const whole = (value, name) => assert.ok(Number.isInteger(value) && value >= 0, `${name} is ${value}`);
 
 export function checkMatrix(matrix) {
   assert.ok(Array.isArray(matrix));
@@ -11,71 +14,24 @@ export function checkMatrix(matrix) {
   for (const entry of matrix) finite(entry, 'a matrix entry');
 }
 
-function checkMilliseconds(milliseconds) {
-  for (const [stage, value] of Object.entries(milliseconds)) {
-    finite(value, stage);
-    assert.ok(value >= 0, stage);
-    assert.match(stage, /^[a-z][a-zA-Z0-9]*$/);
-  }
-  finite(milliseconds.total, 'total');
-}
-
-function checkCandidates(candidates) {
-  assert.ok(Array.isArray(candidates));
-  for (const { motions, score } of candidates) {
-    assert.ok(Number.isInteger(motions) && motions >= 1 && motions <= 10);
-    finite(score, 'score');
-  }
-}
-
-function checkJunctions({ junctions, count, width, height }) {
-  assert.ok(Array.isArray(junctions));
-  let last = -1;
-  for (const { labels, likelihood, border, ...others } of junctions) {
-    assert.deepEqual(others, {});
-    const [one, other] = labels;
-    assert.equal(labels.length, 2);
-    whole(one, 'a label of a junction');
-    assert.ok(one < other && other < count, 'labels of a junction');
-    assert.ok(one * count + other > last, 'junctions by labels');
-    last = one * count + other;
-    finite(likelihood, 'a likelihood');
-    assert.ok(likelihood >= 0 && likelihood <= 1);
-    whole(border, 'a border');
-    assert.ok(border > 0 && border < 2 * width * height);
-  }
-}
-
-/** The JSON of a pair, without labels. */
+/** The JSON of a pair: as its schema says, and without contradictions. */
 export function checkPair(result, width, height) {
-  assert.equal(result.version, 1);
-  assert.equal(result.width, width);
-  assert.equal(result.height, height);
-  assert.equal(result.count, result.motions.length);
-  assert.ok(result.count >= 1 && result.count <= 10);
-  let pixels = result.unlabelled;
-  whole(result.unlabelled, 'unlabelled');
-  result.motions.forEach((motion, index) => {
-    assert.equal(motion.label, index);
-    checkMatrix(motion.matrix);
-    whole(motion.pixels, 'pixels');
-    pixels += motion.pixels;
-    assert.ok(Math.abs(motion.share - motion.pixels / (width * height)) < 1e-12);
-    finite(motion.residual, 'residual');
-    assert.ok(motion.residual >= 0 && motion.residual <= 255);
-    assert.equal(motion.bbox.length, 4);
-    for (const side of motion.bbox) whole(side, 'bbox');
-    const [x, y, w, h] = motion.bbox;
-    assert.ok(x + w <= width && y + h <= height);
-    whole(motion.group, 'group');
-    assert.ok(motion.group <= index, 'groups are numbered in the order of labels');
-    if (index > 0) assert.ok(motion.pixels <= result.motions[index - 1].pixels, 'labels by decreasing size');
+  assert.ok(isResult(result), JSON.stringify(isResult.errors));
+  const { motions, count, unlabelled, junctions } = result;
+  assert.deepEqual([result.width, result.height, count], [width, height, motions.length]);
+  motions.forEach(({ label, pixels, share, residual, bbox: [x, y, w, h], group }, index) => {
+    assert.equal(label, index);
+    assert.ok(Math.abs(share - pixels / (width * height)) < 1e-12);
+    assert.ok(residual <= 255 && x + w <= width && y + h <= height);
+    assert.ok(group <= index, 'groups are numbered in the order of labels');
+    assert.ok(index === 0 || pixels <= motions[index - 1].pixels, 'labels by decreasing size');
   });
-  assert.equal(pixels, width * height);
-  checkJunctions(result);
-  checkCandidates(result.evidence.candidates);
-  checkMilliseconds(result.milliseconds);
-  assert.match(result.settings.software, /^veronese \d+\.\d+\.\d+/);
+  assert.equal(motions.reduce((sum, { pixels }) => sum + pixels, unlabelled), width * height);
+  const order = junctions.map(({ labels: [one, other], border }) => {
+    assert.ok(one < other && other < count && border > 0 && border < 2 * width * height);
+    return one * count + other;
+  });
+  assert.deepEqual(order, [...new Set(order)].sort((a, b) => a - b), 'junctions by labels');
 }
 
 /** Labels agree with the JSON. */
@@ -104,21 +60,14 @@ function boundingBox(labels, width, wanted) {
 }
 
 /** The JSON of points; `labels` as an array or a Uint8Array. */
-export function checkPoints(result, count) {
-  assert.equal(result.version, 1);
-  assert.equal(result.count, result.motions.length);
-  assert.equal(result.labels.length, count);
-  const counts = new Map();
-  for (const label of result.labels) counts.set(label, (counts.get(label) ?? 0) + 1);
-  result.motions.forEach(({ label, matrix, measurements }, index) => {
-    assert.equal(label, index);
+export function checkPoints({ version, count, motions, labels, evidence, stages, milliseconds }, measured) {
+  assert.deepEqual([version, count, labels.length], [1, motions.length, measured]);
+  motions.forEach(({ label, matrix, measurements }, index) => {
+    assert.deepEqual([label, measurements], [index, labels.filter((one) => one === index).length]);
     checkMatrix(matrix);
-    assert.equal(measurements, counts.get(label) ?? 0);
   });
-  for (const value of result.evidence.singularValues) finite(value, 'a singular value');
-  checkCandidates(result.evidence.candidates);
-  for (const matrix of [...(result.stages?.factorisation ?? []), ...(result.stages?.refined ?? [])]) checkMatrix(matrix);
-  checkMilliseconds(result.milliseconds);
+  for (const value of [...evidence.singularValues, ...evidence.candidates.map(({ score }) => score), ...Object.values(milliseconds)]) finite(value, 'a number');
+  for (const matrix of [...(stages?.factorisation ?? []), ...(stages?.refined ?? [])]) checkMatrix(matrix);
 }
 
 /** A result without what differs between two runs. */

@@ -34,17 +34,18 @@ export class PageJournal implements ClipJournal {
   }
 
   async read(): Promise<Uint8Array | undefined> {
-    await this.#turn;
-    let rows = this.#memory ?? [];
-    if (rows.length === 0) {
-      // What cannot be read cannot be written either: that is said then.
-      const kept = await rowsOf(this.#of).catch(() => ({ rows: [], next: 0 }));
-      rows = kept.rows;
-      this.#next = kept.next;
-      if (rows.length > 0) this.#memory = null;
-    }
+    const rows = await this.#inTurn(() => this.#rows());
     this.#bytes = rows.reduce((sum, { length }) => sum + length, 0);
-    return rows.length > 0 ? new Uint8Array(await new Blob(rows as BlobPart[]).arrayBuffer()) : undefined;
+    return this.#bytes > 0 ? new Uint8Array(await new Blob(rows as BlobPart[]).arrayBuffer()) : undefined;
+  }
+
+  /** All that was written. What cannot be read cannot be written either: that is said then. */
+  async #rows(): Promise<readonly Uint8Array[]> {
+    if (this.#memory !== null && this.#memory.length > 0) return this.#memory;
+    const { rows, next } = await rowsOf(this.#of).catch(() => ({ rows: [], next: 0 }));
+    this.#next = next;
+    if (rows.length > 0) this.#memory = null;
+    return rows;
   }
 
   append(records: Uint8Array): Promise<void> {
@@ -71,9 +72,12 @@ export class PageJournal implements ClipJournal {
   /** Writes all to the database, from now on at once. */
   keep(): Promise<void> {
     return this.#inTurn(async () => {
-      if (this.#memory === null) return;
-      const all = new Uint8Array(await new Blob(this.#memory as BlobPart[]).arrayBuffer());
-      await this.#put((number) => replaceRows(this.#of, number, all));
+      const rows = this.#memory === null ? [] : await this.#rows();
+      if (this.#memory === null || rows.length === 0) await this.#own();
+      else {
+        const all = new Uint8Array(await new Blob(rows as BlobPart[]).arrayBuffer());
+        await this.#put((number) => replaceRows(this.#of, number, all));
+      }
       this.#memory = null;
     });
   }
@@ -84,7 +88,7 @@ export class PageJournal implements ClipJournal {
   }
 
   async #put(write: (number: number) => Promise<void>): Promise<void> {
-    if (!(await owns(this.#of, async () => (await keysOf(this.#of)) === this.#next))) throw new PageError('open-elsewhere', strings.projects.elsewhere(this.#name));
+    await this.#own();
     const number = this.#next;
     await write(number).catch(async (error: unknown) => {
       // Copies of frames give way to work.
@@ -94,7 +98,13 @@ export class PageJournal implements ClipJournal {
     this.#next = number + 1;
   }
 
-  #inTurn(work: () => Promise<void>): Promise<void> {
+  /** Makes sure that no other tab keeps the work, and that none has kept more of it. */
+  async #own(): Promise<void> {
+    const isUpToDate = async (): Promise<boolean> => (await keysOf(this.#of)) === this.#next;
+    if (!(await owns(this.#of, isUpToDate))) throw new PageError('open-elsewhere', strings.projects.elsewhere(this.#name));
+  }
+
+  #inTurn<T>(work: () => Promise<T>): Promise<T> {
     const done = this.#turn.then(work);
     this.#turn = done.catch(() => undefined);
     return done;

@@ -27,6 +27,9 @@ import type { ClipFrames } from './frames.js';
 import type { JournalWriter } from './journal.js';
 import { Step, type StepClip, type StepRange } from './step.js';
 
+/** Checks an annotation before there is a clip. */
+export { annotationOf } from './commands.js';
+
 /** The worker in which a clip lives, or this thread. */
 export interface Home {
   perform: Perform;

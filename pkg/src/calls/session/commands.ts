@@ -82,7 +82,11 @@ function annotationsOf(clip: CommandTarget, annotations: unknown): AnnotationMes
   });
 }
 
-function annotationOf(clip: CommandTarget, given: Record<string, unknown>, wrong: (reason: string) => VeroneseError): AnnotationMessage {
+export function annotationOf(
+  clip: CommandTarget,
+  given: Record<string, unknown>,
+  wrong: (reason: string) => VeroneseError,
+): AnnotationMessage {
   const unknown = unknownOf(given, ['frame', 'propagate', 'object', 'strokes', 'mask', 'labels', 'own', 'clicks', 'box']);
   if (unknown !== undefined) throw wrong(`there is no ${unknown}`);
   const { frame, propagate, object, strokes, mask, labels, own = false, clicks, box } = given;

@@ -264,7 +264,9 @@ export class Living {
     if (this.#stale.delete(at)) this.#take(at, masksOf(await clip.labels(at)));
     await this.#readAnnotations(this.#annotatedFrames());
     const { run, solved, before } = this.tracked;
-    this.#show({ run, solved, before });
+    this.#isUnderWay = clip.steps.waiting > 0;
+    this.#show({ run: this.#isUnderWay ? this.#correcting() : run, solved, before });
+    if (this.#isUnderWay) this.#cause = 'corrected';
     void this.#ask();
   }
 
@@ -282,7 +284,8 @@ export class Living {
       case 'objects':
       case 'settled':
         this.#base = { ...this.#base, status: this.#now.frames, objects: this.#now.objects };
-        return this.#show();
+        // What was said before the clip was opened has taken effect.
+        return this.#isUnderWay && this.#said.length === 0 && this.#now.steps.waiting === 0 ? this.#ended(null) : this.#show();
       case 'draft': {
         const { tracked } = store.get();
         const { index } = event.frame;
