@@ -36,7 +36,7 @@ export class PageJournal implements ClipJournal {
   async read(): Promise<Uint8Array | undefined> {
     const rows = await this.#inTurn(() => this.#rows());
     this.#bytes = rows.reduce((sum, { length }) => sum + length, 0);
-    return this.#bytes > 0 ? new Uint8Array(await new Blob(rows as BlobPart[]).arrayBuffer()) : undefined;
+    return this.#bytes > 0 ? new Uint8Array(await new Blob([...rows] as BlobPart[]).arrayBuffer()) : undefined;
   }
 
   /** All that was written. What cannot be read cannot be written either: that is said then. */
@@ -75,7 +75,7 @@ export class PageJournal implements ClipJournal {
       const rows = this.#memory === null ? [] : await this.#rows();
       if (this.#memory === null || rows.length === 0) await this.#own();
       else {
-        const all = new Uint8Array(await new Blob(rows as BlobPart[]).arrayBuffer());
+        const all = new Uint8Array(await new Blob([...rows] as BlobPart[]).arrayBuffer());
         await this.#put((number) => replaceRows(this.#of, number, all));
       }
       this.#memory = null;

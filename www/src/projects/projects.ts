@@ -160,6 +160,7 @@ export class Projects {
     const header = await this.#headerNow();
     if (living === null || header === null || this.#store.get().tracked?.status.some(({ hasMasks }) => hasMasks) !== true) return null;
     const journal = await living.save();
+    this.exported();
     return { name: `${inFileNames(header.name)}.veronese`, content: await fileOf({ header: { ...header, bytes: journal.length }, journal }) };
   }
 
@@ -176,10 +177,17 @@ export class Projects {
     this.#tell(of, NOTHING_KEPT);
   }
 
+  /** The work on what is open was taken away as a file. */
+  exported(): void {
+    const { tracked } = this.#store.get();
+    if (tracked !== null) this.#store.clip({ exported: { status: tracked.status, objects: tracked.objects } });
+  }
+
   /** Whether leaving the page would lose what a person did. */
   get isUnsaved(): boolean {
     const { tracked, keeping } = this.#store.get();
-    return tracked !== null && keeping.is === 'refused' && isAnnotated(tracked);
+    if (tracked === null || keeping.is === 'kept' || !isAnnotated(tracked)) return false;
+    return tracked.exported?.status !== tracked.status || tracked.exported.objects !== tracked.objects;
   }
 
   async #load(): Promise<Shelf> {
@@ -202,7 +210,7 @@ export class Projects {
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (of === undefined || clip?.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
-    const isOther = ticked || now.classList !== before.classList || clip?.range !== clipBefore?.range;
+    const isOther = ticked || now.classList !== before.classList || now.settings !== before.settings || clip?.range !== clipBefore?.range;
     if (isOther && this.#keeping.get(of)?.is === 'kept') this.#touch();
   }
 
@@ -211,7 +219,10 @@ export class Projects {
     const keep = async (): Promise<void> => {
       const journal = await this.#journalOf(of, this.#store.get().tracked?.clip.name ?? of);
       await journal.keep();
-      if (this.#keeping.get(of)?.is !== 'kept') this.#keeps(of);
+      if (this.#keeping.get(of)?.is === 'kept') return;
+      const header = await this.#headerNow();
+      if (header?.of === of) await (await this.#load()).put(header);
+      this.#keeps(of);
     };
     keep().catch((error: unknown) => this.#refuse(of, error));
   }

@@ -30,6 +30,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
       const exported = exportOfClip(tracked, store.get(), (done, of) => (status.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
+      session.projects.exported();
       status.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
       status.textContent = '';
