@@ -19,9 +19,11 @@ export class PageJournal implements ClipJournal {
   /** Rows are written one after another. */
   #turn: Promise<unknown> = Promise.resolve();
 
-  constructor(of: string, name: string) {
+  /** `early`: what was written before this was loaded. */
+  constructor(of: string, name: string, early: Uint8Array[]) {
     this.#of = of;
     this.#name = name;
+    this.#memory = early;
   }
 
   /** Of all that was written. */

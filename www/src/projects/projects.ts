@@ -26,6 +26,10 @@ export class Projects {
   readonly #store: Store;
   /** The journals of clips that were open, by fingerprint. */
   readonly #journals = new Map<string, Promise<PageJournal>>();
+  /** What was written of clips whose journals are not loaded. */
+  readonly #early = new Map<string, Uint8Array[]>();
+  /** Clips of which something was said that is not written yet. */
+  readonly #unwritten = new Set<string>();
   /** What is known of clips that were open, or of a project that is about to be. */
   readonly #headers = new Map<string, Header>();
   /** Projects of files, until their frames are opened. */
@@ -108,11 +112,11 @@ export class Projects {
   }
 
   /** What is remembered of a clip that is about to be opened. Work of a file becomes its own, or if it has some already, one more step of it. */
-  async remembered({ fingerprint: of }: Clip): Promise<Remembered> {
+  async remembered({ fingerprint: of, name }: Clip): Promise<Remembered> {
     const shelf = await this.#load();
     const project = this.#opened.get(of);
     this.#opened.delete(of);
-    const journal = await this.#journalOf(of, project?.header.name ?? of);
+    const journal = await this.#journalOf(of, name);
     const hasOwn = (await journal.read().catch(() => undefined)) !== undefined;
     const header = this.#headers.get(of) ?? (await shelf.headerOf(of).catch(() => null));
     const { found = 0, at = 0 } = project?.header ?? header ?? {};
@@ -136,13 +140,17 @@ export class Projects {
   /** Where a clip is kept. */
   keeperOf({ fingerprint: of, name }: Clip): Keeper {
     return {
-      journal: new LateJournal(() => this.#journalOf(of, name)),
+      journal: new LateJournal(this.#earlyOf(of), () => this.#journals.get(of), async () => ((await isNothingKept()) ? undefined : this.#journalOf(of, name))),
       said: () => {
+        this.#unwritten.add(of);
         this.#keep(of);
         const keeping = this.#keeping.get(of);
         if (keeping?.is === 'kept') this.#tell(of, { ...keeping, waits: true });
       },
-      kept: () => this.#keeps(of),
+      kept: () => {
+        this.#unwritten.delete(of);
+        this.#keeps(of);
+      },
       refused: (error) => this.#refuse(of, error),
     };
   }
@@ -197,10 +205,16 @@ export class Projects {
   }
 
   #journalOf(of: string, name: string): Promise<PageJournal> {
-    const journal = this.#journals.get(of) ?? this.#load().then(({ PageJournal }) => new PageJournal(of, name));
+    const journal = this.#journals.get(of) ?? this.#load().then(({ PageJournal }) => new PageJournal(of, name, this.#earlyOf(of)));
     this.#journals.set(of, journal);
     journal.catch(() => this.#journals.delete(of));
     return journal;
+  }
+
+  #earlyOf(of: string): Uint8Array[] {
+    const early = this.#early.get(of) ?? [];
+    this.#early.set(of, early);
+    return early;
   }
 
   #watch(now: State, before: State): void {
@@ -210,7 +224,7 @@ export class Projects {
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (of === undefined || clip?.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
-    const isOther = ticked || now.classList !== before.classList || now.settings !== before.settings || clip?.range !== clipBefore?.range;
+    const isOther = ticked || now.classList !== before.classList || now.settings !== before.settings || clip?.range !== clipBefore?.range || now.timeline?.first !== before.timeline?.first;
     if (isOther && this.#keeping.get(of)?.is === 'kept') this.#touch();
   }
 
@@ -220,20 +234,17 @@ export class Projects {
       const journal = await this.#journalOf(of, this.#store.get().tracked?.clip.name ?? of);
       await journal.keep();
       if (this.#keeping.get(of)?.is === 'kept') return;
-      const header = await this.#headerNow();
-      if (header?.of === of) await (await this.#load()).put(header);
-      this.#keeps(of);
+      this.#tell(of, { is: 'kept', at: Date.now(), without: false, waits: true });
+      await this.#writeNow();
     };
     keep().catch((error: unknown) => this.#refuse(of, error));
   }
 
+  /** The journal is written; what is beside it follows. */
   #keeps(of: string): void {
-    void this.#journals.get(of)?.then((journal) => {
-      if (!journal.isKept) return;
-      const before = this.#keeping.get(of);
-      this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without, waits: false });
-      this.#touch();
-    });
+    const keeping = this.#keeping.get(of);
+    if (keeping?.is === 'refused') this.#keep(of);
+    else if (keeping?.is === 'kept') this.#touch();
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
@@ -257,23 +268,30 @@ export class Projects {
     this.#timer = window.setTimeout(() => this.#writeNow(), SOON);
   }
 
-  #writeNow(): void {
+  #writeNow(): Promise<unknown> {
     clearTimeout(this.#timer);
     const living = this.living();
     if (living !== null) this.#remember(living);
-    this.#written = this.#written.then(() => this.#write()).catch(() => undefined);
+    return (this.#written = this.#written.then(() => this.#write()).catch(() => undefined));
   }
 
   async #write(): Promise<void> {
     const header = await this.#headerNow();
     if (header === null || this.#keeping.get(header.of)?.is !== 'kept') return;
-    const { put, putFrames } = await this.#load();
-    await put(header);
     const { of, sample } = header;
+    const { put, putFrames } = await this.#load();
+    try {
+      await put(header);
+    } catch (error) {
+      return this.#refuse(of, error);
+    }
+    const change = (now: { waits: boolean } | { without: boolean; at: number }): void => {
+      const keeping = this.#keeping.get(of);
+      if (keeping?.is === 'kept') this.#tell(of, { ...keeping, ...now });
+    };
+    change({ waits: this.#unwritten.has(of) });
     const files = this.#files.get(of);
-    const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
-    const keeping = this.#keeping.get(of);
-    if (keeping?.is === 'kept' && keeping.without === kept) this.#tell(of, { ...keeping, without: !kept });
+    change({ without: !(sample !== undefined || (files !== undefined && (await putFrames(of, files)))), at: Date.now() });
   }
 
   /** Masks that are known, so that they need not be made again. */
@@ -313,24 +331,33 @@ export class Projects {
   }
 }
 
-/** A journal that is loaded when it is first used. */
+/** A journal in memory, until there is reason to load the one that is kept. That goes on with what was written before. */
 class LateJournal implements ClipJournal {
-  constructor(readonly journal: () => Promise<PageJournal>) {}
+  constructor(
+    readonly early: Uint8Array[],
+    readonly loaded: () => Promise<PageJournal> | undefined,
+    readonly load: () => Promise<PageJournal | undefined>,
+  ) {}
 
   async read(): Promise<Uint8Array | undefined> {
-    return (await this.journal()).read();
+    if (this.early.length > 0 && this.loaded() === undefined) return new Uint8Array(await new Blob(this.early as BlobPart[]).arrayBuffer());
+    return (await this.load())?.read();
   }
 
   async append(records: Uint8Array): Promise<void> {
-    await (await this.journal()).append(records);
+    const journal = this.loaded();
+    if (journal === undefined) this.early.push(records);
+    else await (await journal).append(records);
   }
 
   async replace(saved: Uint8Array): Promise<void> {
-    await (await this.journal()).replace(saved);
+    const journal = this.loaded();
+    if (journal === undefined) this.early.splice(0, Infinity, saved);
+    else await (await journal).replace(saved);
   }
 
   async keepDamaged(content: Uint8Array): Promise<void> {
-    await (await this.journal()).keepDamaged(content);
+    await (await this.loaded())?.keepDamaged(content);
   }
 }
 

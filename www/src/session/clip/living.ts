@@ -237,7 +237,10 @@ export class Living {
   /** Ends the range that is being segmented after the frames that are solved, or takes back what is being carried. */
   cancel(): void {
     const { tracked } = this.#parts.store.get();
-    if (this.#range === null) return this.#said[0]?.step.cancel();
+    if (this.#range === null) {
+      this.#cause = 'undone';
+      return this.#said[0]?.step.cancel();
+    }
     if (this.#range.isEnded || isTracked(tracked)) return this.#range.step.cancel();
     this.#range.isEnded = true;
     this.#now.finish();
@@ -356,7 +359,7 @@ export class Living {
     const { tracked } = this.#parts.store.get();
     if (tracked === null || this.#said.length > 0 || this.#range !== null) return this.#show();
     if (cause !== null && !this.#isUnderWay) return this.#show({ run: { phase: 'done', cause, changed: 0 } });
-    if (this.#stale.size > 0) return this.#show();
+    if (this.#stale.size > 0 || this.#isAsking) return this.#show();
     this.#isUnderWay = false;
     this.#reached = null;
     const frames = this.#base.frames;
