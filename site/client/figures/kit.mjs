@@ -167,7 +167,7 @@ export function toggle({ label, value = false, onInput }) {
 }
 
 export function button(text, onClick) {
-  const one = html('button', { type: 'button' }, text);
+  const one = html('button', { type: 'button', class: 'button' }, text);
   one.addEventListener('click', onClick);
   return one;
 }
