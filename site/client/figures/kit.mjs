@@ -249,5 +249,7 @@ export function formula(text) {
 export const MOTIONS = ['one', 'two', 'three', 'four'];
 
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+  const [light, dark] = value.match(/#\w+/g);
+  return matchMedia('(prefers-color-scheme: dark)').matches ? dark : light;
 }
