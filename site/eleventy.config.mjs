@@ -20,7 +20,9 @@ export default function configure(eleventy) {
     markdown.use(katex.default ?? katex, { output: 'mathml', throwOnError: true, strict: 'error' });
     markdown.use(anchors, { level: [2, 3], slugify, permalink: anchors.permalink.headerLink({ safariReaderFix: true }), tabIndex: false });
   });
-  eleventy.addPassthroughCopy({ styles: 'styles', 'pages/guide/images': 'guide/images' });
+  // The page has the same colours, buttons and name.
+  const shared = '../www/src/styles';
+  eleventy.addPassthroughCopy({ styles: 'styles', [`${shared}/shared.css`]: 'styles/shared.css', [`${shared}/wordmark/*.woff2`]: 'styles/wordmark', 'pages/guide/images': 'guide/images' });
   eleventy.addTransform('relative', function relative(content) {
     const { outputPath, url } = this.page;
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;

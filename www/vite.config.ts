@@ -135,6 +135,8 @@ export default defineConfig({
   base: './',
   plugins: [hostPage(), policy(), withoutMeasurements(), oneFflate(), preload(), licences(), serviceWorker()],
   worker: { format: 'es' },
+  // The style sheets name the screens that they know.
+  css: { transformer: 'lightningcss', lightningcss: { drafts: { customMedia: true } } },
   build: {
     target: 'es2023',
     // No data: URLs, because the content security policy allows scripts and WebAssembly from files only.

@@ -101,6 +101,5 @@ function copyParts() {
   for (const name of SAMPLES) copy(`www/public/samples/${name}`, `samples/${name}`);
   copy('docs/images/two-cars.png', 'images/two-cars.png');
   copy('www/public/icon.svg', 'images/icon.svg');
-  copy('www/src/styles/wordmark/cormorant-garamond.woff2', 'images/wordmark.woff2');
   writeFileSync(join(OUT, '.nojekyll'), '');
 }

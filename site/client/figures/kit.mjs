@@ -167,7 +167,7 @@ export function toggle({ label, value = false, onInput }) {
 }
 
 export function button(text, onClick) {
-  const one = html('button', { type: 'button' }, text);
+  const one = html('button', { type: 'button', class: 'button' }, text);
   one.addEventListener('click', onClick);
   return one;
 }
@@ -249,5 +249,7 @@ export function formula(text) {
 export const MOTIONS = ['one', 'two', 'three', 'four'];
 
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  const value = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+  const [light, dark] = value.match(/#\w+/g);
+  return matchMedia('(prefers-color-scheme: dark)').matches ? dark : light;
 }
