@@ -56,7 +56,7 @@ async function opened(journal: ClipJournal, remembered: Remembered = {}): Promis
   store.set({ settings: { ...store.get().settings, quality: 'fast' } });
   const shown = new Shown(store, new PairSegmenting(store, new PairWorker()));
   const nothing = (): void => undefined;
-  const keeper = { journal, said: nothing, kept: nothing, refused: nothing };
+  const keeper = { journal, said: nothing, settled: nothing };
   const living = new Living(clip as Clip, { store, shown, segmenter: new SegmenterPool({ jobs: 2 }), keeper }, remembered, Promise.resolve());
   store.set({ tracked: living.tracked, timeline: { clip: clip as Clip, first: AT, second: AT + 1 } });
   await living.opened;

@@ -229,6 +229,7 @@ test('damaged and foreign projects are refused', async () => {
     at: 0,
     hidden: [],
     found: 1,
+    annotated: false,
     bytes: 3,
   });
   const whole = Buffer.from(await (await fileOf({ header, journal: Uint8Array.of(1, 10, 2) })).arrayBuffer());

@@ -150,7 +150,7 @@ test('the number of motions can be forced in the evidence plot, which does not c
   await page.getByRole('button', { name: 'Automatic' }).click();
   await done(page);
   await motionsChosen(page, 'Automatic');
-  expect(page.workers()).toHaveLength(1); // however many requests there were
+  expect(page.workers()).toHaveLength(2); // of the pair, however many requests there were, and of the clip
 
   // Nor when the number found has not the shortest description.
   for (const swapped of [false, true]) {

@@ -31,6 +31,8 @@ export interface Header {
   readonly hidden: readonly number[];
   /** Number of steps up to the first masks, which undo does not take back. */
   readonly found: number;
+  /** Whether a person has done anything with the clip. */
+  readonly annotated: boolean;
   /** Of the journal. */
   readonly bytes: number;
 }
@@ -83,5 +85,6 @@ const isHeader = check.objectOf<Header>({
   at: check.isFrom(0),
   hidden: check.listOf(check.isFrom(1, 254)),
   found: check.isFrom(0),
+  annotated: check.isFlag,
   bytes: check.isFrom(0),
 });

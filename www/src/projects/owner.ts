@@ -20,6 +20,11 @@ export async function owns(of: string, isUpToDate: () => Promise<boolean>): Prom
   });
 }
 
+/** Whether this tab keeps the work on this clip. */
+export function isOwn(of: string): boolean {
+  return owned.has(of);
+}
+
 /** Whether a tab keeps the work on this clip. */
 export async function isOwned(of: string): Promise<boolean> {
   if (!('locks' in navigator)) return false;

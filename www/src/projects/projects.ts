@@ -28,12 +28,12 @@ export class Projects {
   readonly #journals = new Map<string, Promise<PageJournal>>();
   /** What was written of clips whose journals are not loaded. */
   readonly #early = new Map<string, Uint8Array[]>();
-  /** Clips of which something was said that is not written yet. */
-  readonly #unwritten = new Set<string>();
   /** What is known of clips that were open, or of a project that is about to be. */
   readonly #headers = new Map<string, Header>();
   /** Projects of files, until their frames are opened. */
   readonly #opened = new Map<string, Project>();
+  /** Clips that were left with work that is not kept. */
+  readonly #unsaved = new Set<string>();
   /** The files that the frames of each were opened from. */
   readonly #files = new Map<string, readonly File[]>();
   /** Whether the work on each is kept. That on what is open is in the state. */
@@ -117,13 +117,15 @@ export class Projects {
     const project = this.#opened.get(of);
     this.#opened.delete(of);
     const journal = await this.#journalOf(of, name);
-    const hasOwn = (await journal.read().catch(() => undefined)) !== undefined;
     const header = this.#headers.get(of) ?? (await shelf.headerOf(of).catch(() => null));
-    const { found = 0, at = 0 } = project?.header ?? header ?? {};
-    if (project === undefined) return { known: await shelf.masksOf(of).catch(() => null), found, at };
-    if (hasOwn) return { restored: project.journal, found: header?.found ?? 0, at };
+    const { found = 0, at = 0, settings } = project?.header ?? header ?? {};
+    const common = { found, at, markUnknown: settings?.markUnknown };
+    if (project === undefined) return { ...common, known: await shelf.masksOf(of).catch(() => null) };
+    const { tracked } = this.#store.get();
+    const isWorked = header?.annotated === true || (tracked?.clip.fingerprint === of && isAnnotated(tracked));
+    if (isWorked) return { ...common, found: header?.found ?? 0, restored: project.journal };
     await journal.replace(project.journal);
-    return { found, at };
+    return common;
   }
 
   /** Puts what is known beside the journal into the state, with the clip of this pair. */
@@ -142,30 +144,26 @@ export class Projects {
     return {
       journal: new LateJournal(this.#earlyOf(of), () => this.#journals.get(of), async () => ((await isNothingKept()) ? undefined : this.#journalOf(of, name))),
       said: () => {
-        this.#unwritten.add(of);
         this.#keep(of);
         const keeping = this.#keeping.get(of);
         if (keeping?.is === 'kept') this.#tell(of, { ...keeping, waits: true });
       },
-      kept: () => {
-        this.#unwritten.delete(of);
-        this.#keeps(of);
-      },
-      refused: (error) => this.#refuse(of, error),
+      settled: () => void this.#journals.get(of)?.then((journal) => journal.settled()).then(() => this.#touch()),
     };
   }
 
   /** The work on a clip that is being left. */
   leave(living: Living): void {
-    this.#remember(living);
-    this.#writeNow();
+    const { fingerprint: of } = living.clip;
+    if (openIn(this.#store.get()) === of && this.#isUnsavedNow) this.#unsaved.add(of);
+    void this.#writeNow(living);
   }
 
   /** The work on what is open, as a file; `null` if there is none. */
   async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
     const { fileOf } = await this.#load();
     const living = this.living();
-    const header = await this.#headerNow();
+    const header = living && (await this.#headerOf(this.#store.get(), living));
     if (living === null || header === null || this.#store.get().tracked?.status.some(({ hasMasks }) => hasMasks) !== true) return null;
     const journal = await living.save();
     this.exported();
@@ -173,16 +171,17 @@ export class Projects {
   }
 
   /** Removes a project that the browser keeps. The work itself stays until the page is left. */
-  async forget({ header: { of } }: Listed): Promise<void> {
-    await this.#written;
-    const { remove } = await this.#load();
-    const journal = await this.#journals.get(of);
-    const living = this.living();
-    if (journal !== undefined && living?.clip.fingerprint === of) await journal.forgotten(await living.save());
-    else this.#journals.delete(of);
-    this.#headers.delete(of);
-    await remove(of);
+  async forget({ header }: Listed): Promise<void> {
+    const { of } = header;
+    const { isOwn, isOwned, remove } = await this.#load();
+    if (!isOwn(of) && (await isOwned(of))) throw new PageError('open-elsewhere', strings.projects.elsewhere(header.name));
     this.#tell(of, NOTHING_KEPT);
+    await this.#written;
+    const journal = await this.#journals.get(of);
+    if (journal === undefined) await remove(of);
+    else await journal.forgotten(() => remove(of));
+    this.#headers.delete(of);
+    this.#unsaved.delete(of);
   }
 
   /** The work on what is open was taken away as a file. */
@@ -193,8 +192,13 @@ export class Projects {
 
   /** Whether leaving the page would lose what a person did. */
   get isUnsaved(): boolean {
+    const of = openIn(this.#store.get());
+    return this.#isUnsavedNow || [...this.#unsaved].some((left) => left !== of);
+  }
+
+  get #isUnsavedNow(): boolean {
     const { tracked, keeping } = this.#store.get();
-    if (tracked === null || keeping.is === 'kept' || !isAnnotated(tracked)) return false;
+    if (tracked === null || (keeping.is === 'kept' && !keeping.waits) || !isAnnotated(tracked)) return false;
     return tracked.exported?.status !== tracked.status || tracked.exported.objects !== tracked.objects;
   }
 
@@ -205,7 +209,7 @@ export class Projects {
   }
 
   #journalOf(of: string, name: string): Promise<PageJournal> {
-    const journal = this.#journals.get(of) ?? this.#load().then(({ PageJournal }) => new PageJournal(of, name, this.#earlyOf(of)));
+    const journal = this.#journals.get(of) ?? this.#load().then(({ PageJournal }) => new PageJournal(of, name, this.#earlyOf(of), { kept: () => this.#keeps(of), refused: (error) => this.#refuse(of, error) }));
     this.#journals.set(of, journal);
     journal.catch(() => this.#journals.delete(of));
     return journal;
@@ -230,21 +234,15 @@ export class Projects {
 
   /** From now on the work on this clip is kept. */
   #keep(of: string): void {
-    const keep = async (): Promise<void> => {
-      const journal = await this.#journalOf(of, this.#store.get().tracked?.clip.name ?? of);
-      await journal.keep();
-      if (this.#keeping.get(of)?.is === 'kept') return;
-      this.#tell(of, { is: 'kept', at: Date.now(), without: false, waits: true });
-      await this.#writeNow();
-    };
-    keep().catch((error: unknown) => this.#refuse(of, error));
+    const { tracked } = this.#store.get();
+    const journal = this.#journalOf(of, tracked?.clip.fingerprint === of ? tracked.clip.name : of);
+    journal.then((kept) => kept.keep()).catch((error: unknown) => this.#refuse(of, error));
   }
 
-  /** The journal is written; what is beside it follows. */
+  /** The journal is written; what is beside it follows, the first time at once. */
   #keeps(of: string): void {
-    const keeping = this.#keeping.get(of);
-    if (keeping?.is === 'refused') this.#keep(of);
-    else if (keeping?.is === 'kept') this.#touch();
+    if (this.#keeping.get(of)?.is === 'kept') this.#touch();
+    else void this.#writeNow();
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
@@ -268,16 +266,18 @@ export class Projects {
     this.#timer = window.setTimeout(() => this.#writeNow(), SOON);
   }
 
-  #writeNow(): Promise<unknown> {
+  #writeNow(living = this.living()): Promise<unknown> {
     clearTimeout(this.#timer);
-    const living = this.living();
-    if (living !== null) this.#remember(living);
-    return (this.#written = this.#written.then(() => this.#write()).catch(() => undefined));
+    const state = this.#store.get();
+    if (living === null || state.tracked?.clip !== living.clip) return this.#written;
+    this.#remember(living);
+    return (this.#written = this.#written.then(() => this.#write(state, living)).catch(() => undefined));
   }
 
-  async #write(): Promise<void> {
-    const header = await this.#headerNow();
-    if (header === null || this.#keeping.get(header.of)?.is !== 'kept') return;
+  async #write(state: State, living: Living): Promise<void> {
+    const header = await this.#headerOf(state, living);
+    const journal = await this.#journals.get(header?.of ?? '');
+    if (header === null || journal?.isKept !== true) return;
     const { of, sample } = header;
     const { put, putFrames } = await this.#load();
     try {
@@ -285,13 +285,16 @@ export class Projects {
     } catch (error) {
       return this.#refuse(of, error);
     }
-    const change = (now: { waits: boolean } | { without: boolean; at: number }): void => {
-      const keeping = this.#keeping.get(of);
-      if (keeping?.is === 'kept') this.#tell(of, { ...keeping, ...now });
+    const tell = (without: boolean): void => {
+      const before = this.#keeping.get(of);
+      if (before?.is === 'kept' || journal.isWritten) this.#tell(of, { is: 'kept', at: Date.now(), without, waits: !journal.isWritten });
     };
-    change({ waits: this.#unwritten.has(of) });
+    const before = this.#keeping.get(of);
+    tell(before?.is === 'kept' && before.without);
+    this.#unsaved.delete(of);
     const files = this.#files.get(of);
-    change({ without: !(sample !== undefined || (files !== undefined && (await putFrames(of, files)))), at: Date.now() });
+    const hasFrames = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
+    if (journal.isKept) tell(!hasFrames);
   }
 
   /** Masks that are known, so that they need not be made again. */
@@ -302,9 +305,8 @@ export class Projects {
   }
 
   /** What is known of the clip that is open; `null` if there is none. */
-  async #headerNow(): Promise<Header | null> {
+  async #headerOf(state: State, living: Living): Promise<Header | null> {
     const { headerFrom, thumbnailOf } = await this.#load();
-    const state = this.#store.get();
     const { tracked, settings, classList, timeline, look } = state;
     if (tracked === null) return null;
     const { fingerprint: of, name, count: frames, sample } = tracked.clip;
@@ -323,7 +325,8 @@ export class Projects {
       range: tracked.range,
       at: timeline?.first ?? 0,
       hidden,
-      found: this.living()?.found ?? 0,
+      found: living.found,
+      annotated: isAnnotated(tracked),
       bytes: journal.bytes,
     });
     this.#headers.set(of, header);

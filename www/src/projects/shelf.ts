@@ -8,7 +8,7 @@ import type { Header } from './file.js';
 export { headerOf, masksOf, putMasks } from './database.js';
 export { fileOf, headerFrom, projectFromFile } from './file.js';
 export { PageJournal } from './journal.js';
-export { isOwned } from './owner.js';
+export { isOwn, isOwned } from './owner.js';
 export { thumbnailOf } from './thumbnail.js';
 
 /** A project in the list. */

@@ -120,7 +120,8 @@ export class Frames {
     return opening.open(
       async (signal) => {
         const frames = await load(signal);
-        const project = await projects.find(place(frames, this.#store.get().pair));
+        // A step goes on in the clip that is open.
+        const project = as === 'step' ? null : await projects.find(place(frames, this.#store.get().pair));
         const opened = timelineOf(place(frames, this.#store.get().pair))?.clip;
         if (project !== null && opened !== undefined) await clip.prepare(opened);
         // What was begun on the frame that is still on screen is of that frame.
@@ -136,7 +137,8 @@ export class Frames {
         if (project !== null) this.#continue(project);
         then(project);
       },
-      ({ frames }) => {
+      ({ frames, project }) => {
+        if (project !== null) clip.giveUp();
         const { first, second } = this.#store.get().pair;
         for (const frame of frames) {
           const { bitmap, origin } = frame;

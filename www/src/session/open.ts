@@ -47,7 +47,7 @@ export class Open {
     return this.#parts.frames.open(
       async () => this.#startOf(await openFolderOf(sample), sample.start),
       pairOf,
-      () => this.#begin(),
+      () => void this.#begin(),
       ticket,
     );
   }
@@ -142,16 +142,18 @@ export class Open {
         if (source.length > 0) this.#parts.projects.comeFrom(source);
         if (clip === null) return;
         if (clip.count > 2) void this.#checkSizes(clip); // of two frames the package says it
-        this.#begin();
+        void this.#begin();
       },
       ticket,
     );
   }
 
   /** Segments the clip that was opened, or goes on with it. */
-  #begin(): void {
+  async #begin(): Promise<void> {
+    const { living } = this.#parts.clip;
+    await living?.opened.catch(() => undefined);
     const { automatic, tracked } = this.#store.get();
-    if (!automatic || tracked === null || lengthOf(tracked.range) < 2) return;
+    if (!automatic || tracked === null || tracked.clip !== living?.clip || lengthOf(tracked.range) < 2) return;
     const { first, last } = tracked.range;
     if (!tracked.status.slice(first, last + 1).every(({ hasMasks }) => hasMasks) || tracked.status.length === 0) void this.#parts.clip.segment();
   }

@@ -90,7 +90,9 @@ document.addEventListener('click', (event) => {
 
 /** Lets a person change the name of an object, which a click only selects. */
 export function rename(name: HTMLInputElement): void {
-  if (name.closest('#objects') === null) return;
+  const row = name.closest<HTMLElement>('#objects > li');
+  // The background has no name of its own.
+  if (row === null || row.dataset.mask === '0') return;
   name.readOnly = false;
   name.focus();
   name.select();

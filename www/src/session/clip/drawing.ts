@@ -135,10 +135,9 @@ export class Drawing {
     const spread = this.#propagate();
     const annotation: ClipAnnotation = { frame, propagate: spread === 'exact' ? 'none' : spread, object, clicks, ...(box && { box }) };
     const { living } = this.#objects;
-    const isDone = await living.say((clip) => clip.annotate(annotation), prompted(frame, prompt), { cause: 'corrected', frames: [frame], ...this.#reach(frame) });
-    if (!isDone || (await living.shows(frame, object))) return;
-    this.#store.say(strings.notices.nothingThere);
-    await living.undo();
+    const said = living.say((clip) => clip.annotate(annotation), prompted(frame, prompt), { cause: 'corrected', frames: [frame], ...this.#reach(frame) });
+    const { count } = living;
+    if ((await said) && (await living.withoutNothing(frame, object, count))) this.#store.say(strings.notices.nothingThere);
   }
 
   #propagate(): ClipAnnotation['propagate'] & string {

@@ -49,15 +49,16 @@ export interface Remembered {
   readonly restored?: Uint8Array;
   /** The frame that is shown first: its masks are there when the clip is open. */
   readonly at?: number;
+  /** Whether pixels that nothing explains are left unlabelled. */
+  readonly markUnknown?: boolean | undefined;
 }
 
 /** Where the clip is kept. */
 export interface Keeper {
   readonly journal: ClipJournal;
-  /** Called when something was said, when it is written, and when it could not be. */
+  /** Called when something is said, and when it has taken effect or not. */
   said(): void;
-  kept(): void;
-  refused(error: unknown): void;
+  settled(): void;
 }
 
 /** Parts of the page that a clip needs. */
@@ -70,6 +71,7 @@ interface Parts {
 
 export class Living {
   readonly clip: Clip;
+  readonly markUnknown: boolean;
   /** Settled when the clip is open; rejects with what kept it from that. */
   readonly opened: Promise<void>;
   readonly #parts: Parts;
@@ -82,6 +84,8 @@ export class Living {
   /** Frames whose labels have changed since they were asked for; and those of them that the step under way has changed. */
   readonly #stale = new Set<number>();
   readonly #fresh = new Set<number>();
+  /** Frames whose labels were asked for, and are not there. */
+  readonly #asked = new Set<number>();
   #isAsking = false;
   #lastShown = -Infinity;
   /** Why the run that is under way will be done, and the range that is being segmented. */
@@ -91,6 +95,10 @@ export class Living {
   #reached: { readonly frames: Set<number>; readonly of: number; readonly time: TimeLeft } | null = null;
   #kept = 0;
   #isUnderWay = false;
+  #count = 0;
+  /** Frames whose labels the last undo or redo has changed; and the end of all of these. */
+  #moved: Set<number> | null = null;
+  #moving: Promise<unknown> = Promise.resolve();
   #longestSide: number | null = null;
   /** Number of steps up to the first masks. */
   #found: number;
@@ -100,6 +108,7 @@ export class Living {
     this.clip = clip;
     this.#parts = parts;
     this.#found = remembered.found ?? 0;
+    this.markUnknown = (remembered.markUnknown ?? parts.store.get().settings.markUnknown) === true;
     const frames = Array.from({ length: clip.count }, () => null);
     this.#base = { frames, status: [], objects: [], annotated: new Map() };
     const { store } = parts;
@@ -126,6 +135,14 @@ export class Living {
     return { ...untracked(this.clip), ...known, before: known.frames, solved, run: solved > 0 ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'idle' } };
   }
 
+  get isClosed(): boolean {
+    return this.#isClosed;
+  }
+
+  get isSegmenting(): boolean {
+    return this.#range !== null;
+  }
+
   /** Number of steps up to the first masks. */
   get found(): number {
     return this.#found;
@@ -134,7 +151,7 @@ export class Living {
   /** The masks as they are known, and the revision that each is of. */
   get masks(): KnownMasks {
     const { frames, status } = this.#base;
-    const isKnown = (index: number): boolean => !this.#stale.has(index) && this.#said.length === 0;
+    const isKnown = (index: number): boolean => !this.#stale.has(index) && !this.#asked.has(index) && this.#said.length === 0;
     return { frames, revisions: status.map(({ revision }, index) => (isKnown(index) ? revision : 0)) };
   }
 
@@ -150,8 +167,18 @@ export class Living {
 
   /** Gives the clip a command, of which `effect` is seen at once. Resolves when it has taken effect, to whether it has. */
   async say(command: (clip: PackageClip) => ClipStep, effect: Effect, { cause, frames = [], reach = 0, kept = 0, refusal }: Saying): Promise<boolean> {
+    const { keeper, store } = this.#parts;
+    if (this.#package === null) {
+      try {
+        await this.opened;
+      } catch (error) {
+        report(store, error);
+        return false;
+      }
+    }
     if (reach > 0) this.#begin(cause, kept);
-    this.#parts.keeper.said();
+    keeper.said();
+    this.#count += 1;
     const said: Said = { step: command(this.#now), effect };
     this.#said = [...this.#said, said];
     const of = Math.max(reach, this.#reached?.of ?? 0);
@@ -163,33 +190,46 @@ export class Living {
     }
     try {
       await said.step;
+      // Seen until the labels are there.
+      this.#base = { ...this.#base, frames: said.effect(this.#base).frames };
       return true;
     } catch (error) {
       const code = codeOf(error);
-      if (code === 'invalid-option' && refusal !== undefined) this.#parts.store.say(refusal);
-      else if (code !== 'cancelled' && code !== 'clip-closed') report(this.#parts.store, reported(error));
+      if (code === 'invalid-option' && refusal !== undefined) store.say(refusal);
+      else if (code === 'clip-closed' && store.get().tracked?.clip === this.clip) store.say(strings.notices.notReady);
+      else if (code !== 'cancelled' && code !== 'clip-closed') report(store, reported(error));
       return false;
     } finally {
       this.#forget(said);
+      keeper.settled();
       for (const index of frames) this.#stale.add(index);
       await this.#readAnnotations(frames).catch(() => undefined);
       this.#ended(reach > 0 ? null : cause);
     }
   }
 
-  /** Whether the masks of a frame show an object. */
-  async shows(index: number, object: number): Promise<boolean> {
-    const { labels } = await this.#now.labels(index);
+  /** Takes back what points to an object in a frame if nothing is there. Returns whether it did. `count`: what {@link count} was then. */
+  async withoutNothing(index: number, object: number, count: number): Promise<boolean> {
+    const labels = await this.#now.labels(index).then((frame) => frame.labels, () => null);
     const number = this.#base.objects.find((one) => one.number === object)?.became ?? object;
-    return labels.includes(number);
+    if (labels === null || labels.includes(number)) return false;
+    // What was said since stays.
+    if (this.#count === count) await this.undo();
+    else await this.say((clip) => clip.clear({ frame: index, object }), (clip) => clip, { cause: 'undone', frames: [index] });
+    return true;
+  }
+
+  /** How many commands were given. */
+  get count(): number {
+    return this.#count;
   }
 
   async undo(): Promise<void> {
-    if (this.#steps.undo > 0) await this.#move('undone', (clip) => clip.undo());
+    await this.#move('undone', async (clip) => this.#steps.undo > 0 && clip.undo());
   }
 
   async redo(): Promise<void> {
-    await this.#move('redone', (clip) => clip.redo());
+    await this.#move('redone', async (clip) => clip.steps.waiting === 0 && clip.steps.redo > 0 && clip.redo());
   }
 
   /**
@@ -206,13 +246,14 @@ export class Living {
     this.#longestSide = isAlone ? longestSide : null;
     this.#begin('found');
     if (!tracked.clip.sample) keeper.said();
+    const isFloor = this.#steps.undo === 0;
     const step = this.#now.segment({ first, last, motions, quality, subject, drafts: isFirst });
     const range = { step, time: new TimeLeft(0, last - first + 1), isEnded: false };
     this.#range = range;
     this.#show({ run: { phase: 'working', stage: 'pairs', left: null, labelled: 0 }, previews: tracked.frames, solved: 0 });
     try {
       await step;
-      if (isFirst) this.#found = this.#now.steps.undo;
+      if (isFloor && this.#said.length === 0) this.#found = this.#now.steps.undo;
       this.#longestSide = null;
       await this.#readLabels(first, last);
       if (this.#isClosed || this.#range !== range) return;
@@ -230,6 +271,8 @@ export class Living {
     } finally {
       this.#longestSide = null;
       if (this.#range === range) this.#range = null;
+      this.#isUnderWay = this.#said.length > 0;
+      keeper.settled();
       if (!this.#isClosed) this.#parts.shown.ended();
     }
   }
@@ -237,9 +280,10 @@ export class Living {
   /** Ends the range that is being segmented after the frames that are solved, or takes back what is being carried. */
   cancel(): void {
     const { tracked } = this.#parts.store.get();
+    if (this.#range === null && this.#said.length === 0) return void this.undo();
     if (this.#range === null) {
-      this.#cause = 'undone';
-      return this.#said[0]?.step.cancel();
+      if (this.#said.length === 1) this.#cause = 'undone';
+      return this.#said[0]!.step.cancel();
     }
     if (this.#range.isEnded || isTracked(tracked)) return this.#range.step.cancel();
     this.#range.isEnded = true;
@@ -253,18 +297,23 @@ export class Living {
   }
 
   async #open({ known = null, restored, at = 0 }: Remembered, after: Promise<unknown>): Promise<void> {
-    const { segmenter, keeper, store } = this.#parts;
-    const { markUnknown } = store.get().settings;
+    const { segmenter, keeper } = this.#parts;
+    const { markUnknown } = this;
     await after;
     const clip = await segmenter.openClip(this.#frames, { journal: keeper.journal, markUnknown });
     this.#package = clip;
-    if (restored !== undefined) await clip.restore(restored);
+    if (restored !== undefined) {
+      await settledAll(clip);
+      await clip.restore(restored);
+    }
     if (this.#isClosed) return;
     clip.subscribe((event) => this.#hear(event));
     const frames = clip.frames.map(({ revision }, index) => (revision > 0 && known?.revisions[index] === revision ? (known.frames[index] ?? null) : null));
     this.#base = { ...this.#base, frames, status: clip.frames, objects: clip.objects };
     clip.frames.forEach(({ hasMasks }, index) => hasMasks && frames[index] === null && this.#stale.add(index));
-    if (this.#stale.delete(at)) this.#take(at, masksOf(await clip.labels(at)));
+    // A frame that cannot be read keeps nothing else from being opened.
+    const first = this.#stale.has(at) ? await clip.labels(at).catch(() => null) : null;
+    if (first !== null && this.#stale.delete(at)) this.#take(at, masksOf(first));
     await this.#readAnnotations(this.#annotatedFrames());
     const { run, solved, before } = this.tracked;
     this.#isUnderWay = clip.steps.waiting > 0;
@@ -275,15 +324,10 @@ export class Living {
 
   #hear(event: ClipEvent): void {
     if (this.#isClosed) return;
-    const { store, keeper } = this.#parts;
+    const { store } = this.#parts;
     switch (event.type) {
       case 'frames':
-        this.#base = { ...this.#base, status: this.#now.frames };
-        for (const index of event.frames) {
-          this.#stale.add(index);
-          this.#fresh.add(index);
-        }
-        return void this.#ask();
+        return this.#changed(event.frames);
       case 'objects':
       case 'settled':
         this.#base = { ...this.#base, status: this.#now.frames, objects: this.#now.objects };
@@ -297,17 +341,28 @@ export class Living {
       }
       case 'progress':
         return this.#progress(event);
-      case 'kept':
-        return keeper.kept();
-      case 'unkept':
-        return keeper.refused(event.error.cause ?? event.error);
       case 'paused':
         return report(store, event.error);
       case 'closed':
         return void (event.reason.code === 'clip-closed' || report(store, event.reason));
+      case 'kept':
+      case 'unkept':
       case 'revived':
         return;
     }
+  }
+
+  /** Labels of frames have changed, or frames have no masks any more. */
+  #changed(indices: readonly number[]): void {
+    const status = this.#now.frames;
+    const hasMasks = (index: number): boolean => status[index]?.hasMasks === true;
+    for (const index of indices) {
+      this.#moved?.add(index);
+      if (!hasMasks(index)) this.#stale.delete(index);
+      else for (const frames of [this.#stale, this.#fresh]) frames.add(index);
+    }
+    this.#base = { ...this.#base, status, frames: this.#base.frames.map((frame, index) => (hasMasks(index) ? frame : null)) };
+    void this.#ask();
   }
 
   #progress({ stage, frame, done, of }: Extract<ClipEvent, { type: 'progress' }>): void {
@@ -333,15 +388,25 @@ export class Living {
     this.#cause = cause;
     this.#kept = kept;
     this.#isUnderWay = true;
+    this.#moved = null;
     if (this.#said.length === 0) this.#parts.store.clip({ before: this.state.frames });
   }
 
-  async #move(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
-    if (this.#package === null) return;
+  #move(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
+    const moved = this.#moving.then(() => this.#moveNow(cause, what));
+    this.#moving = moved;
+    return moved;
+  }
+
+  async #moveNow(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
+    if (this.#package === null || this.#isClosed) return;
     this.#begin(cause);
+    this.#moved = new Set();
     this.#parts.keeper.said();
     const isAny = await what(this.#now).catch(() => false);
-    if (!isAny || this.#isClosed) return void (this.#isUnderWay = false);
+    this.#parts.keeper.settled();
+    if (this.#isClosed) return;
+    if (!isAny) return void (this.#isUnderWay = this.#said.length > 0);
     await this.#readAnnotations(this.#annotatedFrames()).catch(() => undefined);
     this.#cause = cause;
     this.#ended(null);
@@ -359,12 +424,13 @@ export class Living {
     const { tracked } = this.#parts.store.get();
     if (tracked === null || this.#said.length > 0 || this.#range !== null) return this.#show();
     if (cause !== null && !this.#isUnderWay) return this.#show({ run: { phase: 'done', cause, changed: 0 } });
-    if (this.#stale.size > 0 || this.#isAsking) return this.#show();
+    if (this.#stale.size > 0 || this.#isAsking || this.#now.steps.waiting > 0) return this.#show();
     this.#isUnderWay = false;
     this.#reached = null;
-    const frames = this.#base.frames;
-    const changed = frames.filter((frame, index) => frame !== tracked.before[index]).length;
-    this.#show({ run: { phase: 'done', cause: this.#cause, changed, kept: this.#kept } });
+    const { frames } = this.#base;
+    const isUndone = this.#cause === 'undone';
+    const changed = this.#moved?.size ?? frames.filter((frame, index) => frame !== tracked.before[index]).length;
+    this.#show({ run: { phase: 'done', cause: this.#cause, changed, kept: this.#kept }, ...(isUndone && { before: frames }) });
   }
 
   /** Asks for the labels of all frames that have changed, one after another. */
@@ -375,8 +441,11 @@ export class Living {
       for (let index = this.#next(); index !== null && !this.#isClosed; index = this.#next()) {
         this.#stale.delete(index);
         this.#fresh.delete(index);
+        this.#asked.add(index);
         const frame = await this.#now.labels(index).catch(() => null);
-        if (frame !== null && !this.#isClosed) this.#take(index, masksOf(frame));
+        if (frame === null || this.#isClosed) continue;
+        this.#asked.delete(index);
+        this.#take(index, masksOf(frame));
       }
     } finally {
       this.#isAsking = false;
@@ -416,7 +485,9 @@ export class Living {
     for (const index of all) {
       if (this.#isClosed) return;
       this.#stale.delete(index);
+      this.#asked.add(index);
       const frame = masksOf(await this.#now.labels(index));
+      this.#asked.delete(index);
       labelled += 1;
       this.#base = { ...this.#base, frames: this.#base.frames.with(index, unchanged(this.#base.frames[index], frame)) };
       const { tracked } = this.#parts.store.get();
@@ -470,6 +541,19 @@ export class Living {
 /** The effect on everything but the masks, which are the clip's own now. */
 function withoutFrames(effect: Effect): Effect {
   return (clip) => ({ ...effect(clip), frames: clip.frames });
+}
+
+/** Waits until a clip has done all that was said before it was opened. */
+async function settledAll(clip: PackageClip): Promise<void> {
+  while (clip.steps.waiting > 0) {
+    await new Promise<void>((resolve) => {
+      const leave = clip.subscribe(({ type }) => {
+        if (type !== 'settled' && type !== 'paused' && type !== 'closed') return;
+        leave();
+        resolve();
+      });
+    });
+  }
 }
 
 function reported(error: unknown): unknown {

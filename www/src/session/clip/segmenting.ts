@@ -23,15 +23,20 @@ export class ClipSegmenting {
   readonly #projects: Projects;
   readonly #segmenter = new SegmenterPool({ jobs: workersFor(navigator.hardwareConcurrency || 1) });
   #living: Living | null = null;
-  /** A clip that is about to be shown. */
+  /** A clip that is about to be shown, and the number of the request for it. */
   #next: Living | null = null;
+  #ticket = 0;
+  /** Number of steps up to the first masks, of clips that were open. */
+  readonly #found = new Map<string, number>();
+  /** Settled when all clips that were left are closed. */
+  #left: Promise<unknown> = Promise.resolve();
 
   constructor(store: Store, shown: Shown, projects: Projects) {
     this.#store = store;
     this.#shown = shown;
     this.#projects = projects;
     store.subscribe(({ settings }, before) => {
-      if (settings.markUnknown !== before.settings.markUnknown) void this.#again();
+      if (settings.markUnknown !== before.settings.markUnknown) this.#again();
     });
   }
 
@@ -39,23 +44,40 @@ export class ClipSegmenting {
     return this.#living;
   }
 
-  /** Opens a clip that is about to be shown, with the work on it. */
+  /** Opens a clip that is about to be shown, with the work on it. If it fails, what is on screen stays. */
   async prepare(clip: Clip): Promise<void> {
     this.#forgetNext();
-    const next = (this.#next = await this.#open(clip));
-    await next.opened;
+    const ticket = (this.#ticket += 1);
+    try {
+      const next = await this.#open(clip);
+      if (ticket !== this.#ticket) return void this.#leave(next);
+      this.#next = next;
+      await next.opened;
+    } catch (error) {
+      if (ticket === this.#ticket) this.giveUp();
+      throw error;
+    }
+  }
+
+  /** What was about to be shown is not. */
+  giveUp(): void {
+    this.#ticket += 1;
+    this.#forgetNext();
+    const { tracked } = this.#store.get();
+    if (this.#living?.isClosed && tracked?.clip === this.#living.clip) this.#renew(this.#living, this.#left);
   }
 
   /** The objects of this clip, which comes to the screen. */
   of(clip: Clip | null): Tracked | null {
     const { tracked } = this.#store.get();
-    if (this.#next === null && clip !== null && tracked?.clip === clip) return tracked;
-    const left = this.#living;
-    if (left !== null && left !== this.#next) void this.#leave(left);
+    if (clip !== null && tracked?.clip === clip && this.#next?.clip !== clip) return tracked;
+    this.#ticket += 1;
     const next = this.#next?.clip === clip ? this.#next : null;
     if (next === null) this.#forgetNext();
     this.#next = null;
-    this.#living = clip === null ? null : (next ?? this.#new(clip, {}));
+    const left = this.#living;
+    if (left !== null && !left.isClosed) void this.#leave(left);
+    this.#living = clip === null ? null : (next ?? this.#new(clip, { found: this.#found.get(clip.fingerprint) ?? 0 }));
     return this.#living?.tracked ?? null;
   }
 
@@ -86,19 +108,25 @@ export class ClipSegmenting {
   }
 
   /** Opens the clip again, as another option makes it another one. */
-  async #again(): Promise<void> {
+  #again(): void {
     const living = this.#living;
-    const { tracked } = this.#store.get();
-    if (living === null || tracked?.clip !== living.clip) return;
-    this.#living = this.#new(living.clip, { found: living.found }, this.#leave(living));
-    await this.#living.opened;
+    const { tracked, settings } = this.#store.get();
+    if (living === null || tracked?.clip !== living.clip || living.markUnknown === settings.markUnknown) return;
+    const goesOn = living.isSegmenting;
+    this.#renew(living, this.#leave(living));
+    if (goesOn) void this.segment();
+  }
+
+  /** Opens a clip again that was closed. */
+  #renew({ clip, found }: Living, after: Promise<unknown>): void {
+    this.#living = this.#new(clip, { found }, after);
+    this.#living.opened.catch((error: unknown) => report(this.#store, error));
   }
 
   /** The same work may still be being left. */
   async #open(clip: Clip): Promise<Living> {
-    const isSame = this.#living?.clip.fingerprint === clip.fingerprint;
-    const left = isSame && this.#living !== null ? this.#leave(this.#living) : Promise.resolve();
-    await left;
+    if (this.#living?.clip.fingerprint === clip.fingerprint && !this.#living.isClosed) void this.#leave(this.#living);
+    await this.#left;
     return this.#new(clip, await this.#projects.remembered(clip));
   }
 
@@ -107,10 +135,8 @@ export class ClipSegmenting {
     return new Living(clip, parts, remembered, after);
   }
 
-  /** Settled when all clips that were left are closed. */
-  #left: Promise<unknown> = Promise.resolve();
-
   #leave(living: Living): Promise<unknown> {
+    this.#found.set(living.clip.fingerprint, living.found);
     this.#projects.leave(living);
     return (this.#left = Promise.all([this.#left, living.close()]));
   }
