@@ -41,7 +41,7 @@ test('frames show drafts until the masks are there: they are marked and played, 
   await expect(notice).toHaveText(sentence);
   await page.locator('#notice-close').click();
   // Escape would cancel the run as well.
-  await page.locator('#export').evaluate((panel) => panel.hidePopover());
+  await page.locator('#export').evaluate((panel: HTMLElement) => panel.hidePopover());
   await page.getByRole('button', { name: 'Play', exact: true }).click();
   await expect(page.locator('#caption')).toHaveText('Frame 3');
 

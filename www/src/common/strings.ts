@@ -158,6 +158,7 @@ export const strings = {
     described: (): string => 'Changed.',
     found: (count: number, of: number, notes: readonly Note[] = []): string => withNotes(`${objects(count)} in ${frames(of)}.`, notes),
     same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
+    repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
     continued: (count: number, of: number): string => `Continued: ${objects(count).toLowerCase()} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,

@@ -291,7 +291,8 @@ export class Projects {
     };
     const before = this.#keeping.get(of);
     tell(before?.is === 'kept' && before.without);
-    this.#unsaved.delete(of);
+    // Whoever asks before the page is left looks again.
+    if (this.#unsaved.delete(of)) this.#store.set({});
     const files = this.#files.get(of);
     const hasFrames = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
     if (journal.isKept) tell(!hasFrames);
@@ -343,8 +344,9 @@ class LateJournal implements ClipJournal {
   ) {}
 
   async read(): Promise<Uint8Array | undefined> {
-    if (this.early.length > 0 && this.loaded() === undefined) return new Uint8Array(await new Blob(this.early as BlobPart[]).arrayBuffer());
-    return (await this.load())?.read();
+    const journal = await (this.loaded() ?? (this.early.length > 0 ? undefined : this.load()));
+    if (journal !== undefined) return journal.read();
+    return this.early.length > 0 ? new Uint8Array(await new Blob(this.early as BlobPart[]).arrayBuffer()) : undefined;
   }
 
   async append(records: Uint8Array): Promise<void> {

@@ -22,7 +22,7 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 export type Masks = readonly (TrackedFrame | null)[];
 
 /** Why a run on the clip is done. */
-export type DoneCause = 'found' | 'same' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | 'corrected' | 'undone' | 'redone';
+export type DoneCause = 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | 'corrected' | 'undone' | 'redone';
 
 /** The run on the clip as a whole. */
 export type ClipRun =

@@ -96,6 +96,8 @@ export class Living {
   #kept = 0;
   #isUnderWay = false;
   #count = 0;
+  /** Whether a range is to be segmented as soon as the clip is open. */
+  #isStarting = false;
   /** Frames whose labels the last undo or redo has changed; and the end of all of these. */
   #moved: Set<number> | null = null;
   #moving: Promise<unknown> = Promise.resolve();
@@ -236,8 +238,14 @@ export class Living {
    * Segments a range of frames. Drafts of masks are shown if there are none. Resolves when all masks are there.
    */
   async segment(): Promise<void> {
-    await this.opened;
     const { store, keeper } = this.#parts;
+    if (this.#package === null) {
+      this.#isStarting = true;
+      this.#show({ run: { phase: 'working', stage: 'pairs', left: null, labelled: 0 } });
+      await this.opened;
+      if (!this.#isStarting) return this.#show({ run: { phase: 'cancelled' } });
+      this.#isStarting = false;
+    }
     const { tracked, settings: { motions, quality, subject, longestSide } } = store.get();
     if (tracked?.clip !== this.clip) return;
     const { first, last } = tracked.range;
@@ -247,6 +255,7 @@ export class Living {
     this.#begin('found');
     if (!tracked.clip.sample) keeper.said();
     const isFloor = this.#steps.undo === 0;
+    const isCorrected = tracked.status.slice(first, last + 1).some(({ annotated, accepted }) => annotated || accepted) || tracked.objects.some(({ number, became }) => number !== became);
     const step = this.#now.segment({ first, last, motions, quality, subject, drafts: isFirst });
     const range = { step, time: new TimeLeft(0, last - first + 1), isEnded: false };
     this.#range = range;
@@ -260,7 +269,7 @@ export class Living {
       this.#range = null;
       const notes = this.#frames.same || range.isEnded ? undefined : (await this.#now.tracks()).notes;
       const changed = lengthOf({ first, last });
-      this.#show({ run: range.isEnded ? { phase: 'cancelled' } : { phase: 'done', cause: this.#frames.same ? 'same' : 'found', changed, notes: notes ?? [] } });
+      this.#show({ run: range.isEnded ? { phase: 'cancelled' } : { phase: 'done', cause: this.#frames.same ? 'same' : isCorrected ? 'repeated' : 'found', changed, notes: notes ?? [] } });
     } catch (error) {
       if (this.#isClosed) return;
       const isCancelled = codeOf(error) === 'cancelled' || range.isEnded;
@@ -280,7 +289,8 @@ export class Living {
   /** Ends the range that is being segmented after the frames that are solved, or takes back what is being carried. */
   cancel(): void {
     const { tracked } = this.#parts.store.get();
-    if (this.#range === null && this.#said.length === 0) return void this.undo();
+    if (this.#isStarting) return void (this.#isStarting = false);
+    if (this.#range === null && this.#said.length === 0) return void (this.#isUnderWay && this.undo());
     if (this.#range === null) {
       if (this.#said.length === 1) this.#cause = 'undone';
       return this.#said[0]!.step.cancel();
@@ -332,7 +342,7 @@ export class Living {
       case 'settled':
         this.#base = { ...this.#base, status: this.#now.frames, objects: this.#now.objects };
         // What was said before the clip was opened has taken effect.
-        return this.#isUnderWay && this.#said.length === 0 && this.#now.steps.waiting === 0 ? this.#ended(null) : this.#show();
+        return event.type === 'settled' && this.#isUnderWay && this.#said.length === 0 ? this.#ended(null) : this.#show();
       case 'draft': {
         const { tracked } = store.get();
         const { index } = event.frame;
