@@ -118,8 +118,8 @@ export class Projects {
     this.#opened.delete(of);
     const journal = await this.#journalOf(of, name);
     const header = this.#headers.get(of) ?? (await shelf.headerOf(of).catch(() => null));
-    const { found = 0, at = 0, settings } = project?.header ?? header ?? {};
-    const common = { found, at, markUnknown: settings?.markUnknown };
+    const { found = 0, at = 0, settings, range } = project?.header ?? header ?? {};
+    const common = { found, at, markUnknown: settings?.markUnknown, ...(range && { range }) };
     if (project === undefined) return { ...common, known: await shelf.masksOf(of).catch(() => null) };
     const { tracked } = this.#store.get();
     const isWorked = header?.annotated === true || (tracked?.clip.fingerprint === of && isAnnotated(tracked));
@@ -130,12 +130,11 @@ export class Projects {
 
   /** Puts what is known beside the journal into the state, with the clip of this pair. */
   restore(header: Header): void {
-    const { of, settings, classList: saved, range } = header;
-    const { classList, tracked } = this.#store.get();
+    const { of, settings, classList: saved } = header;
+    const { classList } = this.#store.get();
     this.#headers.set(of, header);
     // The project's classes keep their numbers.
     this.#store.set({ settings, classList: [...new Set([...saved, ...classList])] });
-    if (tracked?.clip.fingerprint === of) this.#store.clip({ range });
     this.#keep(of);
   }
 

@@ -6,8 +6,7 @@ import type { Store } from '../state/state.js';
 
 export function mountLeaving(page: Window, store: Store, session: Session): void {
   const ask = (event: BeforeUnloadEvent): void => event.preventDefault();
-  store.subscribe((now, before) => {
-    if (now.tracked === before.tracked && now.keeping === before.keeping) return;
+  store.subscribe(() => {
     if (session.projects.isUnsaved) page.addEventListener('beforeunload', ask);
     else page.removeEventListener('beforeunload', ask);
   });

@@ -7,7 +7,7 @@ import { PageError, codeOf } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
 import type { Effect } from '../../state/said.js';
 import type { Store } from '../../state/state.js';
-import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Masks, type Prompt, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
+import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Masks, type Prompt, type Range, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
 import { ClipFrames, masksOf } from './frames.js';
@@ -49,6 +49,8 @@ export interface Remembered {
   readonly restored?: Uint8Array;
   /** The frame that is shown first: its masks are there when the clip is open. */
   readonly at?: number;
+  /** The frames that are segmented. */
+  readonly range?: Range;
   /** Whether pixels that nothing explains are left unlabelled. */
   readonly markUnknown?: boolean | undefined;
 }
@@ -104,12 +106,15 @@ export class Living {
   #longestSide: number | null = null;
   /** Number of steps up to the first masks. */
   #found: number;
+  /** The range when the clip was opened. */
+  readonly #firstRange: Range;
 
   /** `known`: what is known of it from before. `after`: what has to end before it can be opened. */
   constructor(clip: Clip, parts: Parts, remembered: Remembered, after: Promise<unknown>) {
     this.clip = clip;
     this.#parts = parts;
     this.#found = remembered.found ?? 0;
+    this.#firstRange = remembered.range ?? { first: 0, last: clip.count - 1 };
     this.markUnknown = (remembered.markUnknown ?? parts.store.get().settings.markUnknown) === true;
     const frames = Array.from({ length: clip.count }, () => null);
     this.#base = { frames, status: [], objects: [], annotated: new Map() };
@@ -134,7 +139,10 @@ export class Living {
   get tracked(): Tracked {
     const known = this.#known;
     const solved = known.status.filter(({ hasMasks }) => hasMasks).length;
-    return { ...untracked(this.clip), ...known, before: known.frames, solved, run: solved > 0 ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'idle' } };
+    const { first, last } = this.#firstRange;
+    const isComplete = solved > 0 && known.status.slice(first, last + 1).every(({ hasMasks }) => hasMasks);
+    const run: ClipRun = isComplete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: solved > 0 ? 'cancelled' : 'idle' };
+    return { ...untracked(this.clip), ...known, range: this.#firstRange, before: known.frames, solved, run };
   }
 
   get isClosed(): boolean {
