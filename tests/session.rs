@@ -247,7 +247,11 @@ fn annotations_are_returned_as_they_were_given() {
             Content::Given(labels) => Content::Labels(labels.clone()),
             other => other.clone(),
         };
-        assert_eq!(clip.annotations(*frame), [Annotation { frame: *frame, content: returned, spread: *spread }], "{name}");
+        assert_eq!(
+            clip.annotations(*frame),
+            [Annotation { frame: *frame, content: returned, spread: *spread }],
+            "{name}"
+        );
         assert!((0..COUNT).all(|index| index == *frame || clip.annotations(index).is_empty()), "{name}");
         settle(&mut clip, Command::Clear { frame: *frame, object: None }).unwrap();
         assert!(clip.annotations(*frame).is_empty(), "{name}");

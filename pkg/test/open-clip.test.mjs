@@ -114,6 +114,38 @@ describe('a clip', () => {
     assert.equal((await clip.labels(1)).objects.find(({ id }) => id === 3).pixels, 36);
   });
 
+  test('tells the annotations of a frame, which give the same labels again', async (t) => {
+    const [clip, other] = [await segmented(t), await segmented(t)];
+    const strokes = rectangle([2, 2, 8, 8], 1, 255);
+    await clip.annotate({ frame: 3, object: 2, strokes, propagate: 'forward' });
+    await clip.annotate({ frame: 3, object: 5, box: [16, 12, 24, 24], clicks: [[20, 20, 1], [2, 2, -1]] });
+    const annotations = await clip.annotations(3);
+    assert.deepEqual(annotations, [
+      { frame: 3, propagate: 'forward', object: 2, strokes },
+      { frame: 3, propagate: 'both', object: 5, clicks: [[20, 20, 1], [2, 2, -1]], box: [16, 12, 24, 24] },
+    ]);
+    assert.deepEqual(await clip.annotations(2), []);
+    for (const annotation of annotations) await other.annotate(annotation);
+    assert.deepEqual(await labelsOf(other), await labelsOf(clip));
+    assert.equal((await failure(() => clip.annotations(COUNT))).code, 'invalid-option');
+  });
+
+  test('takes over a saved clip as one step', async (t) => {
+    const [clip, other] = [await segmented(t), await segmented(t)];
+    await other.annotate({ frame: 1, object: 3, mask: rectangle([40, 2, 6, 6], 1, 0) });
+    await clip.delete(1);
+    const [before, wanted, saved] = [await labelsOf(clip), await labelsOf(other), await other.save()];
+    const { undo } = clip.steps;
+    await clip.restore(saved);
+    assert.deepEqual([await labelsOf(clip), clip.steps.undo, clip.objects], [wanted, undo + 1, other.objects]);
+    await clip.undo();
+    assert.deepEqual(await labelsOf(clip), before);
+    for (const bad of [new Uint8Array(3), saved.subarray(0, -1), 'saved']) {
+      assert.match((await failure(() => clip.restore(bad))).code, /^invalid-(option|input)$/);
+    }
+    assert.deepEqual([await labelsOf(clip), clip.steps.waiting], [before, 0]);
+  });
+
   test('gives numbers of new objects one after another', async (t) => {
     const clip = await segmented(t);
     const steps = [2, 12, 22].map((left) => clip.annotate({ frame: 1, object: clip.nextObject, mask: rectangle([left, 2, 6, 6], 1, 0), propagate: 'none' }));

@@ -1,11 +1,11 @@
 //! Ranges of a clip: beside, inside and over each other, with annotations in and around them.
 
 use super::{
-    COUNT, SCENE, SIZE, assert_same, fast, in_box, labels, pairs_of_annotations, print, read, run, said, segment,
-    settle, shown, start, summary, take,
+    COUNT, SCENE, SIZE, assert_same, fast, in_box, labels, of_thing, pairs_of_annotations, print, read, run, said,
+    segment, settle, shown, start, summary, take,
 };
 use crate::support::moving::{scene_of, thing};
-use veronese::clip::{Annotation, Clip, ClipStage, Command, Content, OpenOptions, Spread, solve_pair};
+use veronese::clip::{Annotation, Clip, ClipStage, Command, Content, Description, OpenOptions, Spread, solve_pair};
 use veronese::{Error, Frame};
 
 /// A clip whose frames from 0 to `end` are segmented.
@@ -97,6 +97,24 @@ fn ranges_inside_and_over_each_other_keep_numbers_and_annotations() {
         clip.undo();
         assert_same(&labels(&mut clip), &before, what);
     }
+}
+
+#[test]
+fn what_was_painted_before_objects_were_merged_named_and_locked_is_there_when_they_are_segmented_again() {
+    let mut clip = start();
+    let found = shown(&mut clip);
+    let objects = numbers(&found[2], 2);
+    // Over one of them.
+    settle(&mut clip, said(2, Content::Strokes { object: 9, labels: of_thing(2, 1, 1, 255) })).unwrap();
+    settle(&mut clip, Command::Merge(objects.into())).unwrap();
+    let description = Description { name: "one".into(), ..Description::default() };
+    settle(&mut clip, Command::Describe { object: objects[0], description, coalesce: false }).unwrap();
+    settle(&mut clip, Command::Lock { objects: vec![objects[0]], on: true }).unwrap();
+    let (before, known) = (shown(&mut clip), clip.objects());
+    assert!(before.iter().all(|labels| labels.contains(&9)));
+    settle(&mut clip, segment(0..COUNT)).unwrap();
+    assert!(shown(&mut clip) == before);
+    assert_eq!(clip.objects(), known);
 }
 
 #[test]

@@ -32,7 +32,8 @@ mod stream;
 
 #[cfg(feature = "frames")]
 pub use clip::{
-    annotations_of_clip, apply_clip, close_clip, look_at_clip, move_clip, open_clip, save_clip, solve_pair_of_frames, take_clip,
+    annotations_of_clip, apply_clip, close_clip, look_at_clip, move_clip, open_clip, save_clip, solve_pair_of_frames,
+    take_clip,
 };
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};

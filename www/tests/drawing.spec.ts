@@ -93,12 +93,12 @@ test('what is drawn exactly is kept, exported and left alone by corrections else
   await expect(page.locator('#caption')).toHaveText('Frame 4');
   await page.keyboard.press('Control+z');
   await expect(status(page)).toHaveText('Undone in one frame.');
-  expect(differences(await labelsOnCanvas(page), brushed)).toBe(0);
+  await expect.poll(async () => differences(await labelsOnCanvas(page), brushed)).toBe(0);
   await page.keyboard.press('Control+z');
-  expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+  await expect.poll(async () => differences(await labelsOnCanvas(page), before)).toBe(0);
   await page.keyboard.press('Control+y');
   await page.keyboard.press('Control+y');
-  expect(differences(await labelsOnCanvas(page), erased)).toBe(0);
+  await expect.poll(async () => differences(await labelsOnCanvas(page), erased)).toBe(0);
 
   // So is a mask that is copied to another frame, or made of a box there.
   await page.keyboard.press('Shift+>');
@@ -219,7 +219,7 @@ test('the onion skin shows the frames beside; polygons are filled pixel for pixe
     expect(differences(await labelsOnCanvas(page), filled(1).map((label, p) => (label === 1 && isInside(p, cut) ? 0 : label)))).toBe(0);
     await page.keyboard.press('Control+z');
     await page.keyboard.press('Control+z');
-    expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+    await expect.poll(async () => differences(await labelsOnCanvas(page), before)).toBe(0);
 
     // By keyboard alone: from where the pointer was, in steps of the brush's radius. Backspace is about the corners, not about the selected object.
     await page.mouse.move(0, 0);

@@ -329,7 +329,9 @@ export async function kept(page: Page): Promise<void> {
 
 /** Takes all corrections of a pair back. */
 export async function undoAll(page: Page): Promise<void> {
-  while (await page.locator('#undo').isEnabled()) await page.locator('#undo').click();
+  // A step back takes a moment, in which there may be none.
+  const undo = page.locator('#undo');
+  while (await undo.isEnabled()) await undo.evaluate((button: HTMLButtonElement) => button.click());
   await done(page);
 }
 

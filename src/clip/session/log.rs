@@ -192,13 +192,7 @@ pub(super) fn range_record(step: u32, end: usize, is_complete: bool) -> Written 
 }
 
 /// The content of a record of what a step has changed.
-pub(super) fn result(
-    step: u32,
-    parent: u32,
-    difference: &Difference,
-    is_open: bool,
-    is_first: bool,
-) -> Written {
+pub(super) fn result(step: u32, parent: u32, difference: &Difference, is_open: bool, is_first: bool) -> Written {
     let mut bytes = Vec::new();
     [step as usize, parent as usize].write(&mut bytes);
     difference.write(&mut bytes);

@@ -25,8 +25,16 @@ pub(super) enum Phase {
     },
     /// Locks these objects and no others.
     Lock(Vec<u8>),
-    /// Restores locks and names that were lifted.
-    Restore(Box<[ObjectSet; 2]>),
+    /// Restores locks, names and merges that were lifted.
+    Restore(Box<Lifted>),
+}
+
+/// What protects objects from annotations of others: whether they are locked and named, and the numbers under which they go on.
+#[derive(Clone, Debug)]
+pub(super) struct Lifted {
+    pub(super) locked: ObjectSet,
+    pub(super) named: ObjectSet,
+    pub(super) numbers: [u8; 256],
 }
 
 /// Labels as runs; `None` if all are open.

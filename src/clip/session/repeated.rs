@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::phase::Phase;
+use super::phase::{Lifted, Phase};
 use super::ranges::resized;
 use crate::clip::annotation::{Accepted, Annotations, Click, Painted, Prompt};
 use crate::clip::frame_state::FrameState;
@@ -10,8 +10,8 @@ use crate::clip::objects::Objects;
 use crate::clip::runs::Runs;
 use crate::clip::segmented_clip::SegmentedClip;
 
-/// The phases that apply the annotations of some scenes again, frame by frame, then accept the frames that were accepted, as they were. Locks
-/// and names are lifted meanwhile.
+/// The phases that apply the annotations of some scenes again, frame by frame, then accept the frames that were accepted, as they were. Locks,
+/// names and merges are lifted meanwhile: they protect from what is said later.
 pub(super) fn repeated(before: &SegmentedClip, clip: &mut SegmentedClip, [first, last]: [usize; 2]) -> Vec<Phase> {
     let (mut corrections, mut prompts, mut accepted) = (Vec::new(), Vec::new(), Vec::new());
     let is_resized = before.size != clip.size && before.size != [0, 0];
@@ -39,16 +39,19 @@ pub(super) fn repeated(before: &SegmentedClip, clip: &mut SegmentedClip, [first,
     if corrections.is_empty() && prompts.is_empty() && accepted.is_empty() {
         return Vec::new();
     }
-    let Objects { locked, named, .. } = *clip.objects;
+    let Objects { locked, named, numbers, .. } = *clip.objects;
     let objects = clip.objects_mut();
     (objects.locked, objects.named) = ([false; 256], [false; 256]);
+    for (k, number) in objects.numbers.iter_mut().enumerate().filter(|(_, number)| **number > 0) {
+        *number = k as u8;
+    }
     // Frames outside stay accepted.
     let others = (0..clip.len()).filter(|&index| clip.frames[index].accepted).collect();
     let accepted = [Accepted::as_shown(others), accepted].concat();
     vec![
         Phase::Annotate(Annotations { corrections, prompts, ..Annotations::default() }),
         Phase::Annotate(Annotations { accepted: Some(accepted), ..Annotations::default() }),
-        Phase::Restore(Box::new([locked, named])),
+        Phase::Restore(Box::new(Lifted { locked, named, numbers })),
     ]
 }
 

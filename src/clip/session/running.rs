@@ -128,9 +128,9 @@ impl Running {
                     self.job = Some(self.clip.annotate(annotations)?.after(earlier));
                 }
                 Some(Phase::Lock(objects)) => self.clip.objects_mut().locked = self.clip.objects.with_merged(&objects),
-                Some(Phase::Restore(sets)) => {
+                Some(Phase::Restore(lifted)) => {
                     let objects = self.clip.objects_mut();
-                    [objects.locked, objects.named] = *sets;
+                    (objects.locked, objects.named, objects.numbers) = (lifted.locked, lifted.named, lifted.numbers);
                 }
                 _ => return Ok(()),
             }

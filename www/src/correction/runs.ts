@@ -73,38 +73,8 @@ export function extentsOf({ width, ends, labels }: Runs): Map<number, Extent> {
   return extents;
 }
 
-/** Labels correspond only if their intersection over union reaches this: a smaller overlap is chance. */
-const LEAST_COMMON = 0.1;
-
-/** Two labels, and the intersection over union of their pixels, at least {@link LEAST_COMMON}. */
-interface Overlap {
-  readonly was: number;
-  readonly is: number;
-  readonly share: number;
-}
-
-/** Which labels of an earlier labelling overlap which ones of a later one, in all these images together, the largest share first. */
-export function overlapsOf(images: Iterable<readonly [Runs, Runs]>): Overlap[] {
-  const [areasBefore, areasNow, common] = [new Map<number, number>(), new Map<number, number>(), new Map<number, number>()];
-  const add = (map: Map<number, number>, key: number, pixels: number): void => void map.set(key, (map.get(key) ?? 0) + pixels);
-  for (const [before, now] of images) {
-    for (const [was, is, pixels] of together(resized(before, now), now)) {
-      add(areasBefore, was, pixels);
-      add(areasNow, is, pixels);
-      add(common, 256 * is + was, pixels);
-    }
-  }
-  return [...common]
-    .map(([key, pixels]) => {
-      const [is, was] = [key >> 8, key & 255];
-      return { was, is, share: pixels / (areasNow.get(is)! + areasBefore.get(was)! - pixels) };
-    })
-    .filter(({ was, is, share }) => is !== UNLABELLED && was !== UNLABELLED && share >= LEAST_COMMON)
-    .sort((one, other) => other.share - one.share);
-}
-
 /** Pixels one after another that have a label in one image and a label in another of the same size, and how many these are. */
-export function* together(one: Runs, other: Runs): Generator<readonly [number, number, number], void, undefined> {
+function* together(one: Runs, other: Runs): Generator<readonly [number, number, number], void, undefined> {
   for (let i = 0, k = 0, from = 0; i < one.ends.length && k < other.ends.length; ) {
     const to = Math.min(one.ends[i]!, other.ends[k]!);
     yield [one.labels[i]!, other.labels[k]!, to - from];

@@ -4,7 +4,6 @@ export type Check<T> = (value: unknown) => value is T;
 
 export const isText: Check<string> = (value) => typeof value === 'string';
 export const isFlag: Check<boolean> = (value) => typeof value === 'boolean';
-export const isNumber: Check<number> = (value): value is number => Number.isFinite(value);
 
 /** A whole number from `min` to `max`. */
 export function isFrom(min: number, max = Number.MAX_SAFE_INTEGER): Check<number> {
@@ -19,10 +18,6 @@ export function either<A, B>(one: Check<A>, other: Check<B>): Check<A | B> {
   return (value): value is A | B => one(value) || other(value);
 }
 
-export function orNull<T>(check: Check<T>): Check<T | null> {
-  return either(check, isOne(null));
-}
-
 /** A value that may be missing. */
 export function optional<T>(check: Check<T>): Check<T | undefined> {
   return (value): value is T | undefined => value === undefined || check(value);
@@ -31,11 +26,6 @@ export function optional<T>(check: Check<T>): Check<T | undefined> {
 /** A list; with a length, of this length. */
 export function listOf<T>(check: Check<T>, length?: number): Check<readonly T[]> {
   return (value): value is readonly T[] => Array.isArray(value) && (length === undefined || value.length === length) && value.every(check);
-}
-
-/** Values by any name. */
-export function recordOf<T>(check: Check<T>): Check<Readonly<Record<string, T>>> {
-  return (value): value is Readonly<Record<string, T>> => isRecord(value) && Object.values(value).every(check);
 }
 
 /** An object with these entries, and perhaps others. */

@@ -155,11 +155,6 @@ export function isAnnotated({ status, objects }: Pick<Tracked, 'status' | 'objec
   return status.some(({ annotated, accepted }) => annotated || accepted) || objects.some(({ number, name, class: named, colour, locked, became }) => number !== became || locked || colour !== undefined || name !== '' || named !== '');
 }
 
-/** Whether a correction is being carried through the clip. */
-export function isCorrecting(run: ClipRun): boolean {
-  return run.phase === 'working' && run.stage === 'corrections';
-}
-
 /** One object through a clip. */
 export interface Life {
   readonly id: number;
@@ -239,10 +234,6 @@ export function rangeOf(frames: Masks): Range | null {
 /** Number of frames in a range. */
 export function lengthOf({ first, last }: Range): number {
   return last - first + 1;
-}
-
-export function contains({ first, last }: Range, index: number): boolean {
-  return first <= index && index <= last;
 }
 
 /** Number of frames in the range that have masks. */

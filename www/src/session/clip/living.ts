@@ -141,7 +141,7 @@ export class Living {
     const solved = known.status.filter(({ hasMasks }) => hasMasks).length;
     const { first, last } = this.#firstRange;
     const isComplete = solved > 0 && known.status.slice(first, last + 1).every(({ hasMasks }) => hasMasks);
-    const run: ClipRun = isComplete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: solved > 0 ? 'cancelled' : 'idle' };
+    const run: ClipRun = this.#isUnderWay ? this.#correcting() : isComplete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: solved > 0 ? 'cancelled' : 'idle' };
     return { ...untracked(this.clip), ...known, range: this.#firstRange, before: known.frames, solved, run };
   }
 
@@ -333,10 +333,10 @@ export class Living {
     const first = this.#stale.has(at) ? await clip.labels(at).catch(() => null) : null;
     if (first !== null && this.#stale.delete(at)) this.#take(at, masksOf(first));
     await this.#readAnnotations(this.#annotatedFrames());
-    const { run, solved, before } = this.tracked;
     this.#isUnderWay = clip.steps.waiting > 0;
-    this.#show({ run: this.#isUnderWay ? this.#correcting() : run, solved, before });
     if (this.#isUnderWay) this.#cause = 'corrected';
+    const { run, solved, before } = this.tracked;
+    this.#show({ run, solved, before });
     void this.#ask();
   }
 
