@@ -396,7 +396,8 @@ export class Living {
 
   /** How far corrections have come. A frame may be read again: first it tells what objects look like. */
   #correcting(): ClipRun {
-    const { frames, of, time } = this.#reached ?? { frames: new Set(), of: 0, time: new TimeLeft(0, 0) };
+    if (this.#reached === null) return { phase: 'working', stage: 'corrections', left: null, labelled: 0 };
+    const { frames, of, time } = this.#reached;
     const labelled = Math.min(frames.size, of);
     return { phase: 'working', stage: 'corrections', left: time.at(labelled), labelled, of };
   }
