@@ -161,16 +161,7 @@ export interface StreamEnd {
 }
 
 /** The result of a task; null if its clip no longer exists. */
-export type Result =
-  | Segmentation
-  | MotionFit
-  | LabelledFrame
-  | ClipAnswer
-  | StreamEnd
-  | ClipAnnotation[]
-  | Uint8Array
-  | null
-  | undefined;
+export type Result = Segmentation | MotionFit | LabelledFrame | ClipAnswer | StreamEnd | ClipAnnotation[] | Uint8Array | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };

@@ -1,8 +1,8 @@
 //! What this browser keeps of projects, in one database: a header of each, which lists show, its journal in rows, and masks that are known. The
 //! masks can be made again from the journal; the journal is the work.
 
-import type { KnownMasks } from '../session/clip/living.js';
 import type { Header } from './file.js';
+import type { KnownMasks } from './work.js';
 
 const NAME = 'veronese-projects';
 const [HEADERS, ROWS, MASKS] = ['headers', 'rows', 'masks'] as const;

@@ -6,9 +6,7 @@ import { PageError, codeOf, isStorageFull, sentenceOf } from '../common/errors.j
 import { loaded } from '../common/loaded.js';
 import { inFileNames } from '../common/naming.js';
 import { strings } from '../common/strings.js';
-import type { Clip } from '../clips/clip.js';
 import { type Sample, sampleCalled } from '../frames/samples.js';
-import type { Keeper, Living, Remembered } from '../session/clip/living.js';
 import { type FramePair, timelineOf } from '../state/pair.js';
 import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
 import { isAnnotated } from '../state/tracked.js';
@@ -16,6 +14,7 @@ import { isNothingKept } from './database.js';
 import type { Header, Project } from './file.js';
 import type { PageJournal } from './journal.js';
 import type { Listed } from './shelf.js';
+import type { Keeper, Remembered, Work } from './work.js';
 
 /** How long a change of what is beside the journal waits for others, milliseconds. */
 const SOON = 500;
@@ -43,13 +42,13 @@ export class Projects {
   /** Ends when all is written, with the copies of frames. */
   #written: Promise<unknown> = Promise.resolve();
   /** The clip that is open. */
-  living: () => Living | null = () => null;
+  living: () => Work | null = () => null;
 
   constructor(store: Store) {
     this.#store = store;
     store.subscribe((now, before) => this.#watch(now, before));
     document.addEventListener('visibilitychange', () => {
-      if (document.visibilityState === 'hidden') this.#writeNow();
+      if (document.visibilityState === 'hidden') void this.#writeNow();
     });
   }
 
@@ -112,7 +111,7 @@ export class Projects {
   }
 
   /** What is remembered of a clip that is about to be opened. Work of a file becomes its own, or if it has some already, one more step of it. */
-  async remembered({ fingerprint: of, name }: Clip): Promise<Remembered> {
+  async remembered({ fingerprint: of, name }: Work['clip']): Promise<Remembered> {
     const shelf = await this.#load();
     const project = this.#opened.get(of);
     this.#opened.delete(of);
@@ -139,7 +138,7 @@ export class Projects {
   }
 
   /** Where a clip is kept. */
-  keeperOf({ fingerprint: of, name }: Clip): Keeper {
+  keeperOf({ fingerprint: of, name }: Work['clip']): Keeper {
     return {
       journal: new LateJournal(this.#earlyOf(of), () => this.#journals.get(of), async () => ((await isNothingKept()) ? undefined : this.#journalOf(of, name))),
       said: () => {
@@ -152,7 +151,7 @@ export class Projects {
   }
 
   /** The work on a clip that is being left. */
-  leave(living: Living): void {
+  leave(living: Work): void {
     const { fingerprint: of } = living.clip;
     if (openIn(this.#store.get()) === of && this.#isUnsavedNow) this.#unsaved.add(of);
     void this.#writeNow(living);
@@ -273,7 +272,7 @@ export class Projects {
     return (this.#written = this.#written.then(() => this.#write(state, living)).catch(() => undefined));
   }
 
-  async #write(state: State, living: Living): Promise<void> {
+  async #write(state: State, living: Work): Promise<void> {
     const header = await this.#headerOf(state, living);
     const journal = await this.#journals.get(header?.of ?? '');
     if (header === null || journal?.isKept !== true) return;
@@ -298,14 +297,14 @@ export class Projects {
   }
 
   /** Masks that are known, so that they need not be made again. */
-  #remember({ masks, clip: { fingerprint: of } }: Living): void {
+  #remember({ masks, clip: { fingerprint: of } }: Work): void {
     if (this.#keeping.get(of)?.is !== 'kept') return;
     const put = async (): Promise<void> => (await this.#load()).putMasks(of, masks);
     this.#written = Promise.all([this.#written, put().catch(() => undefined)]);
   }
 
   /** What is known of the clip that is open; `null` if there is none. */
-  async #headerOf(state: State, living: Living): Promise<Header | null> {
+  async #headerOf(state: State, living: Work): Promise<Header | null> {
     const { headerFrom, thumbnailOf } = await this.#load();
     const { tracked, settings, classList, timeline, look } = state;
     if (tracked === null) return null;

@@ -87,7 +87,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
   });
   lock.addEventListener('click', () => session.objects.toggleLock(id));
-  split.addEventListener('click', () => void session.objects.split(id));
+  split.addEventListener('click', () => session.objects.split(id));
   remove.addEventListener('click', () => session.objects.remove(id));
   const others = (): number[] => livesOf(store.get().tracked ?? { frames: [] }).map((life) => life.id).filter((other) => other !== id);
   const aboutOthers = (['lock', 'hide', 'remove'] as const).map((what) => ({ what, button: find(row, `[data-action=${what}-others]`, HTMLButtonElement) }));

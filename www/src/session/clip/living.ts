@@ -1,13 +1,14 @@
 //! The clip of the package, from when the page opens a clip until it leaves it. Commands go to it, and what it says goes into the state: objects,
 //! what is known of frames, and labels, which are asked for when they have changed, those on screen first.
 
-import type { Clip as PackageClip, ClipEvent, ClipJournal, ClipStep, SegmenterPool } from 'veronese';
+import type { Clip as PackageClip, ClipEvent, ClipStep, SegmenterPool } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
 import { PageError, codeOf } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
 import type { Effect } from '../../state/said.js';
 import type { Store } from '../../state/state.js';
-import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Masks, type Prompt, type Range, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
+import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Prompt, type Range, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
+import type { Keeper, KnownMasks, Remembered, Work } from '../../projects/work.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
 import { ClipFrames, masksOf } from './frames.js';
@@ -34,35 +35,6 @@ export interface Saying {
   readonly refusal?: string;
 }
 
-/** Masks that are known already, and the revision that they are of. */
-export interface KnownMasks {
-  readonly frames: Masks;
-  readonly revisions: readonly number[];
-}
-
-/** What is remembered of a clip, beside its journal. */
-export interface Remembered {
-  readonly known?: KnownMasks | null;
-  /** Number of steps up to the first masks. */
-  readonly found?: number;
-  /** A clip that was saved, which it takes over. */
-  readonly restored?: Uint8Array;
-  /** The frame that is shown first: its masks are there when the clip is open. */
-  readonly at?: number;
-  /** The frames that are segmented. */
-  readonly range?: Range;
-  /** Whether pixels that nothing explains are left unlabelled. */
-  readonly markUnknown?: boolean | undefined;
-}
-
-/** Where the clip is kept. */
-export interface Keeper {
-  readonly journal: ClipJournal;
-  /** Called when something is said, and when it has taken effect or not. */
-  said(): void;
-  settled(): void;
-}
-
 /** Parts of the page that a clip needs. */
 interface Parts {
   readonly store: Store;
@@ -71,7 +43,7 @@ interface Parts {
   readonly keeper: Keeper;
 }
 
-export class Living {
+export class Living implements Work {
   readonly clip: Clip;
   readonly markUnknown: boolean;
   /** Settled when the clip is open; rejects with what kept it from that. */

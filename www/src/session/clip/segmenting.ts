@@ -3,6 +3,7 @@
 import { SegmenterPool } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
 import type { Projects } from '../../projects/projects.js';
+import type { Remembered } from '../../projects/work.js';
 import type { Store } from '../../state/state.js';
 import type { Range, Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
@@ -130,7 +131,7 @@ export class ClipSegmenting {
     return this.#new(clip, await this.#projects.remembered(clip));
   }
 
-  #new(clip: Clip, remembered: ConstructorParameters<typeof Living>[2], after: Promise<unknown> = this.#left): Living {
+  #new(clip: Clip, remembered: Remembered, after: Promise<unknown> = this.#left): Living {
     const parts = { store: this.#store, shown: this.#shown, segmenter: this.#segmenter, keeper: this.#projects.keeperOf(clip) };
     return new Living(clip, parts, remembered, after);
   }
