@@ -261,7 +261,7 @@ mod tests {
         };
         let mut history = History::new(clip());
         for (parent, &bytes) in bytes.iter().enumerate() {
-            history.push(parent as u32, State::new(parent as u32 + 1, clip(), Vec::new(), None, bytes));
+            history.push(parent as u32, State::new(parent as u32 + 1, clip(), Vec::new(), false, bytes));
         }
         history
     }
