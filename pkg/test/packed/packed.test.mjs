@@ -67,7 +67,8 @@ test('no bundler: a clip whose page is closed at any moment has all that was set
     await page.goto(`${address}journal.html?journal=drive`);
     await page.waitForFunction(() => globalThis.begun !== undefined);
     const begun = await page.evaluate(() => globalThis.begun);
-    assert.ok(begun >= settled && begun <= settled + 1, `${settled} steps were settled, ${begun} are there`);
+    // More may have been settled before the page was gone.
+    assert.ok(begun >= settled && begun <= 9, `${settled} steps were settled, ${begun} are there`);
     const wanted = Math.min(9, begun + Math.floor(3 * next()));
     await page.waitForFunction((wanted) => globalThis.settled >= wanted, wanted);
     settled = await page.evaluate(() => globalThis.settled);
