@@ -299,7 +299,7 @@ test('a stroke in one frame is carried through the clip and undone; corrections 
   await expect(page.locator('#objects')).toBeHidden();
   await expect.poll(() => leaves(page)).toBe(true);
   await upload(page, files);
-  await shows(page, 0);
+  await shows(page, 3); // where it was left
   await expect(rows).toHaveCount(2);
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Box');
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));

@@ -96,6 +96,8 @@ export class Projects {
     const opened = this.#opened.get(of)?.header ?? null;
     if (opened === null && tracked?.clip === clip) return null;
     if (opened === null && !this.#headers.has(of) && (await isNothingKept())) return null;
+    // A clip that was just left is found as it was left.
+    await this.#written;
     try {
       const header = opened ?? this.#headers.get(of) ?? (await (await this.#load()).headerOf(of));
       // Browsers that read a video approximately may count other frames.
