@@ -1,7 +1,5 @@
 //! Run-length encoded labels: they store corrections in little memory and compare two labellings quickly.
 
-import { UNLABELLED } from '../result/masks.js';
-
 /** Row-major; run k covers the pixels from `ends[k - 1]` up to, but not including, `ends[k]`. */
 export interface Runs {
   readonly width: number;
@@ -26,15 +24,6 @@ export function unpacked({ width, height, ends, labels }: Runs): Uint8Array<Arra
   const pixels = new Uint8Array(width * height);
   for (let k = 0, from = 0; k < ends.length; from = ends[k++]!) pixels.fill(labels[k]!, from, ends[k]);
   return pixels;
-}
-
-/** Labels with others over them, where these are not 255. The same if none changes. */
-export function over(under: Runs, above: Runs): Runs {
-  let changes = false;
-  for (const [is, was] of together(above, under)) changes ||= is !== UNLABELLED && is !== was;
-  if (!changes) return under;
-  const below = unpacked(under);
-  return packed(unpacked(above).map((label, p) => (label === UNLABELLED ? below[p]! : label)), under.width, under.height);
 }
 
 /** The number of pixels whose labels differ; all of the first if the sizes do. */
@@ -71,17 +60,6 @@ export function extentsOf({ width, ends, labels }: Runs): Map<number, Extent> {
     extents.set(labels[k]!, { pixels: pixels + last + 1 - from, bbox });
   }
   return extents;
-}
-
-/** Pixels one after another that have a label in one image and a label in another of the same size, and how many these are. */
-function* together(one: Runs, other: Runs): Generator<readonly [number, number, number], void, undefined> {
-  for (let i = 0, k = 0, from = 0; i < one.ends.length && k < other.ends.length; ) {
-    const to = Math.min(one.ends[i]!, other.ends[k]!);
-    yield [one.labels[i]!, other.labels[k]!, to - from];
-    if (one.ends[i] === to) i += 1;
-    if (other.ends[k] === to) k += 1;
-    from = to;
-  }
 }
 
 /** The labels at another size, by nearest neighbour. */

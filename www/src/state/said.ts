@@ -1,7 +1,7 @@
 //! What a person has said of a clip is seen at once: here is what it changes on screen until the clip answers.
 
 import type { ClipEntry } from 'veronese';
-import { type Runs, extentsOf, over, packed, unpacked } from '../correction/runs.js';
+import { type Runs, extentsOf, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { type Annotated, type ClipState, type Prompt, type TrackedFrame, isObject, lockedIn } from './tracked.js';
 
@@ -10,18 +10,31 @@ export type Effect = (clip: ClipState) => ClipState;
 
 /** An object is painted in a frame: 1 where it is, 0 where it is not, 255 where nothing changes. Of 0: nothing is there where the labels are 0. */
 export function painted(index: number, object: number, labels: Uint8Array): Effect {
+  const annotated = annotating(index, object);
+  // It is seen again whenever anything changes, and mostly of the same masks.
+  let last: { readonly frame: TrackedFrame; readonly objects: ClipState['objects']; readonly now: TrackedFrame } | null = null;
+  const over = (frame: TrackedFrame, clip: ClipState): TrackedFrame => {
+    if (last?.frame !== frame || last.objects !== clip.objects) last = { frame, objects: clip.objects, now: painting(frame, object, labels, lockedIn(clip)) };
+    return last.now;
+  };
   return (clip) => {
     const frame = clip.frames[index];
-    if (!frame) return clip;
-    const [locked, shown] = [lockedIn(clip), unpacked(frame.runs)];
-    const now = labels.map((label, p) => {
-      const was = shown[p]!;
-      const stays = label === UNLABELLED || locked.has(was) || (label === 0 && object !== 0 && was !== object);
-      return stays ? UNLABELLED : label === 0 ? 0 : object;
-    });
-    const runs = over(frame.runs, packed(now, frame.runs.width, frame.runs.height));
-    return annotating(index, object)({ ...clip, frames: runs === frame.runs ? clip.frames : clip.frames.with(index, withRuns(frame, runs)) });
+    const now = frame && over(frame, clip);
+    return annotated(now && now !== frame ? { ...clip, frames: clip.frames.with(index, now) } : clip);
   };
+}
+
+function painting(frame: TrackedFrame, object: number, labels: Uint8Array, locked: ReadonlySet<number>): TrackedFrame {
+  const { width, height } = frame.runs;
+  const now = unpacked(frame.runs);
+  let changes = false;
+  for (let p = 0; p < now.length; p++) {
+    const [label, was] = [labels[p]!, now[p]!];
+    if (label === UNLABELLED || locked.has(was) || (label === 0 && object !== 0 && was !== object)) continue;
+    now[p] = label === 0 ? 0 : object;
+    changes ||= now[p] !== was;
+  }
+  return changes ? withRuns(frame, packed(now, width, height)) : frame;
 }
 
 /** Nothing is seen of a prompt yet; its number is taken. */

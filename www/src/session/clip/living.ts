@@ -531,7 +531,7 @@ export class Living implements Work {
 
 /** The effect on everything but the masks, which are the clip's own now. */
 function withoutFrames(effect: Effect): Effect {
-  return (clip) => ({ ...effect(clip), frames: clip.frames });
+  return (clip) => ({ ...effect({ ...clip, frames: [] }), frames: clip.frames });
 }
 
 /** Waits until a clip has done all that was said before it was opened. */
