@@ -288,8 +288,14 @@ async function phase(page: Page, selector: string, name: string): Promise<void> 
   await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
 }
 
+/** Waits until each undo and redo is on screen. */
+async function moved(page: Page): Promise<void> {
+  await until(page, '#clip-status', 'aria-busy', /^(?!true)/);
+}
+
 /** Waits until the clip says this of what was done last. */
 export async function said(page: Page, sentence: RegExp): Promise<void> {
+  await moved(page);
   await until(page, '#clip-status', null, sentence);
   await expect(page.locator('#clip-status')).toHaveText(sentence, { timeout: PATIENCE });
 }
@@ -329,9 +335,11 @@ export async function kept(page: Page): Promise<void> {
 
 /** Takes all corrections of a pair back. */
 export async function undoAll(page: Page): Promise<void> {
-  // A step back takes a moment, in which there may be none.
   const undo = page.locator('#undo');
-  while (await undo.isEnabled()) await undo.evaluate((button: HTMLButtonElement) => button.click());
+  while (await undo.isEnabled()) {
+    await undo.evaluate((button: HTMLButtonElement) => button.click());
+    await moved(page);
+  }
   await done(page);
 }
 
@@ -580,8 +588,9 @@ export async function pixelsOfPicture(picture: Locator): Promise<Uint8Array> {
   return (await pixelsIn(picture)).data;
 }
 
-/** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. */
+/** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. Waits for an undo or redo. */
 export async function labelsOnCanvas(page: Page): Promise<Uint8Array> {
+  await moved(page);
   return labelsOfColours((await pixelsOf(page, '#fill')).data);
 }
 

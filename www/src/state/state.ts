@@ -1,5 +1,6 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
+import { type ReadonlySignal, signal } from '@preact/signals';
 import type { ClipAnnotation, Segmentation } from 'veronese';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
@@ -218,30 +219,34 @@ export const INITIAL: State = {
 
 export type Listener = (now: State, before: State) => void;
 
-/** Holds the state and notifies listeners of changes. */
+/** Holds the state. Components read the signal; what is no component, as canvases, listens. */
 export class Store {
-  #state: State = INITIAL;
+  readonly #signal = signal<State>(INITIAL);
   readonly #listeners = new Set<Listener>();
 
-  get(): State {
-    return this.#state;
+  get state(): ReadonlySignal<State> {
+    return this.#signal;
   }
 
-  /** Replaces parts of the state and calls the listeners in the order of their subscription. */
+  get(): State {
+    return this.#signal.peek();
+  }
+
+  /** Replaces parts of the state. Components are rendered again, then the listeners are called in the order of their subscription. */
   set(change: Partial<State>): void {
-    const before = this.#state;
-    this.#state = { ...before, ...change };
-    for (const listener of this.#listeners) listener(this.#state, before);
+    const before = this.#signal.peek();
+    this.#signal.value = { ...before, ...change };
+    for (const listener of this.#listeners) listener(this.get(), before);
   }
 
   /** Changes how the result is displayed. */
   look(change: Partial<Look>): void {
-    this.set({ look: { ...this.#state.look, ...change } });
+    this.set({ look: { ...this.get().look, ...change } });
   }
 
   /** Changes what is known of the open clip, if there is one. */
   clip(change: Partial<Tracked>): void {
-    const { tracked } = this.#state;
+    const { tracked } = this.get();
     if (tracked !== null) this.set({ tracked: { ...tracked, ...change } });
   }
 

@@ -82,6 +82,8 @@ export interface Tracked extends ClipState {
   readonly nextObject: number;
   /** How many steps can be undone and redone. */
   readonly steps: { readonly undo: number; readonly redo: number };
+  /** Whether an undo or redo is not on screen yet. */
+  readonly isMoving: boolean;
   /** What was taken away as a file last. */
   readonly exported: Pick<ClipState, 'status' | 'objects'> | null;
   /** The frames at which a person looked because an object is least certain there, by its number. */
@@ -103,6 +105,7 @@ export function untracked(clip: Clip): Tracked {
     annotated: new Map(),
     nextObject: 1,
     steps: { undo: 0, redo: 0 },
+    isMoving: false,
     exported: null,
     checked: new Map(),
   };

@@ -32,6 +32,7 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
     cancel.hidden = !working;
     if (held && !working) segment.focus();
     bar.hidden = !working;
+    status.ariaBusy = String(tracked.isMoving);
     // Screen readers announce beginning and end, not each frame.
     const sentence = sentenceFor(tracked);
     if (status.textContent !== sentence) status.textContent = sentence;

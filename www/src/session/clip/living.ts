@@ -74,7 +74,9 @@ export class Living implements Work {
   #isStarting = false;
   /** Frames whose labels the last undo or redo has changed; and the end of all of these. */
   #moved: Set<number> | null = null;
-  #moving: Promise<unknown> = Promise.resolve();
+  #moving: Promise<void> = Promise.resolve();
+  /** How many of these have not ended. */
+  #moves = 0;
   #longestSide: number | null = null;
   /** Number of steps up to the first masks. */
   #found: number;
@@ -206,12 +208,12 @@ export class Living implements Work {
     return this.#count;
   }
 
-  async undo(): Promise<void> {
-    await this.#move('undone', async (clip) => this.#steps.undo > 0 && clip.undo());
+  undo(): Promise<void> {
+    return this.#move('undone', (clip) => this.#steps.undo > 0 && clip.undo());
   }
 
-  async redo(): Promise<void> {
-    await this.#move('redone', async (clip) => clip.steps.waiting === 0 && clip.steps.redo > 0 && clip.redo());
+  redo(): Promise<void> {
+    return this.#move('redone', (clip) => clip.steps.waiting === 0 && clip.steps.redo > 0 && clip.redo());
   }
 
   /**
@@ -383,24 +385,32 @@ export class Living implements Work {
     if (this.#said.length === 0) this.#parts.store.clip({ before: this.state.frames });
   }
 
-  #move(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
-    const moved = this.#moving.then(() => this.#moveNow(cause, what));
-    this.#moving = moved;
-    return moved;
+  /** Goes back or forth in what was done, one move after another. `move` is `false` if there is nothing to move to. */
+  #move(cause: DoneCause, move: (clip: PackageClip) => false | Promise<boolean>): Promise<void> {
+    if (this.#package === null || this.#isClosed) return Promise.resolve();
+    this.#moves += 1;
+    this.#show();
+    this.#moving = this.#moving.then(async () => {
+      const isMoved = await this.#moveNow(cause, move);
+      this.#moves -= 1;
+      if (isMoved) this.#ended(null);
+      else this.#show();
+    });
+    return this.#moving;
   }
 
-  async #moveNow(cause: DoneCause, what: (clip: PackageClip) => Promise<boolean>): Promise<void> {
-    if (this.#package === null || this.#isClosed) return;
+  async #moveNow(cause: DoneCause, move: (clip: PackageClip) => false | Promise<boolean>): Promise<boolean> {
+    const { keeper } = this.#parts;
+    const moving = !this.#isClosed && move(this.#now);
+    if (moving === false) return false;
     this.#begin(cause);
     this.#moved = new Set();
-    this.#parts.keeper.said();
-    const isAny = await what(this.#now).catch(() => false);
-    this.#parts.keeper.settled();
-    if (this.#isClosed) return;
-    if (!isAny) return void (this.#isUnderWay = this.#said.length > 0);
-    await this.#readAnnotations(this.#annotatedFrames()).catch(() => undefined);
-    this.#cause = cause;
-    this.#ended(null);
+    keeper.said();
+    const isMoved = await moving.catch(() => false);
+    keeper.settled();
+    if (isMoved) await this.#readAnnotations(this.#annotatedFrames()).catch(() => undefined);
+    else this.#isUnderWay = this.#said.length > 0;
+    return isMoved;
   }
 
   #forget(said: Said): void {
@@ -518,8 +528,9 @@ export class Living implements Work {
   }
 
   /** What of the state is the clip's own. */
-  get #known(): Pick<Tracked, keyof ClipState | 'nextObject' | 'steps'> {
-    return { ...this.state, nextObject: this.#package?.nextObject ?? 1, steps: this.#steps };
+  get #known(): Pick<Tracked, keyof ClipState | 'nextObject' | 'steps' | 'isMoving'> {
+    const isMoving = this.#moves > 0 || (this.#isUnderWay && this.#moved !== null);
+    return { ...this.state, nextObject: this.#package?.nextObject ?? 1, steps: this.#steps, isMoving };
   }
 
   /** The first masks are no step that a person would take back. */
