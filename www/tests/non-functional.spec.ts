@@ -134,7 +134,7 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   // The host page has scripts of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
   const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
-  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(86 * 1024);
+  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(94 * 1024);
   // The others are loaded when they are used. Few need the readers of annotation tools.
   const later = files.filter((name) => !asked.has(name));
   const reading = later.filter((name) => name.startsWith('importing-'));
@@ -143,7 +143,7 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   expect(sizeOf(later.filter((name) => !reading.includes(name)))).toBeLessThanOrEqual(56 * 1024);
 });
 
-test('a first visit loads at most 575 KB, compressed, until it shows masks', async ({ page }) => {
+test('a first visit loads at most 583 KB, compressed, until it shows masks', async ({ page }) => {
   // As a web server sends it: text and the module with gzip, pictures as they are.
   const sizes = new Map<string, number>();
   page.on('request', (request) => {
@@ -163,7 +163,7 @@ test('a first visit loads at most 575 KB, compressed, until it shows masks', asy
   const clip = [...sizes].filter(([path]) => path.includes('/frames/')).map(([, size]) => size);
   expect(clip).toHaveLength(51);
   expect(clip.reduce((sum, size) => sum + size, 0)).toBeLessThanOrEqual(250 * 1024);
-  expect(total).toBeLessThanOrEqual(575 * 1024);
+  expect(total).toBeLessThanOrEqual(583 * 1024);
 });
 
 test('memory does not grow over 100 segmentations', { tag: '@soak' }, async ({ page }) => {
