@@ -116,7 +116,7 @@ async function timesIn(bytes: Buffer): Promise<{ starts: number[]; durations: nu
 }
 
 test('a video of the frames between the in point and the out point has their times', { tag: '@soak' }, async ({ page }) => {
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
   // No two frames are shown equally long, so that their times tell which they are.
   const durations = [0.04, 0.1, 0.07, 0.13, 0.05, 0.11, 0.06, 0.08];
   const file = await video(page, durations.length, 'webm', 'vp8', durations);

@@ -9,7 +9,7 @@ import { type Upload, clipDone, clipFrames, done, expect, goTo, hide, holdBack, 
 /** Leaves the page, and comes back without frames. */
 async function visit(page: Page): Promise<void> {
   await page.goto('about:blank');
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
 }
 
 /** Waits until the work is written. The copy of its frames comes after it. */
@@ -36,7 +36,7 @@ const copies = async (page: Page): Promise<number> => (await sizes(page)).length
 async function keptWork(page: Page, { copied = true } = {}): Promise<Upload[]> {
   const files = await clipFrames(4);
   await openSegmented(page, files);
-  await rename(page, '#objects', 1, 'Disc');
+  await rename(page, 1, 'Disc');
   await written(page, 'f00 to f03');
   if (copied) await expect.poll(() => copies(page)).toBe(1);
   return files;
@@ -136,7 +136,7 @@ test('the page opens again with the last work, unless another tab has it; the sa
     await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
   }
   await expect(page.locator('#samples .sample')).toHaveCount(3);
-  await rename(page, '#objects', 1, 'Ball');
+  await rename(page, 1, 'Ball');
   await kept(page);
   await page.getByLabel('Segment a clip when it is opened').uncheck(); // the other one need not do it
   const other = await context.newPage();
@@ -167,7 +167,7 @@ test('of several the newest comes first, and a sample needs no copy', async ({ p
   await page.goto('about:blank');
   await page.goto('./#sample=parallax&quality=fast');
   await clipDone(page);
-  await rename(page, '#objects', 1, 'Window');
+  await rename(page, 1, 'Window');
   await written(page, 'parallax');
   await expect.poll(() => copies(page)).toBe(1);
 
@@ -200,7 +200,7 @@ test('copies of frames give way to work when the disk is full', { tag: '@soak' }
   const usage = await page.evaluate(async () => (await navigator.storage.estimate()).usage ?? 0);
   const session = await context.newCDPSession(page);
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: usage });
-  await rename(page, '#objects', 2, 'Box');
+  await rename(page, 2, 'Box');
   await expect.poll(() => copies(page)).toBe(0);
   await written(page, 'f00 to f03');
   await expect(page.locator('#notice-code')).toHaveText('');
@@ -222,7 +222,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
   await segmentClip(page);
   const saving = page.locator('#saving').getByRole('button', { name: /^Saved in this browser, \d\d:\d\d Save as a file$/ });
   await expect(saving).toBeVisible();
-  await rename(page, '#objects', 1, 'Disc');
+  await rename(page, 1, 'Disc');
   await kept(page);
   await expect(saving).toBeVisible();
   expect(await page.evaluate(() => (window as unknown as { said: string[] }).said)).toEqual(['Your work is saved in this browser.']);
@@ -233,7 +233,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
 test('work that the browser refuses to keep is shown as not saved', async ({ page }) => {
   await withoutStorage(page);
   await openSegmented(page, await clipFrames(4));
-  await rename(page, '#objects', 1, 'Disc');
+  await rename(page, 1, 'Disc');
   const saving = page.locator('#saving button');
   await expect(saving).toHaveText(/^Not saved: the browser refused/);
   await expect(page.locator('#notice-code')).toHaveText('storage-refused');

@@ -28,7 +28,7 @@ async function savedAs(page: Page, format: string): Promise<{ name: string; byte
 /** Opens a pair of a disc and a square, with one mask for each, which is segmented fast. */
 async function openPair(page: Page): Promise<Upload[]> {
   const files = await clipFrames(2);
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
   await upload(page, files);
   await shown(page, 'second', 'f01.png');
   return files;
@@ -196,7 +196,7 @@ test('masks are exported as files of their own and in the formats of annotation 
     await page.keyboard.press('Escape');
     await segmentClip(page);
     const found = await labelsOnCanvas(page);
-    await rename(page, '#objects', 1, 'White car');
+    await rename(page, 1, 'White car');
     const mask = (id: number): Uint8Array => found.map((object) => (object === id ? 255 : 0));
     const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
 

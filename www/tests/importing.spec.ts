@@ -136,7 +136,7 @@ test('boxes without masks point to objects; what is left out is said', { tag: '@
 });
 
 test('the frames of a video are known by their numbers', { tag: '@soak' }, async ({ page }) => {
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
   await openSegmented(page, [await video(page, 6, 'webm', 'vp8')], 6);
   // Frames without a shape are not said: the first that is, is number 4.
   const drawn = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));

@@ -32,7 +32,7 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 }
 
 test('three steps through a clip and choosing a tool shift nothing, on a desktop and on a phone', async ({ page }) => {
-  await openEmpty(page, 'groups', 'best'); // a preview, then the result
+  await openEmpty(page, 'best'); // a preview, then the result
   await upload(page, await clipFrames(8));
   await expect(page.locator('#clip-name')).toContainText('8 frames');
   await done(page);

@@ -5,7 +5,7 @@ import { type ClipJournal, SegmenterPool } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import type { Clip } from '../src/clips/clip.js';
-import { unpacked } from '../src/correction/runs.js';
+import { unpacked } from '../src/result/runs.js';
 import type { DecodedFrame } from '../src/frames/frame.js';
 import type { Remembered } from '../src/projects/work.js';
 import { Living } from '../src/session/clip/living.js';

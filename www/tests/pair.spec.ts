@@ -20,7 +20,7 @@ async function openPair(page: Page, files: Upload[]): Promise<void> {
 
 /** The page without frames, with quality fast, where clips are segmented when they are opened. */
 async function holdAutomatic(page: Page): Promise<void> {
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
   await page.getByLabel('Segment a clip when it is opened').check();
 }
 
@@ -49,7 +49,7 @@ test('two frames have objects in both, which are corrected, undone and kept like
     await said(page, /^Corrected/);
     const at = Math.round(0.225 * 64) * 100 + 80;
     expect((await labelsOnCanvas(page))[at]).toBe(1);
-    await rename(page, '#objects', 1, 'Square');
+    await rename(page, 1, 'Square');
     await page.keyboard.press('Control+z');
     await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Object 1');
     await kept(page);
@@ -146,13 +146,13 @@ test('where nothing is kept, leaving asks first only with unsaved corrections; t
   await page.locator('#kinds [value=objects]').check();
   const asks = (): Promise<boolean> => page.evaluate(() => !window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
   expect(await asks()).toBe(false);
-  await rename(page, '#objects', 1, 'Square');
+  await rename(page, 1, 'Square');
   expect(await asks()).toBe(true);
   await openExport(page);
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
   await expect.poll(asks).toBe(false);
   await page.keyboard.press('Escape');
-  await rename(page, '#objects', 1, 'Box');
+  await rename(page, 1, 'Box');
   await page.getByLabel('Segment a clip when it is opened').uncheck();
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live/);

@@ -11,7 +11,7 @@ import { type Upload, clipDone, clipFrames, differences, drag, enter, expect, go
 /** A segmented clip with a name and a correction. Gives the masks of its first and its last frame. */
 async function correctedClip(page: Page, files: Upload[]): Promise<Uint8Array[]> {
   await openSegmented(page, files);
-  await rename(page, '#objects', 2, 'Box');
+  await rename(page, 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
   await said(page, /^Corrected: the masks of \d+ frames/);
@@ -161,7 +161,7 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: 100 });
   await openSegmented(page, files);
   await expect(page.locator('#notice-code')).toHaveText('storage-full');
-  await rename(page, '#objects', 1, 'Ball');
+  await rename(page, 1, 'Ball');
   await expect.poll(() => leaves(page)).toBe(false);
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
@@ -172,7 +172,7 @@ test('a full disk loses nothing, and the next change is kept again, with the set
   const unlabelled = page.getByLabel('Leave unexplained pixels unlabelled');
   await openAdvanced(page);
   await unlabelled.check();
-  await rename(page, '#objects', 2, 'Box');
+  await rename(page, 2, 'Box');
   await kept(page);
   await page.goto('about:blank'); // a reload would keep what the form says
   await openClip(page, files);

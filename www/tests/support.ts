@@ -16,9 +16,6 @@ import { test as unwatched } from './kept.js';
 
 export { expect, unwatched };
 
-/** The sample pair shows two cars on a road: it has at least this many motions. */
-export const MOTIONS_IN_SAMPLE = 3;
-
 /** A file for Playwright's `setInputFiles`. */
 export interface Upload {
   name: string;
@@ -40,11 +37,6 @@ export const test = unwatched.extend<{ page: Page }>({
       if (!own || request.method() !== 'GET') complaints.push(`request: ${request.method()} ${request.url()}`);
     });
     await page.addInitScript(() => {
-      // Most tests look at this, which a visitor unfolds.
-      document.addEventListener('DOMContentLoaded', () => {
-        const inspect = document.querySelector('#inspect');
-        if (inspect instanceof HTMLDetailsElement) inspect.open = true;
-      });
       document.addEventListener('securitypolicyviolation', (event) => {
         console.error(`policy violated: ${event.violatedDirective} by ${event.blockedURI}`);
       });
@@ -65,16 +57,16 @@ export const FAST: SegmentOptions = { quality: 'fast' };
 /** The address of the sample pair. Without a sample, the page opens with a clip. */
 export const PAIR = './#sample=intel-two-cars';
 
-/** Opens the page with the sample pair and waits for its masks, with quality `fast` and by default one per motion. */
-export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): Promise<void> {
-  await page.goto(`${PAIR}&quality=fast&masks=${kind}&segment=asked`);
-  await done(page);
+/** Opens the page with the sample pair and waits for its masks, with quality `fast`. */
+export async function open(page: Page): Promise<void> {
+  await page.goto(`${PAIR}&quality=fast`);
+  await clipDone(page);
 }
 
 /** Opens the page without frames, for tests that bring their own: those of samples never arrive. Clips wait until a test asks for their masks. */
-export async function openEmpty(page: Page, kind: 'motions' | 'groups' = 'motions', quality: 'fast' | 'best' = 'fast'): Promise<void> {
+export async function openEmpty(page: Page, quality: 'fast' | 'best' = 'fast'): Promise<void> {
   await holdSamples(page);
-  await page.goto(`${PAIR}&quality=${quality}&masks=${kind}&segment=asked`);
+  await page.goto(`${PAIR}&quality=${quality}&segment=asked`);
 }
 
 /** Samples never arrive until {@link withSamples}. */
@@ -101,8 +93,8 @@ export async function withProcessors(page: Page, count: number): Promise<void> {
 }
 
 /** Opens frames, or a video of `count` frames, as a clip. */
-export async function openClip(page: Page, files: Upload[], { count = files.length, kind = 'groups', quality = 'fast' }: { count?: number; kind?: 'motions' | 'groups'; quality?: 'fast' | 'best' } = {}): Promise<void> {
-  await openEmpty(page, kind, quality);
+export async function openClip(page: Page, files: Upload[], { count = files.length, quality = 'fast' }: { count?: number; quality?: 'fast' | 'best' } = {}): Promise<void> {
+  await openEmpty(page, quality);
   await upload(page, files);
   await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
   await done(page);
@@ -283,9 +275,10 @@ export async function clipPhase(page: Page, name: string): Promise<void> {
 
 /** Waits until an element has this phase. */
 async function phase(page: Page, selector: string, name: string): Promise<void> {
-  await until(page, selector, 'data-phase', new RegExp(`^${name}$`));
+  const pattern = new RegExp(`^(${name})$`);
+  await until(page, selector, 'data-phase', pattern);
   const notice = await page.locator('#notice').innerText().catch(() => '');
-  await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', name, { timeout: PATIENCE });
+  await expect(page.locator(selector), `the last notice was “${notice}”`).toHaveAttribute('data-phase', pattern, { timeout: PATIENCE });
 }
 
 /** Waits until each undo and redo is on screen. */
@@ -386,21 +379,15 @@ export async function withoutStorage(page: Page): Promise<void> {
   });
 }
 
-/** Waits for the last request. */
+/** Waits until what was opened is on screen. */
 export async function done(page: Page): Promise<void> {
-  await phase(page, '#run', 'done');
+  await phase(page, '#run', 'done|idle|live');
 }
 
-/** Chooses a number of motions for this pair, or `Automatic`. */
-export async function chooseMotions(page: Page, motions: number | 'Automatic'): Promise<void> {
-  const name = motions === 'Automatic' ? motions : new RegExp(`^Use ${motions} motions? `);
-  await page.locator('#evidence').getByRole('button', { name }).click();
-}
-
-/** Waits until this number is chosen. */
-export async function motionsChosen(page: Page, motions: number | 'Automatic'): Promise<void> {
-  await page.locator('#inspect').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
-  await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
+/** Inspects the frame on screen, and waits for its motions. */
+export async function inspect(page: Page): Promise<void> {
+  await page.locator('#inspect').evaluate((details: HTMLDetailsElement) => (details.open = true));
+  await expect(page.locator('#inspect-status')).toHaveText(/found in/, { timeout: PATIENCE });
 }
 
 /** Moves the focus to the picture by keys: after a press on it, they are about the clip. */
@@ -417,14 +404,14 @@ export async function enter(field: Locator, value: string): Promise<void> {
   await field.press('Enter');
 }
 
-/** Names the mask of a row. */
-export function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
-  return enter(page.locator(`${list} .motion-name`).nth(row), name);
+/** Names the object of a row. */
+export function rename(page: Page, row: number, name: string): Promise<void> {
+  return enter(page.locator('#objects .motion-name').nth(row), name);
 }
 
-/** Waits until a frame of the pair is another one, and the pair is segmented. */
-export async function shown(page: Page, slot: 'first' | 'second', name: string): Promise<void> {
-  await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(name);
+/** Waits until a clip of this name is on screen. */
+export async function opened(page: Page, name: string): Promise<void> {
+  await expect(page.locator('#clip-name')).toContainText(name);
   await done(page);
 }
 

@@ -108,7 +108,7 @@ test('the objects of a clip keep number, name and colour in all frames, also whe
 });
 
 test('a video is segmented as a whole, and gives exactly the requested frames meanwhile; it may have one frame', { tag: '@soak' }, async ({ page }) => {
-  await openEmpty(page, 'groups');
+  await openEmpty(page);
   await openClip(page, [await video(page, 6, 'webm', 'vp8')], { count: 6 });
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   const track = page.getByRole('slider', { name: 'Current frame' });

@@ -1,4 +1,4 @@
-//! A clip: a video or a folder of frames, from which two frames are chosen by index.
+//! A clip: a video or a folder of frames, which are read by index.
 
 import type { DecodedFrame } from '../frames/frame.js';
 import type { Sample } from '../frames/samples.js';
@@ -13,8 +13,6 @@ export interface Clip {
   readonly count: number;
   /** Presentation time of each frame, seconds; `null` for a folder. */
   readonly times: Float64Array | null;
-  /** Whether frame `i` is guaranteed to be the `i`-th of the file. */
-  readonly exact: boolean;
   /** Display size of a frame, pixels. */
   readonly width: number;
   readonly height: number;

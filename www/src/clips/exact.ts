@@ -23,7 +23,7 @@ export async function openExact(file: File, fingerprint: string): Promise<Clip |
     const times = await timesOf(track);
     if (times.length > 0) return new ExactClip(file.name, fingerprint, input, track, times);
   } catch {
-    // An unknown or damaged container, which a <video> element may still play.
+    // An unknown or damaged container.
   }
   input.dispose();
   return null;
@@ -39,9 +39,6 @@ export async function undecodable(file: File): Promise<string | null> {
   try {
     const track = await input.getPrimaryVideoTrack();
     if (track === null || (await track.canDecode())) return null;
-    // Without WebCodecs nothing can be decoded, but a <video> element may still play it.
-    const named = (await track.getCodecParameterString()) !== null;
-    if (named && document.createElement('video').canPlayType(await input.getMimeType()) !== '') return null;
     const { internalCodecId } = track;
     return codecName(await track.getCodec(), typeof internalCodecId === 'string' ? internalCodecId : null);
   } catch {
@@ -61,7 +58,6 @@ async function timesOf(track: InputVideoTrack): Promise<Float64Array> {
 }
 
 class ExactClip implements Clip {
-  readonly exact = true;
   readonly count: number;
   readonly width: number;
   readonly height: number;

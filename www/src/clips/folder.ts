@@ -16,7 +16,6 @@ export async function openFolder(files: readonly File[], sample?: Sample): Promi
 }
 
 class Folder implements Clip {
-  readonly exact = true;
   readonly times = null;
   readonly name: string;
   readonly count: number;

@@ -1,18 +1,16 @@
-//! The name of a mask: the user's, or its class or kind and its number. And what a clip's name is in names of files.
+//! The name of an object: the user's, or its class and its number. And what a clip's name is in names of files.
 
-import { UNLABELLED, type Kind, keyOf } from '../result/masks.js';
+import { UNLABELLED } from '../result/masks.js';
 import { strings } from './strings.js';
 
-/** Which masks are meant, and the names and classes that the user gave them, by {@link keyOf}. */
+/** The names and classes that the user gave to objects, by number. */
 interface Naming {
-  readonly kind: Kind;
-  readonly names: Readonly<Record<string, string>>;
-  readonly classes: Readonly<Record<string, string>>;
+  readonly names: Readonly<Record<number, string>>;
+  readonly classes: Readonly<Record<number, string>>;
 }
 
-export function nameOf({ kind, names, classes }: Naming, id: number): string {
-  const key = keyOf(kind, id);
-  return names[key] ?? (key in classes ? `${classes[key]} ${id}` : id === UNLABELLED ? strings.unknownName : strings.maskName(kind, id));
+export function nameOf({ names, classes }: Naming, id: number): string {
+  return names[id] ?? (id in classes ? `${classes[id]} ${id}` : id === UNLABELLED ? strings.unknownName : strings.objectName(id));
 }
 
 /** A clip's name without the extension of a video, as part of a file's name on any system and in any shell. */

@@ -1,9 +1,8 @@
 //! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them, and those
 //! of keys. Static text is in `index.html`.
 
-import type { Note, Segmentation } from 'veronese';
+import type { Note } from 'veronese';
 import type { MotionParts } from '../result/describe.js';
-import type { Kind } from '../result/masks.js';
 
 const decimals = (digits: number): Intl.NumberFormat => new Intl.NumberFormat('en', { maximumFractionDigits: digits });
 const tenths = decimals(1);
@@ -17,23 +16,6 @@ const NBSP = '\u00a0';
 function amount(value: number): string {
   const size = Math.abs(value);
   return (size < 1 ? hundredths : tenths).format(size);
-}
-
-const STAGES: Readonly<Record<string, string>> = {
-  frames: 'Reading the frames',
-  dominant: 'Finding the background motion',
-  measurements: 'Measuring image derivatives',
-  algebra: 'Fitting all motions at once',
-  selection: 'Selecting the motions',
-  refinement: 'Refining the motions',
-  labels: 'Labelling the pixels',
-  masks: 'Upsampling the masks',
-};
-
-/** A stage's name in words. One that is not in the table gets its camelCase name split into words. */
-function stage(name: string): string {
-  const words = name.replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase();
-  return STAGES[name] ?? words.charAt(0).toUpperCase() + words.slice(1);
 }
 
 /** "moves 4.1 px right, 0.2 px up; turns 1.2° clockwise; grows 0.5 %". */
@@ -111,30 +93,22 @@ const TOOLS = {
 };
 
 export const strings = {
-  slot: { first: 'First frame', second: 'Second frame' },
-  split: 'First | second',
+  oneFrame: 'First frame',
   frameNumber: (index: number): string => `Frame ${index}`,
+  motionsOf: (seen: string): string => `Motions: ${seen.charAt(0).toLowerCase()}${seen.slice(1)}`,
   camera: 'Camera',
   cameraFrame: 'camera',
   openCamera: 'Camera',
   closeCamera: 'Stop camera',
   size,
   percent,
-  milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
-  stage,
   zoomValue: (value: string): string => `Zoom ${value}: set to 100 %`,
-  magnified: (times: number): string => `arrows ×${times}`,
-
-  empty: 'none yet',
-  frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
-  stabilised: (name: string): string => `, stabilised on ${name}`,
 
   /** What frames are called that came without a folder. */
   fromTo: (first: string, last: string, count: number): string => `${first} ${count === 2 ? 'and' : 'to'} ${last}`,
   clipFacts: (count: number, width: number, height: number): string => `${frames(count)}, ${size(width, height)}`,
   imagesIn: (folder: string, count: number): string => `${folder === '' ? 'No folder' : folder}, ${images(count)}`,
   allImages: (count: number): string => `All ${images(count)}, folder by folder`,
-  frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
 
   tracking: {
     segment: 'Segment the clip',
@@ -196,7 +170,6 @@ export const strings = {
     forgetOf: (name: string): string => `Forget the project of ${name}`,
     forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
   },
-  sameFrames: 'Both frames are the same, pixel by pixel: nothing moves.',
   frameHas: (count: number): string => `${objects(count)} in this frame.`,
   draft: 'Draft',
   notTracked: 'This frame has no masks yet.',
@@ -221,21 +194,18 @@ export const strings = {
 
   motion,
   displacement,
-  maskName: (kind: Kind, id: number): string => (id === 0 ? 'Background' : `${kind === 'motions' ? 'Motion' : 'Object'} ${id}`),
+  objectName: (id: number): string => (id === 0 ? 'Background' : `Object ${id}`),
+  motionName: (label: number): string => (label === 0 ? 'Background' : `Motion ${label}`),
   noMasksYet: 'Masks appear here once they are found.',
-  noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
-  liveMasks: (count: number): string => `${objects(count)} at the moment. Stop the camera to list the masks of its last two frames.`,
+  liveMasks: (count: number): string => `${objects(count)} at the moment. Stop the camera to segment its last two frames.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
-  severalMotions: (count: number): string => `${count} motions`,
-  groupWith: (labels: readonly number[]): string => `moves with ${labels.map((label) => strings.maskName('motions', label)).join(', ')}`,
+  groupWith: (labels: readonly number[]): string => `moves with ${labels.map((label) => strings.motionName(label)).join(', ')}`,
   unknownName: 'Unlabelled',
-  unknownWords: 'no motion explains these pixels',
   entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
   show: (name: string): string => `Show ${name}`,
   colourOf: (name: string): string => `Colour of ${name}`,
   nameOf: (name: string): string => `Name of ${name}`,
   soloOf: (name: string): string => `Solo: show only ${name}`,
-  stabiliseOf: (name: string): string => `Stabilise on ${name}: alternate between the frames with ${name} held in place`,
   mergeWithOf: (name: string): string => `Mask to merge ${name} with`,
   mergeOf: (name: string): string => `Merge ${name} with the chosen mask`,
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
@@ -243,11 +213,11 @@ export const strings = {
 
   newObject: 'New object',
   /** `why`: why nothing can be drawn. */
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean, isBackground: boolean, why: string | null): string => {
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isExact: boolean, isBackground: boolean, why: string | null): string => {
     if (tool !== 'look' && why !== null) return why;
     if (isBackground && tool === 'eraser') return 'Background is selected, and cannot be erased: select an object first.';
     if (isBackground && (tool === 'brush' || tool === 'polygon')) return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
-    if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
+    if (tool === 'look') return 'Press on an object to select it.';
     return `${TOOLS[tool]} ${isExact ? 'Nothing else changes.' : 'The other frames follow.'}`;
   },
 
@@ -262,21 +232,15 @@ export const strings = {
   status: {
     idle: 'Open two frames or a video to begin.',
     opening: 'Opening…',
-    waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
-    working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
-    /** `moving`: the objects; null if motions are shown. `requested`: the number of motions in the settings; null for automatic. */
-    found: ({ count, notes }: Segmentation, moving: number | null, requested: number | null, waited: number, same: boolean): string => {
-      if (same) return strings.sameFrames;
-      const answer = `${moving === null ? motions(count) : objects(moving)} found in ${duration(waited)}`;
-      if (requested === null) return withNotes(`${answer}.`, notes);
-      if (count < requested) return `${answer}. Of the ${requested} motions requested, only ${count === 1 ? 'one' : count} could be told apart.`;
-      return moving === null ? `${answer}, as requested.` : `${answer}, with ${motions(count).toLowerCase()} as requested.`;
-    },
+    waiting: 'Now add the second frame.',
     live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} frames per second, ${objects(count).toLowerCase()}.`,
-    cancelled: 'Cancelled.',
-    cancelledBefore: 'Cancelled. The masks are from the last result.',
-    failed: 'The segmentation failed.',
-    failedBefore: 'The segmentation failed. The masks are from the last result.',
+  },
+
+  inspect: {
+    finding: 'Finding the motions…',
+    waits: 'The motions are found when the clip rests.',
+    failed: 'The motions could not be found.',
+    found: (count: number, waited: number): string => `${motions(count)} from the first frame to the second, found in ${duration(waited)}.`,
   },
 
   selected: (count: number): string => `${whole.format(count)} selected`,
@@ -292,19 +256,10 @@ export const strings = {
     picture: (index: number): string => `Masks of frame ${index} as they are saved`,
   },
 
-  /** `longer`: the length of the description above the shortest; `null` if there is none. */
-  forceNumber: (count: number, longer: number | null): string =>
-    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
   descriptionOf,
   /** Why the number found has not the shortest description. */
   otherThanShortest: (found: number, shortest: number): string =>
     `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
-
-  timings: {
-    decode: (name: string): string => `Decoding ${name}`,
-    total: 'All stages',
-    waited: 'Including transfers',
-  },
 
   notices: {
     noFiles: 'There is no image or video among these files.',
@@ -337,13 +292,11 @@ export const strings = {
     unreadableFolder: (name: string): string => `The folder “${name}” cannot be read.`,
     unsupportedCodec: (name: string, codec: string, command: string): string =>
       `“${name}” is ${codec}, which this browser cannot decode. Convert it to H.264 or VP9, e.g. with \`${command}\`, or open it in a browser that plays it.`,
-    slowVideo: 'Reading the video timed out.',
     inexactFrame: (name: string, index: number): string => `Frame ${index} of “${name}” cannot be read exactly.`,
     noCamera: 'There is no camera, or the page has no permission to use it.',
     noCanvas: 'This browser cannot read pixels from a canvas.',
     noClipboard: 'The browser did not allow writing to the clipboard.',
     notLoaded: 'A part of the page could not be loaded. Check the connection and try again.',
     notExported: (what: string, why: string): string => `${what} could not be exported${why === '' ? '' : `: ${why}`}.`,
-    notWritten: (what: string): string => `${what} could not be exported.`,
   },
 } as const;

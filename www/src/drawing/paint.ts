@@ -1,18 +1,16 @@
-//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. Mask 0 is the background: it is not painted, so
+//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. 0 is the background: it is not painted, so
 //! that the picture keeps its colours. No canvas is needed, so painting can be tested in Node and done in pieces.
 
-import type { Segmentation } from 'veronese';
-import { UNLABELLED, type Kind, keyOf, maskTable } from '../result/masks.js';
+import { type Labels, UNLABELLED } from '../result/masks.js';
 import { UNKNOWN_COLOUR, type Colour, colourOf, wordFromColour } from './palette.js';
 
 /** The choices that decide how labels are painted. */
 export interface Painting {
-  readonly kind: Kind;
   readonly hidden: ReadonlySet<number>;
   /** The only mask shown, if any. */
   readonly solo: number | null;
-  /** Colours that the user gave to masks, by `keyOf`. */
-  readonly colours: Readonly<Record<string, Colour>>;
+  /** Colours that the user gave to masks, by number. */
+  readonly colours: Readonly<Record<number, Colour>>;
 }
 
 export function isShown(mask: number, { hidden, solo }: Pick<Painting, 'hidden' | 'solo'>): boolean {
@@ -20,25 +18,18 @@ export function isShown(mask: number, { hidden, solo }: Pick<Painting, 'hidden' 
 }
 
 /** The colour of a mask: the user's, or that of the palette. */
-export function colourOfMask(mask: number, { kind, colours }: Pick<Painting, 'kind' | 'colours'>): Colour {
-  return colours[keyOf(kind, mask)] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
+export function colourOfMask(mask: number, { colours }: Pick<Painting, 'colours'>): Colour {
+  return colours[mask] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
 }
 
 /** The RGBA word of each label; 0 (transparent) for the background and for what is hidden. */
-export function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
-  const masks = maskTable(segmentation, painting.kind);
-  const words = new Uint32Array(256);
-  for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {
-    const mask = masks[label]!;
-    if (mask !== 0 && isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
-  }
-  return words;
+export function wordsByLabel(painting: Painting): Uint32Array {
+  return Uint32Array.from({ length: 256 }, (_, label) => (label !== 0 && isShown(label, painting) ? wordFromColour(colourOfMask(label, painting)) : 0));
 }
 
 /** Rows `from` to `to` of the fill: each pixel has the opaque colour of its mask, or is transparent. */
-export function fillOf(segmentation: Segmentation, painting: Painting, from = 0, to = segmentation.height): Uint32Array<ArrayBuffer> {
-  const words = wordsByLabel(segmentation, painting);
-  const { labels, width } = segmentation;
+export function fillOf({ labels, width, height }: Labels, painting: Painting, from = 0, to = height): Uint32Array<ArrayBuffer> {
+  const words = wordsByLabel(painting);
   const pixels = new Uint32Array((to - from) * width);
   for (let i = 0, p = from * width; i < pixels.length; i++, p++) pixels[i] = words[labels[p]!]!;
   return pixels;
@@ -61,16 +52,8 @@ function lighter(word: number): number {
  * Rows `from` to `to` of the outlines, inside the masks: along every border a dark edge and next to it a light line, each `thickness` pixels
  * wide along rows and columns. One of the two stands out from any picture, and the edges part masks that touch without relying on hue.
  */
-export function outlinesOf(
-  segmentation: Segmentation,
-  painting: Painting,
-  thickness: number,
-  from = 0,
-  to = segmentation.height,
-): Uint32Array<ArrayBuffer> {
-  const masks = maskTable(segmentation, painting.kind);
-  const lines = wordsByLabel(segmentation, painting).map(lighter);
-  const { labels, width, height } = segmentation;
+export function outlinesOf({ labels, width, height }: Labels, painting: Painting, thickness: number, from = 0, to = height): Uint32Array<ArrayBuffer> {
+  const lines = wordsByLabel(painting).map(lighter);
   const first = from * width;
   const pixels = new Uint32Array((to - from) * width);
   const reach = 2 * thickness;
@@ -78,8 +61,8 @@ export function outlinesOf(
   const paint = (start: number, step: number, limit: number): void => {
     const line = lines[labels[start]!]!;
     if (line === 0) return;
-    const own = masks[labels[start]!];
-    for (let k = 0, i = start; k < limit && masks[labels[i]!] === own; k++, i += step) {
+    const own = labels[start]!;
+    for (let k = 0, i = start; k < limit && labels[i] === own; k++, i += step) {
       if (i < first || i - first >= pixels.length) continue;
       if (k < thickness) pixels[i - first] = EDGE;
       else if (pixels[i - first] === 0) pixels[i - first] = line;
@@ -89,12 +72,12 @@ export function outlinesOf(
   const [top, bottom] = [Math.max(0, from - reach), Math.min(height, to + reach)];
   for (let y = top, i = top * width; y < bottom; y++) {
     for (let x = 0; x < width; x++, i++) {
-      const own = masks[labels[i]!];
-      if (x > 0 && masks[labels[i - 1]!] !== own) {
+      const own = labels[i];
+      if (x > 0 && labels[i - 1] !== own) {
         paint(i, 1, Math.min(reach, width - x));
         paint(i - 1, -1, Math.min(reach, x));
       }
-      if (y > 0 && masks[labels[i - width]!] !== own) {
+      if (y > 0 && labels[i - width] !== own) {
         paint(i, width, Math.min(reach, height - y));
         paint(i - width, -width, Math.min(reach, y));
       }

@@ -4,7 +4,6 @@ import type { LabelFrame, Metadata } from 'veronese/formats';
 import type { Clip } from '../clips/clip.js';
 import { inFileNames } from '../common/naming.js';
 import { UNLABELLED } from '../result/masks.js';
-import { segmentationOf } from '../state/objects.js';
 import type { State } from '../state/state.js';
 import { type Life, type Tracked, livesOf, objectsOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
@@ -88,15 +87,12 @@ function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: r
         const frame = at < 0 ? null : (frames[index] ?? null);
         if (frame === null) {
           const { width, height } = clip;
-          yield { ...named, labels: new Uint8Array(width * height), width, height, motions: [] };
+          yield { ...named, labels: new Uint8Array(width * height), width, height };
           continue;
         }
-        const { labels, motions, width, height } = atSize(segmentationOf(frame), clip);
-        const kept = labels.map((label) => (wanted.has(label) || label === UNLABELLED ? label : 0));
-        // An object that is not seen in the next frame has no motion.
-        const moving = new Set(frame.objects.filter(({ id, matrix }) => matrix !== null && wanted.has(id)).map(({ id }) => id));
-        if (frame.background !== null) moving.add(0);
-        yield { ...named, labels: kept, width, height, motions: motions.filter(({ label }) => moving.has(label)) };
+        const full = atSize(frame, clip);
+        const labels = full.labels.map((label) => (wanted.has(label) || label === UNLABELLED ? label : 0));
+        yield { ...full, ...named, labels, objects: full.objects.filter(({ id }) => wanted.has(id)) };
         onFrame(at + 1, count);
         // The page stays responsive between frames.
         await new Promise((resolve) => setTimeout(resolve));

@@ -3,7 +3,9 @@
 import { type Format, encode } from 'veronese/formats';
 import type { ClipFormat } from './clip-export.js';
 import { videoFormats } from './clip-video.js';
-import { TOLERANCE } from './format.js';
+
+/** Of polygons: the distance in pixels by which they may leave a mask's border, as of `veronese convert`. */
+const TOLERANCE = 0.5;
 
 /** All formats that this browser can write, in the order of the menu. */
 export async function clipFormats(): Promise<readonly ClipFormat[]> {

@@ -1,18 +1,18 @@
-//! The first frame with its masks as a PNG.
+//! The frame with its masks as a PNG.
 
 import { fillOf, outlinesOf } from '../drawing/paint.js';
 import type { Look, Result } from '../state/state.js';
 
-export async function overlayPicture({ segmentation, pair }: Result, look: Look): Promise<Blob> {
-  const { width, height } = segmentation;
+export async function overlayPicture({ masks, frame }: Result, look: Look): Promise<Blob> {
+  const { width, height } = masks;
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext('2d')!;
-  context.drawImage(pair.first.bitmap, 0, 0);
+  context.drawImage(frame.bitmap, 0, 0);
   context.globalAlpha = look.opacity;
-  context.drawImage(layer(fillOf(segmentation, look), width, height), 0, 0);
+  context.drawImage(layer(fillOf(masks, look), width, height), 0, 0);
   context.globalAlpha = 1;
   const thickness = Math.max(1, Math.round(Math.max(width, height) / 400));
-  if (look.outlines) context.drawImage(layer(outlinesOf(segmentation, look, thickness), width, height), 0, 0);
+  if (look.outlines) context.drawImage(layer(outlinesOf(masks, look, thickness), width, height), 0, 0);
   return canvas.convertToBlob({ type: 'image/png' });
 }
 

@@ -4,8 +4,8 @@ import type { Store } from '../state/state.js';
 
 export function keepForOffline(store: Store): void {
   if (!('serviceWorker' in navigator) || import.meta.env.DEV) return;
-  const stop = store.subscribe(({ run, tracked }) => {
-    if ((run.phase !== 'done' && run.phase !== 'failed') || tracked?.run.phase === 'working') return;
+  const stop = store.subscribe(({ tracked }) => {
+    if (tracked?.run.phase !== 'done' && tracked?.run.phase !== 'failed') return;
     stop();
     const root = document.documentElement;
     navigator.serviceWorker

@@ -227,7 +227,7 @@ export class Projects {
     if (keeping !== now.keeping) this.#store.set({ keeping });
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (of === undefined || clip?.clip !== clipBefore?.clip) return;
-    const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
+    const ticked = now.look.hidden !== before.look.hidden;
     const isOther = ticked || now.classList !== before.classList || now.settings !== before.settings || clip?.range !== clipBefore?.range || now.timeline?.first !== before.timeline?.first;
     if (isOther && this.#keeping.get(of)?.is === 'kept') this.#touch();
   }
@@ -313,7 +313,6 @@ export class Projects {
     const { fingerprint: of, name, count: frames, sample } = tracked.clip;
     const journal = await this.#journalOf(of, name);
     const thumbnail = (await thumbnailOf(state).catch(() => null)) ?? this.#headers.get(of)?.thumbnail;
-    const hidden = look.kind === 'objects' ? [...look.hidden] : [];
     const header = headerFrom({
       of,
       name,
@@ -325,7 +324,7 @@ export class Projects {
       classList,
       range: tracked.range,
       at: timeline?.first ?? 0,
-      hidden,
+      hidden: [...look.hidden],
       found: living.found,
       annotated: isAnnotated(tracked),
       bytes: journal.bytes,

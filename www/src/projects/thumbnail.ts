@@ -9,7 +9,7 @@ const OPACITY = 0.55;
 
 /** `null` if there is nothing to see, or this browser cannot draw it. */
 export async function thumbnailOf({ pair, result, look }: State): Promise<string | null> {
-  const frame = result?.pair.first ?? pair.first;
+  const frame = result?.frame ?? pair.first;
   const canvas = new OffscreenCanvas(WIDTH, HEIGHT);
   const context = canvas.getContext('2d', { willReadFrequently: true });
   if (frame === null || context === null) return null;
@@ -31,12 +31,12 @@ export async function thumbnailOf({ pair, result, look }: State): Promise<string
 }
 
 /** `from`: where in the frame a pixel of the picture comes from. */
-function paint(data: Uint8ClampedArray, { segmentation }: Result, painting: Painting, from: (x: number, y: number) => readonly [number, number]): void {
-  const words = wordsByLabel(segmentation, painting);
+function paint(data: Uint8ClampedArray, { masks }: Result, painting: Painting, from: (x: number, y: number) => readonly [number, number]): void {
+  const words = wordsByLabel(painting);
   for (let y = 0, i = 0; y < HEIGHT; y++) {
     for (let x = 0; x < WIDTH; x++, i += 4) {
       const [column, row] = from(x, y);
-      const word = words[segmentation.labels[row * segmentation.width + column]!]!;
+      const word = words[masks.labels[row * masks.width + column]!]!;
       if (word === 0) continue;
       for (let k = 0; k < 3; k++) data[i + k] = data[i + k]! * (1 - OPACITY) + ((word >>> (8 * k)) & 255) * OPACITY;
     }

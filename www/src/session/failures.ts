@@ -6,8 +6,3 @@ import type { Store } from '../state/state.js';
 export function report(store: Store, error: unknown): void {
   store.say(sentenceOf(error), codeOf(error));
 }
-
-/** Reports what ended the work on the pair. */
-export function fail(store: Store, error: unknown): void {
-  store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error), choices: [] } });
-}

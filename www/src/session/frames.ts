@@ -1,32 +1,25 @@
-//! Which frames are on screen: a pair, with its place in a clip. Frames are put there with the work on them that is kept. The pair and the
-//! timeline are in the state; how far the two frames are apart is kept here, because near the end of a clip they cannot be.
+//! Which frames are on screen: one of a clip, and the one beside it. Frames are put there with the work on them that is kept. Both are in the
+//! state, with their place in the clip.
 
 import type { Clip } from '../clips/clip.js';
 import { WHOLE } from '../drawing/viewport.js';
 import type { Header } from '../projects/file.js';
 import type { Projects } from '../projects/projects.js';
-import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
-import { FRESH, type Look, type Store } from '../state/state.js';
-import { isSeen, largestChanges, livesOf } from '../state/tracked.js';
+import { type FramePair, type LoadedFrame, type Timeline, timelineOf } from '../state/pair.js';
+import { FRESH, type Store } from '../state/state.js';
+import { largestChanges, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import type { Opening } from './opening.js';
-import type { PairSegmenting } from './pair/segmenting.js';
-import type { PairWorker } from './pair/worker.js';
 import type { Shown } from './shown.js';
-
-/** Distance between the two frames when a clip is opened. */
-export const FRAMES_APART = 1;
 
 /** The parts that change with the frames. */
 interface Parts {
   readonly opening: Opening;
-  readonly worker: PairWorker;
   readonly camera: Camera;
   readonly clip: ClipSegmenting;
-  readonly pair: PairSegmenting;
   readonly objects: Objects;
   readonly shown: Shown;
   readonly projects: Projects;
@@ -35,43 +28,38 @@ interface Parts {
 export class Frames {
   readonly #store: Store;
   readonly #parts: Parts;
-  #apart = FRAMES_APART;
 
   constructor(store: Store, parts: Parts) {
     this.#store = store;
     this.#parts = parts;
   }
 
-  /** Chooses one frame of the open clip; the index is clamped. */
-  choose(slot: Slot, index: number): Promise<void> {
-    const { timeline } = this.#store.get();
-    if (timeline === null) return Promise.resolve();
-    const places = { ...timeline, [slot]: clamped(Math.round(index), timeline.clip.count) };
-    this.#apart = places.second - places.first;
-    return this.#goTo(places);
-  }
-
-  /** Steps both frames. */
+  /** Steps by as many frames. */
   step(by: number): Promise<void> {
-    const { timeline } = this.#store.get();
-    return timeline === null ? Promise.resolve() : this.goTo(timeline.first + by);
+    return this.goTo((this.#store.get().timeline?.first ?? 0) + by);
   }
 
-  /** Goes to a frame of the clip. The second frame keeps its distance, except that masks of a clip can be seen up to its ends. */
+  /** Goes to a frame of the open clip; the index is clamped. The timeline moves at once; the frames change when they are loaded. */
   goTo(index: number): Promise<void> {
-    const { timeline, look } = this.#store.get();
+    const { timeline, pair } = this.#store.get();
     if (timeline === null) return Promise.resolve();
     const { clip } = timeline;
-    const apart = this.#apart;
-    const [least, most] = look.kind === 'objects' ? [0, clip.count - 1] : [Math.max(0, -apart), clip.count - 1 - Math.max(0, apart)];
-    const at = Math.min(Math.max(index, least), most);
-    return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
+    const first = Math.min(Math.max(Math.round(index), 0), clip.count - 1);
+    const wanted: Timeline = { clip, first, second: besideOf(clip, first) };
+    const shown = timelineOf(pair);
+    if (wanted.first === shown?.first && wanted.second === shown.second) {
+      this.#parts.opening.stay();
+      return Promise.resolve();
+    }
+    this.#parts.objects.finishStroke();
+    this.#store.set({ timeline: wanted });
+    return this.open(() => this.readPair(clip, first), ([first = null, second = null]) => ({ first, second }), undefined, 'step');
   }
 
   /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next or previous. */
   goToDoubtful(id: number | null = null, by: 1 | -1 = 1): void {
     const { tracked, look, timeline } = this.#store.get();
-    if (tracked === null || look.kind !== 'objects') return;
+    if (tracked === null) return;
     const lives = livesOf(tracked);
     const selected = lives.findIndex((life) => life.id === (id ?? look.selected));
     const seen = id === null && selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
@@ -93,19 +81,11 @@ export class Frames {
 
   /** Goes to the frame that the last correction changed most; from there to the next one. */
   goToChanged(): void {
-    const { tracked, timeline, look } = this.#store.get();
-    if (tracked === null || look.kind !== 'objects') return;
+    const { tracked, timeline } = this.#store.get();
+    if (tracked === null) return;
     const changed = largestChanges(tracked);
     const next = changed[(changed.indexOf(timeline?.first ?? -1) + 1) % changed.length];
     if (next !== undefined) void this.goTo(next);
-  }
-
-  /** Swaps the two frames. */
-  swap(): void {
-    const { first, second } = this.#store.get().pair;
-    this.#apart *= -1;
-    this.#parts.opening.giveUp();
-    this.#setPair({ first: second, second: first });
   }
 
   /** Loads frames and puts them into the pair, with the work on them that is kept. `then`: after that. `as`: as `Opening.open` takes it. */
@@ -115,8 +95,7 @@ export class Frames {
     then: (found: Header | null) => void = () => undefined,
     as?: number | 'step',
   ): Promise<void> {
-    const { opening, worker, camera, clip, objects, projects } = this.#parts;
-    worker.prepare();
+    const { opening, camera, clip, objects, projects } = this.#parts;
     return opening.open(
       async (signal) => {
         const frames = await load(signal);
@@ -155,67 +134,42 @@ export class Frames {
     return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
   }
 
-  /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
-  #goTo(places: Partial<Pick<Timeline, Slot>>): Promise<void> {
-    const { timeline, pair } = this.#store.get();
-    if (timeline === null) return Promise.resolve();
-    const { clip } = timeline;
-    const wanted: Timeline = { ...timeline, ...places };
-    const shown = timelineOf(pair);
-    const missing = (['first', 'second'] as const).filter((slot) => wanted[slot] !== shown?.[slot]).map((slot) => ({ slot, index: wanted[slot] }));
-    if (missing.length === 0) {
-      this.#parts.opening.stay();
-      return Promise.resolve();
+  /** A frame of a clip and the one beside it. Those on screen are not read again. */
+  async readPair(clip: Clip, index: number): Promise<LoadedFrame[]> {
+    const { pair, settings } = this.#store.get();
+    const frames: LoadedFrame[] = [];
+    for (const at of [index, besideOf(clip, index)]) {
+      const known = [pair.first, pair.second, ...frames].find((frame) => frame !== null && isFrameOf(frame, clip, at, settings.longestSide));
+      frames.push(known ?? (await this.read(clip, at)));
     }
-    this.#parts.objects.finishStroke();
-    this.#store.set({ timeline: wanted });
-    return this.open(
-      async () => {
-        const { longestSide } = this.#store.get().settings;
-        const frames: LoadedFrame[] = [];
-        for (const { index } of missing) {
-          const known = [pair.first, pair.second, ...frames].find((frame) => frame !== null && isFrameOf(frame, clip, index, longestSide));
-          frames.push(known ?? (await this.read(clip, index)));
-        }
-        return frames;
-      },
-      (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
-      undefined,
-      'step',
-    );
+    return frames;
   }
 
   /** Goes to where the work on a clip was left. */
   #continue({ at, hidden }: Header): void {
-    this.#parts.shown.kind('objects');
-    if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
+    this.#store.look({ hidden: new Set(hidden) });
     void this.goTo(at);
   }
 
   #setPair(pair: FramePair): void {
-    const { clip, pair: segmenting, objects, shown } = this.#parts;
+    const { clip, objects, shown } = this.#parts;
     objects.finishStroke();
-    segmenting.stop();
     const { look, pair: before, viewport, timeline: left } = this.#store.get();
-    const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
-    const complete = pair.first !== null && pair.second !== null;
-    const view = complete && look.view === 'split' ? 'split' : only;
+    const view = pair.second !== null && look.view === 'split' ? 'split' : 'first';
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
     const timeline = timelineOf(pair);
-    const sameClip = left?.clip === timeline?.clip;
     const tracked = clip.of(timeline?.clip ?? null);
-    const kind = isSeen(tracked) && (!sameClip || look.kind === 'objects') ? 'objects' : look.kind === 'objects' ? 'groups' : look.kind;
+    const sameClip = left?.clip === timeline?.clip;
     // The objects of a clip are the same in all its frames.
-    const same = kind === 'objects' && sameClip;
-    const carried: Look = same ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
-    if (!same && timeline !== null) this.#apart = timeline.second - timeline.first;
-    shown.pair(pair, { ...carried, view }, { timeline, tracked, forced: null, viewport: sameSize ? viewport : WHOLE });
+    const carried = sameClip ? { ...look, blinking: false } : { ...look, ...FRESH };
+    shown.pair(pair, { ...carried, view }, { timeline, tracked, viewport: sameSize ? viewport : WHOLE });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && !sameClip) left.clip.close();
   }
 }
 
-function clamped(index: number, count: number): number {
-  return Math.min(Math.max(index, 0), count - 1);
+/** The index of the next frame, or at the end of the clip of the one before. */
+function besideOf({ count }: Clip, index: number): number {
+  return index + 1 < count ? index + 1 : Math.max(index - 1, 0);
 }

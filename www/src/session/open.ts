@@ -12,14 +12,14 @@ import { fetchImage, filesOf, frameFromFile } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Header } from '../projects/file.js';
 import type { Projects } from '../projects/projects.js';
-import type { FramePair, LoadedFrame, Slot } from '../state/pair.js';
+import type { FramePair, LoadedFrame } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { lengthOf } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
 import { importClasses } from './class-list.js';
 import { report } from './failures.js';
-import { FRAMES_APART, type Frames } from './frames.js';
+import type { Frames } from './frames.js';
 import type { Opening } from './opening.js';
 import type { Shown } from './shown.js';
 
@@ -58,28 +58,27 @@ export class Open {
     const ticket = this.#parts.opening.ticket();
     const last = await this.#parts.projects.last();
     if (last === null || 'frames' in last) return this.sample(last ?? sample, ticket);
-    await this.#frames(last, null, ticket);
+    await this.#frames(last, ticket);
     if (this.#store.get().pair.first === null) return this.sample(sample, ticket);
   }
 
   /**
-   * Opens files. A video or several images are a clip, in the order of their names. One image goes into `slot`; without a slot, it becomes the
-   * missing second frame or the first of a new pair. With the frame that is there it is a clip of two. A project continues
-   * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported,
+   * Opens files. A video or several images are a clip, in the order of their names. One image waits for another one, with which it is a clip of
+   * two. A project continues with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported,
    * and lists of classes.
    */
-  async files(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+  async files(files: Iterable<File> | Promise<Iterable<File>>): Promise<void> {
     // What is opened while these are still being looked at is newer.
     const ticket = this.#parts.opening.ticket();
     try {
       const given = [...(await files)];
-      const maybeList = slot === null && given.every(({ name }) => /\.(json|txt)$/i.test(name));
+      const maybeList = given.every(({ name }) => /\.(json|txt)$/i.test(name));
       const added = maybeList ? await importClasses(given, this.#store) : null;
       if (added !== null) return this.#store.say(added);
-      const isOfClip = slot === null && this.#store.get().tracked !== null;
+      const isOfClip = this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
       const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));
-      await (areMasks ? this.masks(given) : this.#frames(given, slot, ticket));
+      await (areMasks ? this.masks(given) : this.#frames(given, ticket));
     } catch (error) {
       report(this.#store, error);
     }
@@ -101,7 +100,7 @@ export class Open {
     }
   }
 
-  #frames(files: readonly File[], slot: Slot | null, ticket: number): Promise<void> {
+  #frames(files: readonly File[], ticket: number): Promise<void> {
     let opened: Header | null = null;
     let leftOut = '';
     let clip: Clip | null = null;
@@ -123,19 +122,12 @@ export class Open {
         if (image === undefined && project !== null) return [];
         if (image === undefined) throw new PageError('no-image', strings.notices.noFiles);
         const { pair, settings } = this.#store.get();
-        const beside = images.length > 1 ? null : pair[slot === 'first' || (slot === null && pair.second !== null) ? 'second' : 'first'];
-        if (images.length === 1 && (beside === null || (slot === null && pair.second !== null))) {
-          return [await frameFromFile(image, image.name, settings.longestSide)];
-        }
-        source = beside === null ? images : await filesOf(slot === 'first' ? [image, beside] : [beside, image]);
+        const waiting = images.length === 1 && pair.second === null ? pair.first : null;
+        if (images.length === 1 && waiting === null) return [await frameFromFile(image, image.name, settings.longestSide)];
+        source = waiting === null ? images : await filesOf([waiting, image]);
         return this.#startOf((clip = await openFolder(source)));
       },
-      (frames, pair) => {
-        if (frames.length === 2) return pairOf(frames);
-        const [frame] = frames;
-        if (frame === undefined) return pair;
-        return slot === 'second' ? { first: null, second: frame } : { first: frame, second: null };
-      },
+      (frames, pair) => (frames.length > 0 ? pairOf(frames) : pair),
       (found) => {
         if (opened !== null && found !== opened) this.#store.say(strings.projects.waiting(opened.name));
         else if (leftOut !== '') this.#store.say(leftOut);
@@ -180,11 +172,10 @@ export class Open {
     this.#store.say(strings.errors.otherSize(clip.nameOf(other.index), other, clip), 'frame-size-mismatch');
   }
 
-  /** Two frames of a clip. */
+  /** The frames that a clip begins with. */
   async #startOf(clip: Clip, at = 0): Promise<LoadedFrame[]> {
-    const { frames } = this.#parts;
     try {
-      return [await frames.read(clip, at), await frames.read(clip, Math.min(at + FRAMES_APART, clip.count - 1))];
+      return await this.#parts.frames.readPair(clip, at);
     } catch (error) {
       clip.close();
       throw error;

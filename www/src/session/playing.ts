@@ -1,10 +1,9 @@
-//! Passing through the frames of a clip, as it is played or as a pointer is dragged over the timeline. Where that ends, the pair is
-//! segmented. It owns the frame to which the pointer was dragged last.
+//! Passing through the frames of a clip, as it is played or as a pointer is dragged over the timeline. It owns the frame to which the pointer
+//! was dragged last.
 
 import { type Clip, FRAMES_PER_SECOND } from '../clips/clip.js';
 import type { Store } from '../state/state.js';
 import type { Frames } from './frames.js';
-import type { PairSegmenting } from './pair/segmenting.js';
 
 /** How fast a clip can be played, as a multiple of how fast it was taken. */
 const SPEEDS = [0.25, 0.5, 1, 2];
@@ -12,14 +11,12 @@ const SPEEDS = [0.25, 0.5, 1, 2];
 export class Playing {
   readonly #store: Store;
   readonly #frames: Frames;
-  readonly #segmenting: PairSegmenting;
   /** `null` once it is read. */
   #wanted: number | null = null;
 
-  constructor(store: Store, frames: Frames, segmenting: PairSegmenting) {
+  constructor(store: Store, frames: Frames) {
     this.#store = store;
     this.#frames = frames;
-    this.#segmenting = segmenting;
   }
 
   /** Plays the clip from the current frame, or stops. */
@@ -33,7 +30,7 @@ export class Playing {
     while (this.#store.get().playing && index < clip.count) {
       await this.#frames.goTo(index);
       const { timeline: now, speed } = this.#store.get();
-      if (now?.clip !== clip || now.first !== index) break; // the end of the pair, or gone elsewhere
+      if (now?.clip !== clip || now.first !== index) break; // gone elsewhere
       const { next, wait } = pace.after(index, speed, performance.now());
       await new Promise((resolve) => setTimeout(resolve, wait));
       index = next;
@@ -41,7 +38,6 @@ export class Playing {
       if (this.#store.get().timeline?.clip !== clip) break;
     }
     this.#store.set({ playing: false });
-    this.#segmenting.rest();
   }
 
   /** Plays faster by as many steps, or more slowly. */
@@ -68,7 +64,6 @@ export class Playing {
       if (this.#wanted === wanted) this.#wanted = null;
     }
     this.#store.set({ scrubbing: false });
-    this.#segmenting.rest();
   }
 }
 

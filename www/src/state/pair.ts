@@ -1,4 +1,4 @@
-//! The two frames of a pair: a clip has both, unless it is one image that waits for another, or the camera's.
+//! The frame on screen and the one beside it, which it is compared with: a clip has both. One image waits for another.
 
 import type { Clip } from '../clips/clip.js';
 import type { DecodedFrame } from '../frames/frame.js';
@@ -11,10 +11,10 @@ export interface LoadedFrame extends DecodedFrame {
   readonly origin?: { readonly clip: Clip; readonly index: number };
 }
 
-/** The two frames; `null` until a frame is opened. */
+/** The frame on screen, and the next one, or at the end of a clip the one before; `null` until a frame is opened. */
 export type FramePair = Readonly<Record<Slot, LoadedFrame | null>>;
 
-/** The open clip and the indices of the two frames in it. */
+/** The open clip, and the indices of the two frames in it. */
 export interface Timeline {
   readonly clip: Clip;
   readonly first: number;

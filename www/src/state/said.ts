@@ -1,7 +1,7 @@
 //! What a person has said of a clip is seen at once: here is what it changes on screen until the clip answers.
 
 import type { ClipEntry } from 'veronese';
-import { type Runs, extentsOf, packed, unpacked } from '../correction/runs.js';
+import { type Runs, extentsOf, packed, unpacked } from '../result/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { type Annotated, type ClipState, type Prompt, type TrackedFrame, isObject, lockedIn } from './tracked.js';
 

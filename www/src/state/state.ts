@@ -5,30 +5,30 @@ import type { ClipAnnotation, Segmentation } from 'veronese';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { ImageFolder } from '../frames/files.js';
+import type { FrameMasks } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
-/**
- * The run on the pair. `index` counts stages from 0; `of` is 0 until the number of stages is known. Of what is done, `cause` says whether the
- * masks on screen were found for the pair, or are those of the clip.
- */
-export type Run =
-  | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
-  | { readonly phase: 'done'; readonly cause: 'found' | 'tracked' }
-  | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
-
-/** A segmentation with the frames that it belongs to, so that views never combine two requests. */
+/** Masks with the frame that they belong to, so that views never draw them over another. */
 export interface Result {
-  readonly segmentation: Segmentation;
-  readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
-  /** The masks of the second frame, if they were found by themselves; otherwise those of the first are moved. */
-  readonly second?: Segmentation | null;
+  readonly masks: FrameMasks;
+  readonly frame: LoadedFrame;
+  /** Those of the other frame of the pair. */
+  readonly second: FrameMasks | null;
+}
+
+/** The motions between two frames: `session/inspecting.ts`. */
+export interface Inspected {
+  readonly first: LoadedFrame;
+  readonly second: LoadedFrame;
+  /** `null` if they could not be found. */
+  readonly segmentation: Segmentation | null;
   /** Time from request to result, transfers to and from the worker included, milliseconds. */
   readonly waited: number;
 }
 
-/** How the result is displayed. Mask numbers refer to the current result and kind. */
+/** How frames and masks are displayed. */
 export interface Look extends Painting {
   readonly view: Slot | 'split';
   /** Position of the split, 0…1 of the width of the view. */
@@ -40,17 +40,15 @@ export interface Look extends Painting {
   readonly outlines: boolean;
   /** The outlines of a clip's objects in the frames before and after. */
   readonly onion: boolean;
-  readonly arrows: boolean;
-  readonly residual: boolean;
-  /** The selected mask, to which brush and eraser refer. */
+  /** The motions of the frame that is inspected, in the place of its objects. */
+  readonly motions: boolean;
+  /** The selected object, to which brush and eraser refer. */
   readonly selected: number | null;
-  /** The second frame is drawn warped back by the motion of this mask, so that its pixels stay in place. */
-  readonly stabilised: number | null;
   /** The objects of a clip that are selected together, `selected` among them; `null` while one is selected alone. */
   readonly among: ReadonlySet<number> | null;
-  /** Names and classes that a person gave to the objects of a clip, by `keyOf`, as the colours. */
-  readonly names: Readonly<Record<string, string>>;
-  readonly classes: Readonly<Record<string, string>>;
+  /** Names and classes that a person gave to the objects of a clip, by number, as the colours. */
+  readonly names: Readonly<Record<number, string>>;
+  readonly classes: Readonly<Record<number, string>>;
 }
 
 export type ToolName = 'look' | 'brush' | 'eraser' | 'polygon' | 'box';
@@ -135,14 +133,13 @@ interface PassingState {
   readonly live: Live | null;
 }
 
-/** A view of the pair: `session/pair`. */
-interface PairState {
+/** What is seen of the frame: `session/shown.ts`, and `session/inspecting.ts`. */
+interface SeenState {
   readonly settings: Settings;
-  /** The number of motions for this pair alone, in the place of that of the settings. */
-  readonly forced: number | null;
-  readonly run: Run;
-  /** The masks on screen, of the pair or of the clip: `session/shown.ts` puts one in the place of the other. */
   readonly result: Result | null;
+  /** Whether a person inspects the frame. */
+  readonly inspecting: boolean;
+  readonly inspected: Inspected | null;
 }
 
 /** The objects of clips: `session/clip`. */
@@ -167,14 +164,9 @@ interface ToldState {
 }
 
 /** Each part names who changes it. Projects that are opened are put into all of them. */
-export interface State extends FramesState, PassingState, PairState, ClipState, ChosenState, ToldState {}
+export interface State extends FramesState, PassingState, SeenState, ClipState, ChosenState, ToldState {}
 
-/** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
-export function isAwaited({ result, run }: State): boolean {
-  return result === null && run.phase === 'working';
-}
-
-/** Whether the frames on screen are left at once, so that their pair is not segmented. */
+/** Whether the frames on screen are left at once. */
 export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
   return playing || scrubbing;
 }
@@ -191,8 +183,8 @@ export function selectedIn({ selected, among }: Look): readonly number[] {
   return [...(among ?? (selected === null ? [] : [selected]))];
 }
 
-/** The initial values of the parts of a look that belong to one result. */
-export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, among: null, names: {}, classes: {}, colours: {} } as const;
+/** The initial values of the parts of a look that belong to one clip. */
+export const FRESH = { hidden: new Set<number>(), solo: null, selected: null, blinking: false, among: null, names: {}, classes: {}, colours: {} } as const;
 
 export const INITIAL: State = {
   pair: { first: null, second: null },
@@ -206,10 +198,10 @@ export const INITIAL: State = {
   opening: false,
   automatic: true,
   settings: DEFAULT_SETTINGS,
-  forced: null,
-  run: { phase: 'idle' },
   result: null,
-  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, onion: false, arrows: false, residual: false, ...FRESH },
+  inspecting: false,
+  inspected: null,
+  look: { view: 'first', divide: 0.5, opacity: 0.35, outlines: true, onion: false, motions: false, ...FRESH },
   viewport: WHOLE,
   tool: { name: 'look', radius: 8, exact: false, spread: 'both', pointing: 'new' },
   notice: null,
@@ -239,7 +231,7 @@ export class Store {
     for (const listener of this.#listeners) listener(this.get(), before);
   }
 
-  /** Changes how the result is displayed. */
+  /** Changes how frames and masks are displayed. */
   look(change: Partial<Look>): void {
     this.set({ look: { ...this.get().look, ...change } });
   }

@@ -2,9 +2,9 @@
 
 import type { ClipClick, ClipEntry, ClipFrame, ClipFrameStatus, Note } from 'veronese';
 import type { Clip } from '../clips/clip.js';
-import { type Runs, differingPixels } from '../correction/runs.js';
+import { type Runs, differingPixels } from '../result/runs.js';
 import type { Colour } from '../drawing/palette.js';
-import { UNLABELLED, keyOf } from '../result/masks.js';
+import { UNLABELLED } from '../result/masks.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -131,18 +131,18 @@ export function lockedIn({ objects }: Pick<Tracked, 'objects'>): ReadonlySet<num
   return new Set(objects.filter(({ locked }) => locked).map(({ number }) => number));
 }
 
-/** Names, classes and colours that a person gave to objects, by `keyOf`. */
+/** Names, classes and colours that a person gave to objects, by number. */
 export interface Described {
-  readonly names: Readonly<Record<string, string>>;
-  readonly classes: Readonly<Record<string, string>>;
-  readonly colours: Readonly<Record<string, Colour>>;
+  readonly names: Readonly<Record<number, string>>;
+  readonly classes: Readonly<Record<number, string>>;
+  readonly colours: Readonly<Record<number, Colour>>;
 }
 
 export function describedIn(tracked: Pick<Tracked, 'objects'>): Described {
-  const given = <T>(what: (object: ClipEntry) => T | undefined): Record<string, T> =>
+  const given = <T>(what: (object: ClipEntry) => T | undefined): Record<number, T> =>
     Object.fromEntries([...objectsOf(tracked).values()].flatMap((object) => {
       const value = what(object);
-      return value === undefined ? [] : [[keyOf('objects', object.number), value]];
+      return value === undefined ? [] : [[object.number, value]];
     }));
   return { names: given(({ name }) => name || undefined), classes: given((object) => object.class || undefined), colours: given(({ colour }) => colour) };
 }

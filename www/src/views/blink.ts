@@ -1,22 +1,18 @@
 //! Alternating between the frames: by itself, or while the F key is held.
 
 import type { Store } from '../state/state.js';
-import { find, prefersStillness } from './markup.js';
+import { prefersStillness } from './markup.js';
 
 /** How long each frame is shown, milliseconds. */
 const PERIOD = 450;
 
-export function mountBlink(root: ParentNode, store: Store): void {
-  const button = find(root, '#blink', HTMLButtonElement);
+export function mountBlink(store: Store): void {
   let timer = 0;
-  button.addEventListener('click', () => toggleBlinking(store));
-  store.subscribe(({ look, pair }, before) => {
-    button.disabled = pair.first === null || pair.second === null;
+  store.subscribe(({ look }, before) => {
     if (look.blinking === before.look.blinking) return;
-    button.setAttribute('aria-pressed', String(look.blinking));
     clearInterval(timer);
     if (look.blinking) timer = window.setInterval(() => flip(store), PERIOD);
-    else if (before.look.view !== 'split' && look.stabilised === null) store.look({ view: 'first' });
+    else if (before.look.view !== 'split') store.look({ view: 'first' });
   });
 }
 

@@ -1,6 +1,6 @@
 //! Brush, eraser, polygon and box: the circle under the pointer, and what is being drawn.
 
-import type { Path } from '../correction/strokes.js';
+import type { Path } from '../result/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import { Drawing } from '../session/clip/drawing.js';
@@ -74,7 +74,7 @@ export class Brush {
   key({ key, shiftKey }: KeyboardEvent): boolean {
     const { tool, result } = this.#store.get();
     if (tool.name === 'look' || result === null) return false;
-    const { width, height } = result.pair.first;
+    const { width, height } = result.frame;
     const [x, y] = this.#at ?? [width / 2, height / 2];
     const step = shiftKey ? 1 : Math.max(2, tool.radius);
     const [right, down] = STEPS[key] ?? [0, 0];

@@ -6,7 +6,7 @@ import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
-import { isDrafting } from '../state/tracked.js';
+import { isDrafting, isSeen } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipExport(panel: HTMLElement, store: Store, session: Session, formats: readonly ClipFormat[]): void {
@@ -49,7 +49,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   masks.disabled = false;
 
   const render = ({ look, tracked }: State, before: State | null): void => {
-    root.hidden = look.kind !== 'objects';
+    root.hidden = !isSeen(tracked);
     if (tracked?.frames !== before?.tracked?.frames || look.hidden !== before?.look.hidden) status.textContent = '';
   };
   store.subscribe(render);

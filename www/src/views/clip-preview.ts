@@ -37,9 +37,9 @@ export function mountClipPreview(panel: HTMLElement, store: Store, formats: read
     working = true;
     while (outdated) {
       outdated = false;
-      const { tracked, look, timeline } = store.get();
+      const { tracked, timeline } = store.get();
       const format = formats[select.selectedIndex];
-      if (format === undefined || tracked === null || look.kind !== 'objects' || !panel.matches(':popover-open')) break;
+      if (format === undefined || tracked === null || !panel.matches(':popover-open')) break;
       const index = timeline?.first ?? 0;
       picture.alt = strings.preview.picture(index);
       try {

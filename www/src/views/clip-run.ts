@@ -14,7 +14,7 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
   const cancel = find(root, '#clip-cancel', HTMLButtonElement);
 
   segment.addEventListener('click', () => {
-    session.shown.choose('objects');
+    session.shown.objects();
     void session.clip.segment();
     cancel.focus();
   });

@@ -5,7 +5,7 @@
 
 import { imported } from '../common/loaded.js';
 import { inPicture } from '../drawing/viewport.js';
-import { maskOf } from '../result/masks.js';
+import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
@@ -121,7 +121,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     const at = pixelAt(store.get(), inView(event));
     choose(store, session, at);
     const { look } = store.get();
-    if (look.kind !== 'objects' || look.selected !== 0) return;
+    if (look.selected !== 0) return;
     const view = inView(event);
     offering ??= imported(() => import('./offer.js')).then(({ Offer }) => new Offer(layers, store, session));
     // Without it there is the box, which does the same.
@@ -174,12 +174,12 @@ function pixelAt({ pair, viewport }: State, view: readonly [number, number]): [n
   return [x * (frame?.width ?? 1) - 0.5, y * (frame?.height ?? 1) - 0.5];
 }
 
-/** Selects the mask at a position of the first frame, or deselects it. */
+/** Selects the object at a position of the frame, or deselects it. */
 function choose(store: Store, session: Session, [x, y]: readonly [number, number]): void {
   const { result, look } = store.get();
   if (result === null) return;
-  const { labels, width, height } = result.segmentation;
+  const { labels, width, height } = result.masks;
   const [px, py] = [Math.min(Math.max(Math.round(x), 0), width - 1), Math.min(Math.max(Math.round(y), 0), height - 1)];
-  const mask = maskOf(labels[py * width + px] ?? 255, result.segmentation, look.kind);
+  const mask = labels[py * width + px] ?? UNLABELLED;
   session.shown.select(look.selected === mask ? null : mask);
 }

@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, isDraft, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, type Tracked, isDraft, isSeen, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -25,7 +25,7 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
   let lives: Life[] = [];
 
   const render = ({ tracked, look }: State): void => {
-    if (tracked === null || look.kind !== 'objects') return;
+    if (tracked === null) return;
     draw(canvas, tracked, lives, look);
     for (const button of names.querySelectorAll<HTMLButtonElement>('button')) {
       const id = Number(button.dataset.object);
@@ -44,11 +44,10 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
-    if (!sameFrames || look.kind !== before.look.kind) {
+    if (!sameFrames) {
       lives = livesOf({ frames });
       root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, lives.length)));
-      // Only then they are drawn, and have names.
-      names.replaceChildren(...(look.kind === 'objects' ? lives : []).map(({ id }) => nameButton(id, session)));
+      names.replaceChildren(...lives.map(({ id }) => nameButton(id, session)));
     }
     render(now);
   });
@@ -56,8 +55,8 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
 }
 
 /** Whether there is room for lanes: from when a clip is being segmented, so that the picture keeps its place when they come. */
-function hasRoom({ tracked, look }: State): boolean {
-  return tracked !== null && (look.kind === 'objects' || (tracked.run.phase === 'working' && !isTracked(tracked)));
+function hasRoom({ tracked }: State): boolean {
+  return tracked !== null && (tracked.run.phase === 'working' || isSeen(tracked));
 }
 
 function nameButton(id: number, session: Session): HTMLElement {

@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import { colourFromHex } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, Result, State, Store } from '../state/state.js';
-import { type Life, isDrafting, isObject, isReady, livesOf, lockedIn, shownFrames } from '../state/tracked.js';
+import { type Life, isDrafting, isObject, isReady, isSeen, livesOf, lockedIn, shownFrames } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, rename } from './mask-row.js';
 import { drawThumbnail } from './thumbnail.js';
@@ -21,15 +21,18 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
   const list = find(root, '#objects', HTMLOListElement);
   const foot = find(root, '#list-foot', HTMLElement);
   const add = find(foot, '#add-object', HTMLButtonElement);
+  const empty = find(root, '#motions-empty', HTMLElement);
   const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
-    if (session.objects.addObject()) chooseTool(store, session, 'brush');
+    if (session.objects.addObject()) chooseTool(store, 'brush');
   });
 
   store.subscribe((now, before) => {
-    const { tracked, look, result } = now;
-    if (tracked === before.tracked && look === before.look && result === before.result) return;
-    list.hidden = look.kind !== 'objects' || tracked === null;
+    const { tracked, look, result, live } = now;
+    if (tracked === before.tracked && live === before.live && look === before.look && result === before.result) return;
+    list.hidden = !isSeen(tracked);
+    empty.hidden = !list.hidden;
+    empty.textContent = live === null ? strings.noMasksYet : strings.liveMasks(result?.second?.objects.length ?? 0);
     if (tracked === null) return;
     foot.hidden = list.hidden;
     add.disabled = !isReady(tracked);
@@ -103,11 +106,12 @@ function rowOf(id: number, store: Store, session: Session): Row {
   const refreshAll: Row['refresh'] = ({ look, result, tracked }, life, ids) => {
     refresh(look);
     const called = nameOf(look, id);
-    const here = result?.segmentation.motions.find(({ label }) => label === id);
-    share.textContent = here === undefined ? '' : strings.percent(here.share);
+    const here = result?.masks.objects.find((object) => object.id === id);
+    const pixels = id === 0 ? result?.masks.rest : here?.pixels;
+    share.textContent = result === null || pixels === undefined ? '' : strings.percent(pixels / result.masks.labels.length);
     if (id === 0) return;
     // Where it is not in sight, it looks as it did.
-    if (result !== null && result !== drawn) drawThumbnail(thumbnail, (drawn = result), [id]);
+    if (result !== null && result !== drawn && here !== undefined) drawThumbnail(thumbnail, (drawn = result).frame, here.bbox);
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && isReady(tracked);
     for (const control of [lock, split, remove]) control.disabled = !ready;

@@ -37,12 +37,12 @@ export class Offer {
 
   async #take(session: Session): Promise<void> {
     await session.objects.point(this.#pixel);
-    chooseTool(this.#store, session, 'box');
+    chooseTool(this.#store, 'box');
     this.#store.set({ tool: { ...this.#store.get().tool, pointing: 'add' } });
   }
 }
 
 /** Whether the background of a clip is selected, which takes corrections. */
 function isNotFound({ look, tracked }: State): boolean {
-  return look.kind === 'objects' && look.selected === 0 && isReady(tracked) && tracked.run.phase !== 'working';
+  return look.selected === 0 && isReady(tracked) && tracked.run.phase !== 'working';
 }

@@ -1,6 +1,6 @@
 //! Onion skin: the outlines of a clip's objects in the frame before, dashed, and in the frame after, dotted.
 
-import { unpacked } from '../correction/runs.js';
+import { unpacked } from '../result/runs.js';
 import { contoursOf } from '../drawing/contours.js';
 import { colourOfMask, isShown } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
@@ -18,7 +18,7 @@ export function mountOnion(picture: SVGSVGElement, store: Store): void {
   const draw = ({ look, tracked, pair, ...now }: State): void => {
     const origin = pair.first?.origin;
     const at = origin !== undefined && origin.clip === tracked?.clip ? origin.index : NaN;
-    const seen = look.onion && look.kind === 'objects' && look.view !== 'second' && !isPassing(now);
+    const seen = look.onion && look.view !== 'second' && !isPassing(now);
     const paths = (seen ? SIDES : []).flatMap(({ by, name }) => {
       const runs = tracked?.frames[at + by]?.runs;
       if (runs === undefined) return [];

@@ -1,6 +1,5 @@
 //! The settings form. Whether clips are segmented by themselves is kept for the next visit.
 
-import type { Session } from '../session/session.js';
 import { type Settings, settingFrom } from '../state/settings.js';
 import type { State, Store } from '../state/state.js';
 import { find } from './markup.js';
@@ -9,13 +8,13 @@ import { find } from './markup.js';
 const KEY = 'veronese-segment';
 const ASKED = 'asked';
 
-export function mountOptions(form: HTMLFormElement, store: Store, session: Session): void {
+export function mountOptions(form: HTMLFormElement, store: Store): void {
   const fields = [...form.querySelectorAll<HTMLInputElement | HTMLSelectElement>('[name]:not([name=automatic])')];
   const automatic = find(form, '[name=automatic]', HTMLInputElement);
   for (const field of fields) {
     field.addEventListener('change', () => {
       const text = field.type === 'checkbox' ? String(field.checked) : field.value;
-      session.pair.change(settingFrom(field.name, text) ?? {});
+      store.set({ settings: { ...store.get().settings, ...settingFrom(field.name, text) } });
     });
   }
   automatic.addEventListener('change', () => {

@@ -5,12 +5,12 @@ import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { mountClipExport } from './clip-export.js';
 import { mountClipPreview } from './clip-preview.js';
-import { mountExport } from './export.js';
+import { mountCopies } from './copies.js';
 import { find } from './markup.js';
 import { mountProjects } from './projects.js';
 
 export async function mountPanel(panel: HTMLElement, store: Store, session: Session): Promise<void> {
-  mountExport(find(panel, '#pair-export', HTMLElement), store, session);
+  mountCopies(find(panel, '#copies', HTMLElement), store, session);
   const formats = await clipFormats();
   mountClipExport(panel, store, session, formats);
   mountClipPreview(panel, store, formats);

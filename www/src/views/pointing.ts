@@ -22,7 +22,7 @@ export function pointingIn(state: State): Pointing {
 /** The prompt of the selected object in the frame on screen, which can be refined; `null` if there is none. */
 function promptIn(state: State): Prompt | null {
   const { tracked, look } = state;
-  return look.kind !== 'objects' || tracked === null ? null : promptOf(tracked, seenIn(state)?.index ?? null, look.selected);
+  return tracked === null ? null : promptOf(tracked, seenIn(state)?.index ?? null, look.selected);
 }
 
 export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store): void {

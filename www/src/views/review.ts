@@ -23,7 +23,7 @@ export function mountReview(root: HTMLElement, store: Store, session: Session): 
   store.subscribe((now, before) => {
     const { tracked, look, pair } = now;
     if (tracked === before.tracked && look === before.look && pair === before.pair) return;
-    box.hidden = bar.hidden = !isTracked(tracked) || !isReady(tracked) || look.kind !== 'objects';
+    box.hidden = bar.hidden = !isTracked(tracked) || !isReady(tracked);
     if (box.hidden || tracked === null) return;
     const { frames, clip } = tracked;
     const accepted = acceptedIn(tracked);

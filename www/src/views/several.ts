@@ -139,7 +139,7 @@ export function mountSeveral(root: ParentNode, store: Store, session: Session): 
 
   const render = ({ look, tracked }: State): void => {
     const { among } = look;
-    const on = among !== null && look.kind === 'objects';
+    const on = among !== null;
     list.classList.toggle('choosing', on);
     toggle.setAttribute('aria-pressed', String(on));
     bar.hidden = !on;

@@ -1,15 +1,15 @@
 //! The keyboard shortcuts as data. `keys.ts` handles them, `key-list.ts` says what they do.
 
 import { ZOOM_STEP } from '../drawing/viewport.js';
-import { masksOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import { type Store, type ToolName, selectedIn } from '../state/state.js';
 import { livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
 import { isReached, takesArrows, takesSpace } from './focused.js';
 import { renameSelected } from './mask-row.js';
+import { toggleMotions } from './inspect.js';
 import { setEdge } from './range.js';
-import { FAR, stepOne } from './timeline.js';
+import { FAR } from './timeline.js';
 import { accept } from './review.js';
 import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
@@ -32,10 +32,10 @@ const NUMBERS = ['1', '2', '3', '4', '5', '6', '7', '8', '9'];
 const PAN = 0.1;
 
 export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {
-  const toggle = (name: 'outlines' | 'onion' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
+  const toggle = (name: 'outlines' | 'onion') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
-  const step = (by: number) => () => stepOne(store, session, 'both', by);
-  const tool = (name: ToolName) => () => chooseTool(store, session, name);
+  const step = (by: number) => () => void session.frames.step(by);
+  const tool = (name: ToolName) => () => chooseTool(store, name);
   const inClip = (): boolean => store.get().timeline !== null;
   const steps = (target: EventTarget | null): boolean => inClip() && !takesArrows(target) && !(isReached(target, '.layers') && store.get().viewport.zoom > 1);
   const pans = (target: EventTarget | null): boolean => store.get().viewport.zoom > 1 && !takesArrows(target);
@@ -64,7 +64,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['b', 'p'], run: tool('brush') },
     { keys: ['e'], run: tool('eraser') },
     { keys: ['w'], run: tool('polygon') },
-    { keys: ['x'], run: () => chooseBox(store, session) },
+    { keys: ['x'], run: () => chooseBox(store) },
     { keys: ['['], run: () => changeRadius(store, 0.75) },
     { keys: [']'], run: () => changeRadius(store, 4 / 3) },
     { keys: ['q'], run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
@@ -83,11 +83,9 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['<'], run: () => void copyMask(session, -1) },
     { keys: ['f'], run: () => toggleBlinking(store), shift: true },
     { keys: ['s'], run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], run: () => session.shown.choose(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['g'], run: () => toggleMotions(store) },
     { keys: ['l'], run: toggle('outlines'), shift: false },
     { keys: ['u'], run: toggle('onion') },
-    { keys: ['a'], run: toggle('arrows') },
-    { keys: ['r'], run: toggle('residual') },
     { keys: ['+', '='], run: () => zoom.by(ZOOM_STEP) },
     { keys: ['-', '_'], run: () => zoom.by(1 / ZOOM_STEP) },
     { keys: ['0'], run: () => zoom.whole() },
@@ -99,19 +97,16 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
   ];
 }
 
-/** Selects the object or mask with this place in the list, after the background. */
+/** Selects the object with this place in the list, after the background. */
 function selectMask(store: Store, session: Session, place: number): void {
-  const { look, tracked, result } = store.get();
-  const ofClip = look.kind === 'objects' && tracked !== null;
-  const ids = ofClip ? livesOf(tracked).map(({ id }) => id) : result === null ? [] : masksOf(result.segmentation, look.kind).slice(1).map(({ id }) => id);
-  const id = ids[place - 1];
-  if (id !== undefined) session.shown.select(id);
+  const { tracked } = store.get();
+  const life = tracked === null ? undefined : livesOf(tracked)[place - 1];
+  if (life !== undefined) session.shown.select(life.id);
 }
 
-/** The objects of a clip that are selected. */
+/** The objects that are selected. */
 function chosen(store: Store): number[] {
-  const { look, tracked } = store.get();
-  return look.kind === 'objects' && tracked !== null ? selectedIn(look).filter((id) => id !== 0) : [];
+  return selectedIn(store.get().look).filter((id) => id !== 0);
 }
 
 /** Goes to the class of what is selected. */
@@ -120,8 +115,8 @@ function toClass(): void {
 }
 
 /** Chooses the box; if it is chosen, what a press is next. */
-function chooseBox(store: Store, session: Session): void {
-  if (store.get().tool.name !== 'box') return chooseTool(store, session, 'box');
+function chooseBox(store: Store): void {
+  if (store.get().tool.name !== 'box') return chooseTool(store, 'box');
   const choices = [...document.querySelectorAll<HTMLInputElement>('[name=pointing]:enabled')];
   choices[(choices.findIndex(({ checked }) => checked) + 1) % choices.length]?.click();
 }

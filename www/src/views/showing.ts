@@ -35,19 +35,17 @@ export function mountShowing(root: Window, store: Store, session: Session, sampl
   let going = Promise.resolve();
   const follow = async (index: number): Promise<void> => {
     isGoing = true;
-    session.shown.kind('objects');
     await session.frames.goTo(index);
     isGoing = false;
   };
-  const leave = store.subscribe(({ tracked, look, result }, before) => {
+  const leave = store.subscribe(({ tracked }, before) => {
     if (tracked === null) return;
     if (!isGoing && !mayGoOn()) return leave();
     const { previews, run, range, solved } = tracked;
     const goesOn = previews !== before.tracked?.previews || solved !== before.tracked?.solved;
-    if (goesOn && run.phase === 'working' && result !== null && !isGoing) {
+    if (goesOn && run.phase === 'working' && !isGoing) {
       const newest = Math.min(previews.findLastIndex((frame) => frame !== null), range.first + solved - 1);
-      // The masks of the first pair stay until there is something to see.
-      if (newest >= 0 && (look.kind === 'objects' || previews[newest]!.objects.length > 0)) going = follow(newest);
+      if (newest >= 0) going = follow(newest);
     }
     if (run.phase !== 'done') return;
     leave();

@@ -1,25 +1,18 @@
 //! A small picture of a mask: its part of the frame.
 
-import type { Result } from '../state/state.js';
+import type { FrameMasks } from '../result/masks.js';
+import type { LoadedFrame } from '../state/pair.js';
 import { contextOf } from './markup.js';
 
-type Labels = readonly number[];
+type Box = FrameMasks['objects'][number]['bbox'];
 
-/** Draws the part of the first frame that the motions with these labels cover. Returns whether there is any. */
-export function drawThumbnail(canvas: HTMLCanvasElement, { segmentation, pair }: Result, labels: Labels): boolean {
-  const boxes = segmentation.motions.filter(({ label }) => labels.includes(label)).map(({ bbox }) => bbox);
-  const shown = boxes.filter(([, , width, height]) => width > 0 && height > 0);
-  if (shown.length === 0) return false;
-  const left = Math.min(...shown.map(([x]) => x));
-  const top = Math.min(...shown.map(([, y]) => y));
-  const right = Math.max(...shown.map(([x, , width]) => x + width));
-  const bottom = Math.max(...shown.map(([, y, , height]) => y + height));
+/** Draws the part of a frame that is in a box. */
+export function drawThumbnail(canvas: HTMLCanvasElement, frame: LoadedFrame, [left, top, across, down]: Box): void {
   const context = contextOf(canvas);
-  const scale = Math.min(canvas.width / (right - left), canvas.height / (bottom - top));
+  const scale = Math.min(canvas.width / across, canvas.height / down);
   const [width, height] = [canvas.width / scale, canvas.height / scale];
   context.imageSmoothingQuality = 'high';
   context.clearRect(0, 0, canvas.width, canvas.height);
   // Beyond the frame there is nothing to draw.
-  context.drawImage(pair.first.bitmap, (left + right - width) / 2, (top + bottom - height) / 2, width, height, 0, 0, canvas.width, canvas.height);
-  return true;
+  context.drawImage(frame.bitmap, left + (across - width) / 2, top + (down - height) / 2, width, height, 0, 0, canvas.width, canvas.height);
 }

@@ -1,8 +1,8 @@
-//! The timeline of a clip: thumbnails, the current frame, the two frames of the pair, buttons to step and play.
+//! The timeline of a clip: thumbnails, the current frame, buttons to step and play.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
-import type { Slot, Timeline } from '../state/pair.js';
+import type { Timeline } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { contextOf, element, find } from './markup.js';
 
@@ -17,20 +17,10 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
   const strip = find(root, '#strip', HTMLCanvasElement);
   const track = find(root, '#track', HTMLElement);
   const label = find(root, '#clip-name', HTMLElement);
-  const note = find(root, '#clip-note', HTMLElement);
   const play = find(root, '#play', HTMLButtonElement);
   const speeds = find(root, '#speed', HTMLButtonElement);
-  const pair = find(document, '.clip-rows', HTMLElement);
-  const sliders = (['first', 'second'] as const).map((slot) => {
-    const input = find(pair, `[name=clip-${slot}]`, HTMLInputElement);
-    const readout = find(pair, `#clip-${slot}-at`, HTMLElement);
-    input.addEventListener('input', () => (readout.textContent = placeOf(store.get().timeline, input.valueAsNumber)));
-    input.addEventListener('change', () => void session.frames.choose(slot, input.valueAsNumber));
-    return { slot, input, readout };
-  });
-  for (const button of document.querySelectorAll<HTMLButtonElement>('[data-step]')) {
-    const [slot, by] = (button.dataset.step ?? '').split(' ');
-    button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
+  for (const button of root.querySelectorAll<HTMLButtonElement>('[data-step]')) {
+    button.addEventListener('click', () => void session.frames.step(Number(button.dataset.step)));
   }
   play.addEventListener('click', () => void session.play.toggle());
   speeds.addEventListener('click', () => session.play.cycle());
@@ -47,30 +37,22 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     }
     if (timeline === before.timeline) return;
     root.classList.toggle('empty', timeline === null);
-    pair.hidden = timeline === null;
     if (timeline === null) return;
     const { clip } = timeline;
     if (clip !== before.timeline?.clip) {
       label.replaceChildren(element('span', clip.name), element('span', ', ', 'visually-hidden'), element('small', strings.clipFacts(clip.count, clip.width, clip.height)));
       label.title = label.textContent;
-      note.hidden = clip.exact;
       track.setAttribute('aria-valuemax', String(clip.count - 1));
       void drawStrip(strip, timeline, () => store.get().timeline?.clip === clip);
     }
     const at = currentFrame(timeline);
     track.setAttribute('aria-valuenow', String(at));
     track.setAttribute('aria-valuetext', strings.frameSlider(at, clip.count, clip.times?.[at] ?? null));
-    for (const { slot, input, readout } of sliders) {
-      const index = timeline[slot];
-      root.style.setProperty(`--${slot}`, String((index + 0.5) / clip.count));
-      input.max = String(clip.count - 1);
-      input.value = String(index);
-      readout.textContent = placeOf(timeline, index);
-    }
+    root.style.setProperty('--first', String((at + 0.5) / clip.count));
   });
 }
 
-/** A press or a drag anywhere on the track moves the frame, and so do the keys of a slider. With Shift a press chooses the second frame. */
+/** A press or a drag anywhere on the track moves the frame, and so do the keys of a slider. */
 function mountScrubbing(track: HTMLElement, store: Store, session: Session): void {
   const indexAt = ({ clientX }: PointerEvent): number => {
     const { left, width } = track.getBoundingClientRect();
@@ -79,7 +61,6 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
   };
   track.addEventListener('pointerdown', (event) => {
     if (event.button !== 0) return;
-    if (event.shiftKey) return void session.frames.choose('second', indexAt(event));
     track.setPointerCapture(event.pointerId);
     void session.play.scrub(indexAt(event));
   });
@@ -113,19 +94,6 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
 /** The index of the frame on screen. */
 export function currentFrame(timeline: Timeline | null): number {
   return timeline?.first ?? 0;
-}
-
-/** Steps one frame or both. */
-export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
-  const { timeline } = store.get();
-  if (timeline === null) return;
-  if (which === 'both') void session.frames.step(by);
-  else void session.frames.choose(which, timeline[which] + by);
-}
-
-function placeOf(timeline: Timeline | null, index: number): string {
-  if (timeline === null) return '';
-  return strings.frameAt(index, timeline.clip.times?.[index] ?? null);
 }
 
 async function drawStrip(canvas: HTMLCanvasElement, { clip }: Timeline, current: () => boolean): Promise<void> {

@@ -4,7 +4,7 @@ import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, type Tool, type ToolName, seenIn } from '../state/state.js';
-import { isDrafting, isReady, lockedIn, takesCorrections } from '../state/tracked.js';
+import { isDrafting, isReady, isSeen, lockedIn, takesCorrections } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -21,7 +21,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const redo = find(form, '#redo', HTMLButtonElement);
 
   form.addEventListener('submit', (event) => event.preventDefault());
-  for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, session, radio.value as ToolName));
+  for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
   spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as Tool['spread'] } }));
   exact.addEventListener('change', () => store.set({ tool: { ...store.get().tool, exact: exact.checked } }));
@@ -30,9 +30,9 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
 
   const render = (): void => {
     const { tool, result, live, look, tracked } = store.get();
-    const clip = look.kind === 'objects' ? tracked : null;
-    // Masks of a pair are a view: there is nothing to correct, nor could an object be new.
-    if (clip === null && tool.name === 'box') return chooseTool(store, session, 'look');
+    const clip = isSeen(tracked) ? tracked : null;
+    // Where there is nothing to correct, no object could be new.
+    if (clip === null && tool.name === 'box') return chooseTool(store, 'look');
     const usable = result !== null && live === null;
     for (const radio of radios) {
       radio.checked = radio.value === tool.name;
@@ -44,7 +44,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     spread.parentElement!.hidden = clip === null;
     spread.disabled = exact.checked = tool.exact;
     for (const { name, help } of helps) {
-      help.textContent = strings.toolHelp(name, clip !== null, tool.exact, clip !== null && look.selected === 0, whyNot(store.get(), name));
+      help.textContent = strings.toolHelp(name, tool.exact, clip !== null && look.selected === 0, whyNot(store.get(), name));
       help.classList.toggle('away', tool.name !== name);
     }
     undo.disabled = tracked === null || tracked.steps.undo === 0;
@@ -52,7 +52,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   };
   store.subscribe((now, before) => {
     const same = (['tool', 'result', 'live', 'tracked', 'pair'] as const).every((part) => now[part] === before[part]);
-    if (!same || now.look.kind !== before.look.kind || now.look.selected !== before.look.selected) render();
+    if (!same || now.look.selected !== before.look.selected) render();
   });
   render();
 }
@@ -60,7 +60,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
 /** Why nothing can be drawn with a tool on the frame that is seen; `null` if something can. */
 function whyNot(state: State, tool: ToolName): string | null {
   const { tracked, look } = state;
-  if (look.kind !== 'objects' || !isReady(tracked) || isDrafting(tracked)) return isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady;
+  if (!isReady(tracked) || isDrafting(tracked)) return isDrafting(tracked) ? strings.notices.drafts : strings.notices.notReady;
   const seen = seenIn(state);
   if (seen !== null && !takesCorrections(tracked, seen.index)) return strings.notTracked;
   if (tool === 'box') return null;
@@ -69,15 +69,13 @@ function whyNot(state: State, tool: ToolName): string | null {
 }
 
 /** Selects a tool. For drawing it shows the first frame and the objects of the clip, and selects one if none is. */
-export function chooseTool(store: Store, session: Session, name: ToolName): void {
-  if (name !== 'look') session.shown.choose('objects');
-  const { tool, look, result } = store.get();
-  if (name === 'box' && look.kind !== 'objects') return;
+export function chooseTool(store: Store, name: ToolName): void {
+  const { tool, look, result, tracked } = store.get();
+  if (name === 'box' && !isSeen(tracked)) return;
   store.set({ tool: { ...tool, name } });
   if (name === 'look') return;
-  const { motions } = result?.segmentation ?? { motions: [] };
-  const selected = look.selected ?? (motions[1] ?? motions[0])?.label ?? null;
-  store.look({ view: 'first', blinking: false, stabilised: null, selected });
+  const selected = look.selected ?? (result && (result.masks.objects[0]?.id ?? 0));
+  store.look({ view: 'first', blinking: false, motions: false, selected });
 }
 
 export function changeRadius(store: Store, factor: number): void {

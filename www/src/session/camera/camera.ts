@@ -4,13 +4,11 @@ import type { Store } from '../../state/state.js';
 import type { Objects } from '../clip/objects.js';
 import type { ClipSegmenting } from '../clip/segmenting.js';
 import type { Opening } from '../opening.js';
-import type { PairSegmenting } from '../pair/segmenting.js';
 import { LiveView } from './live.js';
 
 /** The parts that make way for it. */
 interface Parts {
   readonly opening: Opening;
-  readonly pair: PairSegmenting;
   readonly clip: ClipSegmenting;
   readonly objects: Objects;
   /** Opens its last two frames, which are on screen. */
@@ -41,7 +39,6 @@ export class Camera {
       },
       (show) => {
         this.#parts.objects.finishStroke();
-        this.#parts.pair.stop();
         const { timeline } = this.#store.get();
         this.#parts.clip.of(null);
         show();

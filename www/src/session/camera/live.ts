@@ -1,14 +1,15 @@
 //! The camera: its frames are a clip that never ends, segmented at quality `fast` as they come. Objects keep their numbers and colours.
 
-import { type Pixels, type Segmentation, Segmenter } from 'veronese';
+import { type Pixels, Segmenter } from 'veronese';
 import { PageError } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
+import { packed } from '../../result/runs.js';
 import { frameFromBitmap } from '../../frames/frame.js';
-import type { Kind } from '../../result/masks.js';
-import { segmentationFrom } from '../../state/objects.js';
-import type { LoadedFrame } from '../../state/pair.js';
+import type { FrameMasks } from '../../result/masks.js';
+import { masksFrom } from '../../state/objects.js';
+import type { FramePair, LoadedFrame } from '../../state/pair.js';
 import { FRESH, type Result, type State, type Store } from '../../state/state.js';
-import { fail } from '../failures.js';
+import { report } from '../failures.js';
 import { Numbering } from './numbering.js';
 
 /** Longer side of the frames, pixels: small enough for a high rate. */
@@ -23,8 +24,9 @@ const LAST_NUMBER = 200;
 /** Camera frames are fingerprinted by a counter, because none recurs. */
 let seen = 0;
 
-/** One frame of the camera with its masks. */
+/** One frame of the camera with its masks, and the one before. */
 interface View {
+  readonly pair: FramePair;
   readonly result: Result;
   /** Frames per second, a moving average. */
   readonly rate: number;
@@ -36,8 +38,6 @@ export class LiveView {
   /** Incremented by each start and stop, which ends earlier loops. */
   #turn = 0;
   #stream: MediaStream | null = null;
-  /** The kind of masks that was shown before. */
-  #kind: Kind = 'groups';
 
   constructor(store: Store) {
     this.#store = store;
@@ -79,22 +79,19 @@ export class LiveView {
     this.#segmenter.close();
     if (this.#stream !== null) end(this.#stream);
     this.#stream = null;
-    const { live, look } = this.#store.get();
-    if (live !== null) this.#store.set({ live: null, run: { phase: 'idle' }, result: null, look: { ...look, kind: this.#kind } });
+    if (this.#store.get().live !== null) this.#store.set({ live: null, result: null });
   }
 
   async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
     if (!current() || first.done) return;
     const { look } = this.#store.get();
-    this.#kind = look.kind === 'objects' ? 'groups' : look.kind;
-    // As of motions, the numbers of objects are their labels.
-    this.#show(first.value, { timeline: null, tracked: null, forced: null, look: { ...look, ...FRESH, kind: 'motions', view: 'second' } });
+    this.#show(first.value, { timeline: null, tracked: null, look: { ...look, ...FRESH, motions: false, view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {
       if (!current()) return;
       this.stop();
-      fail(this.#store, error);
+      report(this.#store, error);
     }
   }
 
@@ -128,22 +125,23 @@ export class LiveView {
       };
       const wanted = (): boolean => current() && most <= LAST_NUMBER && this.#store.get().settings === settings;
       const { motions, subject, markUnknown } = settings;
-      let before: { readonly frame: LoadedFrame; readonly segmentation: Segmentation } | null = null;
+      let before: { readonly frame: LoadedFrame; readonly masks: FrameMasks } | null = null;
       try {
         for await (const found of this.#segmenter.segmentStream(frames(wanted), { motions, subject, markUnknown, quality: 'fast', lookAhead: 0 })) {
           answered();
           if (!current()) return;
           const frame = taken.shift()!;
-          const segmentation = segmentationFrom(numbering.numbered(found), frame);
+          const { labels, objects } = numbering.numbered(found);
+          const masks = masksFrom({ runs: packed(labels, frame.width, frame.height), objects });
           most = found.objects.reduce((larger, { id }) => Math.max(larger, id), most);
           const waited = performance.now() - last;
           last += waited;
           milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;
           if (before !== null) {
-            const pair = { first: before.frame, second: frame };
-            yield { result: { segmentation: before.segmentation, pair, second: segmentation, waited }, rate: 1000 / milliseconds };
+            const result = { masks: before.masks, frame: before.frame, second: masks };
+            yield { pair: { first: before.frame, second: frame }, result, rate: 1000 / milliseconds };
           }
-          before = { frame, segmentation };
+          before = { frame, masks };
         }
       } finally {
         for (const { bitmap } of taken) bitmap.close();
@@ -151,10 +149,9 @@ export class LiveView {
     }
   }
 
-  #show({ result, rate }: View, others: Partial<State> = {}): void {
+  #show({ pair, result, rate }: View, others: Partial<State> = {}): void {
     const { pair: before } = this.#store.get();
-    const { pair } = result;
-    this.#store.set({ ...others, pair, result, live: { rate }, run: { phase: 'live' } });
+    this.#store.set({ ...others, pair, result, live: { rate } });
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
   }
 }

@@ -3,9 +3,9 @@
 
 import type { ClipAnnotation, ClipClick } from 'veronese';
 import { strings } from '../../common/strings.js';
-import { type Runs, packed, resized, unpacked } from '../../correction/runs.js';
-import { type Path, type StrokeTool, eachPixel } from '../../correction/strokes.js';
-import { UNLABELLED, maskOf } from '../../result/masks.js';
+import { type Runs, packed, resized, unpacked } from '../../result/runs.js';
+import { type Path, type StrokeTool, eachPixel } from '../../result/strokes.js';
+import { UNLABELLED } from '../../result/masks.js';
 import { painted, prompted } from '../../state/said.js';
 import type { Pointing, Store } from '../../state/state.js';
 import { type Box, type Prompt, type Tracked, acceptedIn, lockedIn, objectsOf, takesCorrections } from '../../state/tracked.js';
@@ -110,16 +110,15 @@ export class Drawing {
     return to;
   }
 
-  /** Makes a new object of a mask of the pair on screen; the other frames follow. Returns its number. */
-  take(mask: number): number | null {
+  /** Makes a new object of a motion of the frame on screen, which is inspected; the other frames follow. Returns its number. */
+  take(motion: number): number | null {
     const at = this.#objects.frameToCorrect();
     const number = at === null ? null : this.#objects.newNumber();
-    const { tracked, result, look } = this.#store.get();
-    const masks = tracked?.frames[at?.index ?? -1]?.runs;
-    if (at === null || number === null || result === null || masks === undefined) return null;
-    const { segmentation } = result;
-    const found = unpacked(resized(packed(segmentation.labels, segmentation.width, segmentation.height), masks));
-    this.#paint(at.index, number, found.map((label) => (maskOf(label, segmentation, look.kind) === mask ? 1 : 0)));
+    const { tracked, inspected } = this.#store.get();
+    const [masks, found] = [tracked?.frames[at?.index ?? -1]?.runs, inspected?.segmentation];
+    if (at === null || number === null || !found || inspected?.first !== at.frame || masks === undefined) return null;
+    const labels = unpacked(resized(packed(found.labels, found.width, found.height), masks));
+    this.#paint(at.index, number, labels.map((label) => (label === motion ? 1 : 0)));
     return number;
   }
 

@@ -2,7 +2,7 @@
 
 import type { ClipFrame, Pixels } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
-import { packed } from '../../correction/runs.js';
+import { packed } from '../../result/runs.js';
 import { smaller } from '../../frames/frame.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import type { TrackedFrame } from '../../state/tracked.js';

@@ -4,7 +4,7 @@ import type { ClipAnnotation } from 'veronese';
 import { type AnnotationNote, type AnnotationOptions, readAnnotations } from 'veronese/formats';
 import { PageError, codeOf, sentenceOf } from '../../common/errors.js';
 import { strings, withNotes } from '../../common/strings.js';
-import { packed, resized, unpacked } from '../../correction/runs.js';
+import { packed, resized, unpacked } from '../../result/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { pathOf, selectOpenable } from '../../frames/files.js';
 import type { Choice, State, Store } from '../../state/state.js';
@@ -76,7 +76,7 @@ export async function importMasks(files: readonly File[], store: Store, objects:
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     const unknown = notes.find(({ code }) => code === 'first-frame-assumed');
     if (unknown) return ask(unknown.message, null, ([1, 0] as const).map((firstFrame) => choice(texts.first + firstFrame, { firstFrame })));
-    shown.kind('objects');
+    shown.objects();
     const annotations = annotationsOf(imported, tracked);
     const frames = [...new Set(annotations.map(({ frame }) => frame))];
     const reach = tracked.status.filter(({ hasMasks }) => hasMasks).length;

@@ -14,7 +14,7 @@ import type { ClipSegmenting } from './segmenting.js';
 
 /** The edits that draw: {@link Objects.copyMask}, {@link Objects.split}, {@link Objects.take}, {@link Objects.point}. */
 interface Drawing {
-  take(mask: number): number | null;
+  take(motion: number): number | null;
   copyMask(by: 1 | -1): number | null;
   beginPrompt(pointing: 'new'): ((path: { readonly points: readonly number[] }) => void) | null;
 }
@@ -70,9 +70,9 @@ export class Objects {
     if (this.#store.get().pair === pair) drawing?.beginPrompt('new')?.({ points: pixel });
   }
 
-  /** Makes a new object of a mask of the pair on screen; the other frames follow. Returns its number. */
-  async take(mask: number): Promise<number | null> {
-    return (await this.drawing())?.take(mask) ?? null;
+  /** Makes a new object of a motion of the frame on screen, which is inspected; the other frames follow. Returns its number. */
+  async take(motion: number): Promise<number | null> {
+    return (await this.drawing())?.take(motion) ?? null;
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
