@@ -9,8 +9,6 @@ import { unpacked } from '../src/result/runs.js';
 import type { DecodedFrame } from '../src/frames/frame.js';
 import type { Remembered } from '../src/projects/work.js';
 import { Living } from '../src/session/clip/living.js';
-import { PairSegmenting } from '../src/session/pair/segmenting.js';
-import { PairWorker } from '../src/session/pair/worker.js';
 import { Shown } from '../src/session/shown.js';
 import { about, becoming, painted } from '../src/state/said.js';
 import { Store } from '../src/state/state.js';
@@ -55,7 +53,7 @@ async function opened(journal: ClipJournal, remembered: Remembered = {}): Promis
   };
   const store = new Store();
   store.set({ settings: { ...store.get().settings, quality: 'fast' } });
-  const shown = new Shown(store, new PairSegmenting(store, new PairWorker()));
+  const shown = new Shown(store);
   const nothing = (): void => undefined;
   const keeper = { journal, said: nothing, settled: nothing };
   const living = new Living(clip as Clip, { store, shown, segmenter: new SegmenterPool({ jobs: 2 }), keeper }, remembered, Promise.resolve());
@@ -153,7 +151,7 @@ test('what is said of objects is seen at once, also while a stroke spreads', asy
   const named = living.say((now) => now.describe(1, { name: 'Disc' }), about([1], () => ({ name: 'Disc' })), { cause: 'described' });
   const coloured = living.say((now) => now.describe(1, { name: 'Disc', colour: [9, 0, 0] }, { coalesce: true }), about([1], () => ({ colour: [9, 0, 0] })), { cause: 'described' });
   const merged = living.say((now) => now.merge(1, 3), becoming(new Map([[3, 1]])), { cause: 'corrected', reach: 1 });
-  expect(describedIn(tracked())).toMatchObject({ names: { 'objects-1': 'Disc' }, colours: { 'objects-1': [9, 0, 0] } });
+  expect(describedIn(tracked())).toMatchObject({ names: { 1: 'Disc' }, colours: { 1: [9, 0, 0] } });
   expect(tracked().frames.some((frame) => frame!.runs.labels.includes(3))).toBe(false);
   expect(tracked().run.phase).toBe('working');
   expect(await Promise.all([stroke, named, coloured, merged])).toEqual([true, true, true, true]);
@@ -161,7 +159,7 @@ test('what is said of objects is seen at once, also while a stroke spreads', asy
   expect(tracked().frames.some((frame) => frame!.runs.labels.includes(3))).toBe(false);
   const steps: unknown[] = [];
   for (; tracked().steps.undo > 0; await settled(clip, 'undone')) {
-    steps.push([describedIn(tracked()).names['objects-1'], sizes(tracked())[0]]);
+    steps.push([describedIn(tracked()).names[1], sizes(tracked())[0]]);
     await living.undo();
   }
   expect(steps).toEqual([['Disc', 0], ['Disc', 36], [undefined, 36]]);

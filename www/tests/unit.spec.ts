@@ -1,19 +1,16 @@
 //! Functions of the page that need no browser.
 
 import { expect, test } from '@playwright/test';
-import type { ClipEntry, ClipFrameStatus, Segmentation } from 'veronese';
+import type { ClipEntry, ClipFrameStatus } from 'veronese';
 
-import type { Clip } from '../src/clips/clip.js';
 import { inFileNames } from '../src/common/naming.js';
 import { strings } from '../src/common/strings.js';
 import { differingPixels, packed, unpacked } from '../src/result/runs.js';
 import { eachPixel } from '../src/result/strokes.js';
-import { arrowsOf } from '../src/drawing/arrows.js';
 import { contoursOf } from '../src/drawing/contours.js';
 import { type Colour, PALETTE } from '../src/drawing/palette.js';
 import { WHOLE, inPicture, panned, within, zoomedAt } from '../src/drawing/viewport.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
-import { commandFor, scriptFor } from '../src/export/reproduce.js';
 import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
@@ -21,27 +18,11 @@ import { TimeLeft } from '../src/session/clip/time-left.js';
 import { promptOf, refined } from '../src/session/clip/drawing.js';
 import { Pace } from '../src/session/playing.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
-import { INITIAL, type Result } from '../src/state/state.js';
+import { INITIAL } from '../src/state/state.js';
 import { becoming, painted } from '../src/state/said.js';
 import { type ClipState, type Prompt, type TrackedFrame, livesOf, toReview } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
-
-/** Four motions on 8×4 pixels, two columns each; 1 and 2 are one group. */
-function scene(): Segmentation {
-  const labels = Uint8Array.from({ length: 32 }, (_, p) => Math.floor((p % 8) / 2));
-  const motions = [0, 1, 2, 3].map((label) => ({
-    label,
-    matrix: label === 3 ? MATRIX : ([0, 0, label, 0, 0, 0] as Matrix),
-    pixels: 8,
-    share: 0.25,
-    residual: 1,
-    bbox: [2 * label, 0, 2, 4] as [number, number, number, number],
-    group: [0, 1, 1, 2][label]!,
-  }));
-  const settings = { motions: 'auto', quality: 'best', markUnknown: false, subject: false, software: '' } as const;
-  return { version: 1, width: 8, height: 4, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
-}
 
 test('a stroke covers the pixels under it', () => {
   const under = new Set<number>();
@@ -69,54 +50,21 @@ test('all notations of a motion move pixels the same way', () => {
   expect(b * (x + 0.5) + d * (y + 0.5) + f - 0.5).toBeCloseTo(moved[1]!, 6);
 });
 
-test('arrows point in the direction of the motion', () => {
-  const { arrows, magnified } = arrowsOf({ ...scene(), labels: new Uint8Array(32).fill(3) });
-  expect(arrows.length).toBeGreaterThan(0);
-  for (const { label, from: [x, y], to: [u, v] } of arrows) {
-    expect(label).toBe(3);
-    expect(u - x).toBeCloseTo(magnified * (MATRIX[0] * x + MATRIX[1] * y + MATRIX[2]), 9);
-    expect(v - y).toBeCloseTo(magnified * (MATRIX[3] * x + MATRIX[4] * y + MATRIX[5]), 9);
-  }
-});
-
 test('a link holds the settings, and invalid values are ignored', () => {
   const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true };
-  const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
-  expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&masks=motions');
-  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, automatic: null });
+  const link = linkFor({ ...INITIAL, settings }, 'https://example.org/veronese/?x=1#old');
+  expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true');
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, sample: null, automatic: null });
   const asked = linkFor({ ...INITIAL, automatic: false }, 'https://example.org/');
   expect(asked).toBe('https://example.org/#segment=asked');
   expect(settingsFromHash(new URL(asked).hash).automatic).toBe(false);
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
-  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, automatic: null });
+  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&other=1')).toEqual({ settings: {}, sample: null, automatic: null });
 });
 
 test("a clip's name makes names of files: nothing of it is lost but the extension of a video", () => {
   const names = [strings.fromTo('00000', '00032', 33), strings.fromTo('shot.0001', 'shot.0033', 33), 'My clip.mp4', 'data/JPEGImages/bear', 'v1.5'];
   expect(names.map(inFileNames)).toEqual(['00000_to_00032', 'shot.0001_to_shot.0033', 'My_clip', 'data_JPEGImages_bear', 'v1.5']);
-});
-
-test('command and script contain the settings that are not defaults', () => {
-  type Frame = Result['pair']['first'];
-  const frame = (name: string, origin?: Partial<Frame['origin']>) => ({ name, origin }) as Frame;
-  const result = { pair: { first: frame("it's a.png"), second: frame('b.png') } } as Result;
-  const settings = { ...DEFAULT_SETTINGS, motions: 2 };
-  expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --out masks --overlay`);
-  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2 })');
-  const clip = { name: 'my clip.mp4', exact: true, times: Float64Array.from({ length: 9 }, (_, k) => k / 30) } as unknown as Clip;
-  const inClip = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
-  expect(commandFor(inClip, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
-    `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,3)' -frames:v 1 frame-3.png`,
-    `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,5)' -frames:v 1 frame-5.png`,
-    'veronese pair frame-3.png frame-5.png --grouped --out masks --overlay',
-  ]);
-  // A file, and a frame of a video that is read by time.
-  const seeking = { ...clip, exact: false };
-  const mixed = { pair: { first: frame('b.png'), second: frame('my clip.mp4 #5', { clip: seeking, index: 5 }) } } as Result;
-  expect(commandFor(mixed, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
-    `ffmpeg -i 'my clip.mp4' -vf 'select=between(t\\,-0.817\\,0.183)' -update 1 frame-5.png`,
-    'veronese pair b.png frame-5.png --grouped --out masks --overlay',
-  ]);
 });
 
 /** A frame of 4 pixels a row; an object for each label but 0 and 255. */

@@ -100,7 +100,6 @@ export class Projects {
     await this.#written;
     try {
       const header = opened ?? this.#headers.get(of) ?? (await (await this.#load()).headerOf(of));
-      // Browsers that read a video approximately may count other frames.
       if (header === null || header.frames === count) return header;
       this.#store.say(strings.projects.otherFrames(name, header.frames, count), 'frame-count-mismatch');
     } catch (error) {
@@ -287,7 +286,9 @@ export class Projects {
     }
     const tell = (without: boolean): void => {
       const before = this.#keeping.get(of);
-      if (before?.is === 'kept' || journal.isWritten) this.#tell(of, { is: 'kept', at: Date.now(), without, waits: !journal.isWritten });
+      // The number of steps up to the first masks is known when these are there.
+      const waits = !journal.isWritten || (this.living() === living && living.isSegmenting);
+      if (before?.is === 'kept' || journal.isWritten) this.#tell(of, { is: 'kept', at: Date.now(), without, waits });
     };
     const before = this.#keeping.get(of);
     tell(before?.is === 'kept' && before.without);

@@ -428,10 +428,8 @@ export class Living implements Work {
     if (this.#stale.size > 0 || this.#isAsking || this.#now.steps.waiting > 0) return this.#show();
     this.#isUnderWay = false;
     this.#reached = null;
-    const { frames } = this.#base;
-    const isUndone = this.#cause === 'undone';
-    const changed = this.#moved?.size ?? frames.filter((frame, index) => frame !== tracked.before[index]).length;
-    this.#show({ run: { phase: 'done', cause: this.#cause, changed, kept: this.#kept }, ...(isUndone && { before: frames }) });
+    const changed = this.#moved?.size ?? this.#base.frames.filter((frame, index) => frame !== tracked.before[index]).length;
+    this.#show({ run: { phase: 'done', cause: this.#cause, changed, kept: this.#kept } });
   }
 
   /** Asks for the labels of all frames that have changed, one after another. */
@@ -524,7 +522,10 @@ export class Living implements Work {
   #show(change: Partial<Tracked> = {}): void {
     if (this.#isClosed || this.#parts.store.get().tracked?.clip !== this.clip) return;
     this.#lastShown = performance.now();
-    this.#parts.shown.clip({ ...this.#known, ...change });
+    const known = this.#known;
+    // What is undone is not marked as a change.
+    const isUndone = this.#moved !== null && this.#cause === 'undone';
+    this.#parts.shown.clip({ ...known, ...(isUndone && { before: known.frames }), ...change });
   }
 
   /** What of the state is the clip's own. */
