@@ -4,7 +4,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipDone, clipFrames, done, expect, goTo, hide, holdBack, kept, leaves, openClip, openEmpty, openExport, openSample, openSegmented, projectsInBrowser, reloadEmpty, rename, said, saved, segmentClip, test, upload, withoutStorage, withSamples, withSmallSampleClip } from './support.js';
+import { type Upload, clipDone, clipFrames, done, expect, goTo, hide, holdBack, kept, leaves, openClip, openEmpty, openExport, openSample, opened, openSegmented, projectsInBrowser, reloadEmpty, rename, said, saved, segmentClip, test, upload, withoutStorage, withSamples, withSmallSampleClip } from './support.js';
 
 /** Leaves the page, and comes back without frames. */
 async function visit(page: Page): Promise<void> {
@@ -178,7 +178,7 @@ test('of several the newest comes first, and a sample needs no copy', async ({ p
   await page.getByText('1 more').click();
   await expect(work.nth(1)).toHaveAccessibleName(/^f00 to f03/);
   await work.first().click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+  await opened(page, 'parallax, 2 frames');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Window');
   await expect(page.getByRole('button', { name: 'Parallax', exact: true })).toHaveAttribute('aria-current', 'true');
   // Now the clip is the newest that is not open.

@@ -67,7 +67,7 @@ test.describe('on a phone', () => {
 
 test('a sample that is clicked is in view, on a laptop and on a phone', async ({ page }) => {
   await withSmallSampleClip(page);
-  await open(page, 'groups');
+  await open(page);
   const samples = page.locator('#samples button');
   for (const [width, height] of [[1280, 720], [390, 844]] as const) {
     await page.setViewportSize({ width, height });

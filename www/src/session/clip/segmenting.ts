@@ -23,6 +23,7 @@ export class ClipSegmenting {
   readonly #shown: Shown;
   readonly #projects: Projects;
   readonly #segmenter = new SegmenterPool({ jobs: workersFor(navigator.hardwareConcurrency || 1) });
+  #isWarm = false;
   #living: Living | null = null;
   /** A clip that is about to be shown, and the number of the request for it. */
   #next: Living | null = null;
@@ -43,6 +44,13 @@ export class ClipSegmenting {
 
   get living(): Living | null {
     return this.#living;
+  }
+
+  /** Lets a worker get ready while the first frames are being decoded. */
+  warmUp(): void {
+    if (this.#isWarm) return;
+    this.#isWarm = true;
+    this.#segmenter.warmUp().catch(() => undefined); // what needs the worker reports why there is none
   }
 
   /** Opens a clip that is about to be shown, with the work on it. If it fails, what is on screen stays. */
