@@ -90,8 +90,10 @@ store.set({ settings: { ...store.get().settings, ...linked.settings } });
 if (linked.automatic !== null) store.set({ automatic: linked.automatic });
 window.addEventListener('hashchange', () => {
   const { settings, sample } = settingsFromHash(location.hash);
-  store.set({ settings: { ...store.get().settings, ...settings } });
-  if (sample !== null) void session.open.sample(sample);
+  const set = (): void => store.set({ settings: { ...store.get().settings, ...settings } });
+  set();
+  // Again: what the link says goes before what was left with the sample.
+  if (sample !== null) void session.open.sample(sample).then(set);
 });
 
 const opened = linked.sample ?? SAMPLES[0];

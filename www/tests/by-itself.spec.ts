@@ -1,6 +1,6 @@
 //! A clip of one's own is segmented by itself, and what is drawn with can be seen.
 
-import { clipDone, expect, holdSamples, clipFrames, test, upload } from './support.js';
+import { clipDone, done, expect, holdSamples, clipFrames, test, upload } from './support.js';
 
 test('a clip of one\'s own is segmented when it is opened; a setting keeps it off, also at the next visit', async ({ page }) => {
   await holdSamples(page);
@@ -17,7 +17,7 @@ test('a clip of one\'s own is segmented when it is opened; a setting keeps it of
   await upload(page, (await clipFrames(6)).slice(1));
   await expect(page.locator('#clip-name')).toContainText('5 frames');
   await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  await done(page);
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'idle');
   await automatic.check();
   await page.reload();

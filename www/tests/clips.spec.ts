@@ -25,7 +25,7 @@ test('videos give exactly the requested frames', async ({ page }) => {
   await upload(page, [file]);
   await expect(page.locator('#clip-name')).toHaveText('clip.webm, 20 frames, 192 × 128');
   await done(page);
-  for (const [key, index] of [['', 0], ['.', 1], ['End', 19], ['PageUp', 17], [',', 16], ['Home', 0]] as const) {
+  for (const [key, index] of [['', 0], ['.', 1], ['End', 19], ['PageDown', 17], [',', 16], ['Home', 0]] as const) {
     if (key !== '') await page.locator('#track').press(key);
     await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
     expect(await numberShown(page)).toBe(index);

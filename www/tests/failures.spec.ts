@@ -34,7 +34,7 @@ test('what cannot be read or segmented is rejected, and the page goes on', async
     await upload(page, [a, await square('b.png', 64, 96, 0, 0)]);
     await opened(page, 'a and b');
     await page.getByRole('button', { name: 'Segment the clip' }).click();
-    await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
+    await expect(page.getByRole('alert')).toContainText('the frames differ in size: 96×64 and 64×96 pixels.');
     await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
     await expect(page.locator('#motions-empty')).toBeVisible();
     await expectToWork(page);

@@ -148,7 +148,7 @@ await told.tap();
     await said(page, /it is likely to be the ground\.$/);
     expect(await cut('#clip-status')).toEqual([360, 390, 1280]);
     await upload(page, [...(await greyFrames(1, wave)), ...(await clipFrames(1, 64, 48))]);
-    await opened(page, 'g0 and f00');
+    await opened(page, 'f00 and g0');
     await cut('#status');
     for (const [width, seen] of heights) expect([...seen], String(width)).toHaveLength(1);
   });

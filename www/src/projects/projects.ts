@@ -286,9 +286,7 @@ export class Projects {
     }
     const tell = (without: boolean): void => {
       const before = this.#keeping.get(of);
-      // The number of steps up to the first masks is known when these are there.
-      const waits = !journal.isWritten || (this.living() === living && living.isSegmenting);
-      if (before?.is === 'kept' || journal.isWritten) this.#tell(of, { is: 'kept', at: Date.now(), without, waits });
+      if (before?.is === 'kept' || journal.isWritten) this.#tell(of, { is: 'kept', at: Date.now(), without, waits: !journal.isWritten });
     };
     const before = this.#keeping.get(of);
     tell(before?.is === 'kept' && before.without);

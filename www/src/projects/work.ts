@@ -10,7 +10,6 @@ export interface Work {
   readonly masks: KnownMasks;
   /** Number of steps up to the first masks. */
   readonly found: number;
-  readonly isSegmenting: boolean;
   /** The clip as bytes. */
   save(): Promise<Uint8Array>;
 }

@@ -7,7 +7,7 @@ import { PageError, codeOf } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
 import type { Effect } from '../../state/said.js';
 import type { Store } from '../../state/state.js';
-import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Prompt, type Range, type Tracked, type TrackedFrame, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
+import { type Annotated, type ClipRun, type ClipState, type DoneCause, type Prompt, type Range, type Tracked, type TrackedFrame, isAnnotated, isObject, isTracked, lengthOf, unchanged, untracked } from '../../state/tracked.js';
 import type { Keeper, KnownMasks, Remembered, Work } from '../../projects/work.js';
 import { report } from '../failures.js';
 import type { Shown } from '../shown.js';
@@ -303,6 +303,8 @@ export class Living implements Work {
     const frames = clip.frames.map(({ revision }, index) => (revision > 0 && known?.revisions[index] === revision ? (known.frames[index] ?? null) : null));
     this.#base = { ...this.#base, frames, status: clip.frames, objects: clip.objects };
     clip.frames.forEach(({ hasMasks }, index) => hasMasks && frames[index] === null && this.#stale.add(index));
+    // The page may have been left before the number was written: without annotations, all steps are up to the first masks.
+    if (this.#found === 0 && !isAnnotated({ status: clip.frames, objects: clip.objects })) this.#found = clip.steps.undo;
     // A frame that cannot be read keeps nothing else from being opened.
     const first = this.#stale.has(at) ? await clip.labels(at).catch(() => null) : null;
     if (first !== null && this.#stale.delete(at)) this.#take(at, masksOf(first));
