@@ -61,7 +61,7 @@ mountLanes(find(document, '#timeline', HTMLElement), store, session);
 mountDrop(document.body, session);
 mountFolders(find(document, '#folders', HTMLDialogElement), store);
 mountObjects(document, store, session);
-mountClasses(document, store, session);
+mountClasses(document, store);
 mountSeveral(document, store, session);
 mountOptions(find(document, '#settings', HTMLFormElement), store);
 mountStatus(find(document, '#run', HTMLElement), store, session);

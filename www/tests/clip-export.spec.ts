@@ -153,16 +153,16 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await enter(names.nth(2), 'the cube');
   await classify('1', 'ball');
   await classify('2', 'crate');
-  const own = page.locator('#objects .class');
+  const own = (object: number) => page.locator(`#objects [data-mask="${object}"] .class`);
   await expect(names.nth(1)).toHaveValue('ball 1');
   await expect(names.nth(2)).toHaveValue('the cube');
-  await expect(own.nth(2)).toHaveValue('crate');
+  await expect(own(2)).toHaveValue('crate');
   await expect(page.locator('#class-names option')).toHaveText(['person', 'box', 'ball', 'crate']);
 
   // Classes and names are steps of undo.
   const undo = page.locator('#undo');
   await undo.click();
-  await expect(own.nth(2)).toHaveValue('');
+  await expect(own(2)).toHaveValue('');
   await undo.click();
   await expect(names.nth(1)).toHaveValue('Object 1');
   await undo.click();
@@ -173,7 +173,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   await expect(undo).toBeDisabled();
   for (let k = 0; k < 4; k++) await page.locator('#redo').click();
   await expect(names.nth(1)).toHaveValue('ball 1');
-  await expect(own.nth(2)).toHaveValue('crate');
+  await expect(own(2)).toHaveValue('crate');
 
   const numbered = ['person', 'box', 'ball', 'crate'].map((name, k) => ({ id: k + 1, name }));
   const coco = await savedClip(page, 'COCO, RLE');
@@ -190,7 +190,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
 
   // The classes of a file are those of its objects.
   await page.keyboard.press('1');
-  await enter(own.nth(1), '');
+  await enter(own(1), '');
   await expect(names.nth(1)).toHaveValue('Object 1');
   await give(page, 'drop', [file('coco.json', coco.bytes.toString())]);
   await clipDone(page);

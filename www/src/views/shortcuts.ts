@@ -6,7 +6,7 @@ import { type Store, type ToolName, selectedIn } from '../state/state.js';
 import { livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
 import { isReached, takesArrows, takesSpace } from './focused.js';
-import { renameSelected } from './mask-row.js';
+import { renameSelected } from './renaming.js';
 import { toggleMotions } from './inspect.js';
 import { setEdge } from './range.js';
 import { FAR } from './timeline.js';
