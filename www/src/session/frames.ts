@@ -96,6 +96,7 @@ export class Frames {
     as?: number | 'step',
   ): Promise<void> {
     const { opening, camera, clip, objects, projects } = this.#parts;
+    clip.warmUp();
     return opening.open(
       async (signal) => {
         const frames = await load(signal);

@@ -45,6 +45,11 @@ export class ClipSegmenting {
     return this.#living;
   }
 
+  /** Starts a worker, which warms up until it has a clip. Called while the first frames are being read. */
+  warmUp(): void {
+    if (this.#living === null) this.#segmenter.warmUp().catch(() => undefined); // the clip that needs the worker reports why there is none
+  }
+
   /** Opens a clip that is about to be shown, with the work on it. If it fails, what is on screen stays. */
   async prepare(clip: Clip): Promise<void> {
     this.#forgetNext();
