@@ -1,15 +1,15 @@
-//! Clips: videos with a number in every frame, read back exactly; folders; the fallback without WebCodecs.
+//! Clips: videos with a number in every frame, read back exactly; how fast they are played; those that cannot be read.
 
 import { type Page } from '@playwright/test';
 
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
 import { BIT, BITS, WIDTH, video } from './video.js';
-import { type Upload, done, expect, holdBack, open, openEmpty, openSample, pixelsOf, clipFrames, test, upload, withSamples } from './support.js';
+import { type Upload, clipFrames, done, expect, goTo, holdBack, openClip, openEmpty, opened, pixelsOf, test, upload } from './support.js';
 
 /** The number in the frame on screen. */
-async function numberShown(page: Page): Promise<number> {
-  const { data, width } = await pixelsOf(page, '#frame');
+async function numberShown(page: Page, canvas = '#frame'): Promise<number> {
+  const { data, width } = await pixelsOf(page, canvas);
   expect(width).toBe(WIDTH);
   const bits = Array.from({ length: BITS }, (_, b) => {
     const grey = data[4 * ((8 + BIT / 2) * width + 8 + b * BIT + BIT / 2)]!;
@@ -19,45 +19,27 @@ async function numberShown(page: Page): Promise<number> {
   return bits.reduce((sum, bit) => sum + bit, 0);
 }
 
-/** Shows each frame of the pair and reads its number. */
-async function numbers(page: Page): Promise<[number, number]> {
-  await page.locator('#look [name=frame][value=first]').check();
-  const first = await numberShown(page);
-  await page.locator('#look [name=frame][value=second]').check();
-  return [first, await numberShown(page)];
-}
-
-async function slide(page: Page, slot: 'first' | 'second', index: number): Promise<void> {
-  await page.locator(`[name=clip-${slot}]`).fill(String(index));
-  await page.locator(`[name=clip-${slot}]`).dispatchEvent('change');
-  await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(`#${index},`);
-  await done(page);
-}
-
 test('videos give exactly the requested frames', async ({ page }) => {
   await openEmpty(page);
-  const file = await video(page, 20, 'webm', 'vp8');
-  await upload(page, [file]);
-  await expect(page.locator('#clip-name')).toHaveText('clip.webm, 20 frames, 192 × 128');
-  await done(page);
-  await expect(page.locator('#clip-note')).toBeHidden();
-  expect(await numbers(page)).toEqual([0, 1]);
-  for (const [first, second] of [[7, 8], [19, 5], [6, 18]] as const) {
-    await slide(page, 'first', first);
-    await slide(page, 'second', second);
-    expect(await numbers(page)).toEqual([first, second]);
+  await upload(page, [await video(page, 20, 'webm', 'vp8')]);
+  await opened(page, 'clip.webm, 20 frames, 192 × 128');
+  expect(await numberShown(page)).toBe(0);
+  for (const index of [7, 19, 5, 18]) {
+    await goTo(page, index);
+    expect(await numberShown(page)).toBe(index);
   }
-
-  await page.getByRole('button', { name: 'First frame: step forward' }).click();
-  await done(page);
-  expect(await numbers(page)).toEqual([7, 18]);
-  await page.keyboard.press('.');
-  await expect(page.locator('#clip-second-at')).toHaveText('#19, 0.634 s');
-  await done(page);
-  expect(await numbers(page)).toEqual([8, 19]);
-  // The clip ends here: both frames stay.
-  await page.keyboard.press('.');
-  expect(await numbers(page)).toEqual([8, 19]);
+  // At its end the clip stays where it is, and the frame beside is the one before.
+  await page.keyboard.press('s');
+  for (const [at, beside] of [[18, 19], [19, 18], [19, 18]] as const) {
+    await expect(page.locator('#caption')).toHaveText(`Frame ${at} | Frame ${beside}`);
+    expect([await numberShown(page), await numberShown(page, '#other')]).toEqual([at, beside]);
+    await page.keyboard.press('.');
+  }
+  await expect(page.getByRole('slider', { name: 'Current frame' })).toHaveAttribute('aria-valuetext', 'Frame 19 of 0–19, 0.63 s');
+  await page.keyboard.press('s');
+  await page.getByRole('button', { name: 'Step back' }).click();
+  await expect(page.locator('#caption')).toHaveText('Frame 18');
+  expect(await numberShown(page)).toBe(18);
 
   // The strip shows thumbnails.
   const strip = await pixelsOf(page, '#strip');
@@ -67,24 +49,13 @@ test('videos give exactly the requested frames', async ({ page }) => {
   // An MP4 video, in a codec that every build of Chromium can encode.
   const other = await video(page, 12, 'mp4', 'vp9');
   await upload(page, [{ ...other, name: 'clip.mov', mimeType: 'video/quicktime' }]);
-  await expect(page.locator('#clip-name')).toHaveText('clip.mov, 12 frames, 192 × 128');
-  await done(page);
-  await slide(page, 'first', 7);
-  await slide(page, 'second', 11);
-  expect(await numbers(page)).toEqual([7, 11]);
-
-  // Another one takes its place.
-  await withSamples(page);
-  await openSample(page, 'Parallax');
-  await expect(page.locator('#clip-name')).toHaveText('parallax, 2 frames, 400 × 300');
-  await done(page);
+  await opened(page, 'clip.mov, 12 frames, 192 × 128');
+  await goTo(page, 7);
+  expect(await numberShown(page)).toBe(7);
 });
 
 test('keys and a button change how fast a clip is played, which opens nothing', async ({ page }) => {
-  await openEmpty(page);
-  await upload(page, await clipFrames(6));
-  await expect(page.locator('#clip-name')).toContainText('6 frames');
-  await done(page);
+  await openClip(page, await clipFrames(6, 96, 64));
   const speed = page.getByRole('button', { name: 'Speed' });
   await expect(speed).toHaveText('1×');
   for (let k = 0; k < 3; k++) await page.keyboard.press('j'); // there is none below
@@ -98,32 +69,18 @@ test('keys and a button change how fast a clip is played, which opens nothing', 
     const status = document.querySelector('#status')!;
     new MutationObserver(() => {
       if (document.querySelector('#play')?.getAttribute('aria-label') === 'Pause') texts.push(status.textContent);
-    }).observe(status, { childList: true });
+    }).observe(status, { childList: true, characterData: true, subtree: true });
     return texts;
   });
   const release = await holdBack(page, 'f03.png');
   await page.getByRole('button', { name: 'Play', exact: true }).click();
-  await expect(page.locator('#clip-first-at')).toHaveText('#2');
+  await expect(page.getByRole('slider', { name: 'Current frame' })).toHaveAttribute('aria-valuenow', '2');
   // Longer than a step may take until it is said to be under way.
   await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 200)));
   await release();
-  await expect(page.locator('#clip-first-at')).toHaveText('#4'); // with the last frame
+  await expect(page.locator('#caption')).toHaveText('Frame 5');
   await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
   expect(await said.jsonValue()).not.toContain('Opening…');
-});
-
-test('without WebCodecs frames are marked approximate, and the error for an unsupported codec names it', { tag: '@soak' }, async ({ page }) => {
-  await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
-  await openEmpty(page);
-  await upload(page, [await video(page, 30, 'webm', 'vp8')]);
-  await done(page);
-  await expect(page.locator('#clip-note')).toBeVisible();
-  await expect(page.locator('#clip-note')).toHaveText(/^Approximate frames/);
-  await slide(page, 'first', 20);
-  // Until the video has sought the frame, the last one is there.
-  await expect.poll(async () => Math.abs((await numbers(page))[0] - 20)).toBeLessThanOrEqual(1);
-  await isHevcNamed(page);
-  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('clip.webm #20,');
 });
 
 /** An MP4 that declares HEVC, as phones record it, without anything to decode. */
@@ -141,22 +98,19 @@ async function hevc(name: string): Promise<Upload> {
   return { name, mimeType: 'video/mp4', buffer: Buffer.from(target.buffer!) };
 }
 
-/** Opening it is refused with a sentence about its codec. */
-async function isHevcNamed(page: Page): Promise<void> {
+test('a broken video and one that the browser cannot decode are rejected, and the clip stays', async ({ page }) => {
+  await openClip(page, await clipFrames(2, 96, 64));
+  await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
   await upload(page, [await hevc("my 'clip'.mov")]);
   await expect(page.locator('#notice-code')).toHaveText('unsupported-codec');
   const notice = page.getByRole('alert');
   await expect(notice).toContainText("“my 'clip'.mov” is HEVC (H.265), which this browser cannot decode.");
   await expect(notice).toContainText("ffmpeg -i 'my '\\''clip'\\''.mov' -c:v libx264 -pix_fmt yuv420p 'my '\\''clip'\\''-h264.mp4'");
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
-}
-
-test('a broken video and one of an unsupported codec are rejected, and the pair stays', async ({ page }) => {
-  await open(page);
-  await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
-  await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
-  await expect(page.locator('#motions > li').first()).toBeVisible();
-  await isHevcNamed(page);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+  await page.evaluate(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
+  await upload(page, [await video(page, 4, 'webm', 'vp8')]);
+  await expect(notice).toContainText('“clip.webm” is VP8, which this browser cannot decode.');
+  await expect(page.locator('#clip-name')).toHaveText('f00 and f01, 2 frames, 96 × 64');
+  await expect(page.locator('#caption')).toHaveText('Frame 0');
+  await done(page);
 });
