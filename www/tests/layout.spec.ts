@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, clipFrames, done, expect, open, openSegmented, test, upload, withSmallSampleClip } from './support.js';
+import { type Upload, clipFrames, done, expect, openSegmented, test, upload, withSmallSampleClip } from './support.js';
 
 async function openSegmentedClip(page: Page, named: (k: number) => string = (k) => `f${k}.png`): Promise<Upload[]> {
   const files = (await clipFrames(4)).map((frame, k) => ({ ...frame, name: named(k) }));
@@ -67,7 +67,7 @@ test.describe('on a phone', () => {
 
 test('a sample that is clicked is in view, on a laptop and on a phone', async ({ page }) => {
   await withSmallSampleClip(page);
-  await open(page);
+  await page.goto('./#segment=asked');
   const samples = page.locator('#samples button');
   for (const [width, height] of [[1280, 720], [390, 844]] as const) {
     await page.setViewportSize({ width, height });

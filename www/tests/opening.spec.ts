@@ -1,22 +1,21 @@
-//! The open pair stays until its replacement is ready, and a failure to open something changes nothing.
+//! What is open stays until its replacement is ready, and a failure to open something changes nothing.
 
 import { type Page } from '@playwright/test';
 
-import { video } from './video.js';
-import { type Upload, clipDone, clipFrames, done, expect, held, holdSamples, openEmpty, openSample, opened, said, square, test, upload, withSamples } from './support.js';
+import { type Upload, clipDone, clipFrames, done, expect, held, holdSamples, openClip, openEmpty, opened, openSample, said, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
-async function openClip(page: Page, count: number): Promise<void> {
-  await upload(page, [await video(page, count, 'webm', 'vp8')]);
-  await expect(page.locator('#clip-name')).toHaveText(`clip.webm, ${count} frames, 192 × 128`);
-  await done(page);
+/** The clip can still be stepped through. */
+async function expectToStep(page: Page, to: number): Promise<void> {
+  await page.getByRole('button', { name: 'Step forward' }).click();
+  await expectAt(page, to);
 }
 
-/** The clip can still be stepped through. */
-async function expectToStep(page: Page, first: number): Promise<void> {
-  await page.getByRole('button', { name: 'Step forward' }).click();
-  await expect(page.locator('#caption')).toHaveText(`Frame ${first}`);
+/** This frame is on screen, and the timeline is there. */
+async function expectAt(page: Page, index: number): Promise<void> {
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await expect(page.getByRole('slider', { name: 'Current frame' })).toHaveAttribute('aria-valuenow', String(index));
   await done(page);
 }
 
@@ -48,7 +47,7 @@ test('the worker starts and warms up while the first frames are on their way; a 
   await expect(page.locator('#undo')).toBeEnabled();
 });
 
-test('a broken file does not switch the camera off, and the camera replaces a clip once it is on', async ({ page, context }) => {
+test('a broken file does not switch the camera off, a readable clip does, and the camera replaces it once it is on', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
   await openEmpty(page);
   await page.getByRole('button', { name: 'Camera' }).click();
@@ -57,60 +56,43 @@ test('a broken file does not switch the camera off, and the camera replaces a cl
   await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image');
   await expect(page.locator('#status')).toHaveText(/^Live: /);
   await expect(page.getByRole('button', { name: 'Stop camera' })).toBeVisible();
-  // A readable one does.
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)]);
-  await opened(page, 'a and b, 2 frames, 96 × 64');
+  await upload(page, await clipFrames(2, 96, 64));
+  await opened(page, 'f00 and f01, 2 frames, 96 × 64');
   await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
+  await expectAt(page, 0);
 
-  // The camera replaces a clip once it is on.
-  await upload(page, await clipFrames(3));
-  await expect(page.locator('#clip-name')).toContainText('3 frames');
-  await done(page);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /);
   await expect(page.locator('#timeline')).toBeHidden();
   await page.getByRole('button', { name: 'Stop camera' }).click();
 });
 
-test('a step can be cancelled; a sample that cannot be read leaves the clip open, one image does not', async ({ page, context }) => {
-  await openEmpty(page);
-  await openClip(page, 5);
+test('a step can be cancelled; a sample or a frame that cannot be read leaves the clip open, one image does not', async ({ page, context }) => {
+  await openClip(page, await clipFrames(4, 96, 64));
   // In one task, so that no frame can be loaded between the two keys.
   await page.evaluate(() => {
     for (const key of ['.', 'Escape']) document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
   });
-  const track = page.getByRole('slider', { name: 'Current frame' });
-  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 0 of 0–4, 0.00 s');
-  await done(page);
+  await expectAt(page, 0);
   await expectToStep(page, 1);
-  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 1 of 0–4, 0.03 s');
-  await page.getByRole('button', { name: 'Step back' }).click();
-  await expect(page.locator('#caption')).toHaveText('Frame 0');
 
-  // An unreadable sample leaves the clip open.
-  await withSamples(page);
   await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
   await openSample(page, 'Parallax');
   await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
-  await expect(page.locator('#timeline')).toBeVisible();
-  await expectToStep(page, 1);
+  await expectToStep(page, 2);
 
-  // One image instead of a clip hides the timeline.
-  await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
+  await upload(page, [await square('alone.png', 80, 60, 0, 0)]);
   await expect(page.locator('#status')).toHaveText('Now add the second frame.');
   await expect(page.locator('#timeline')).toBeHidden();
   await page.keyboard.press('.'); // there is no clip to step through
   await expect(page.locator('#caption')).toHaveText('First frame');
+  await expect(page.locator('#frame')).toHaveAttribute('width', '80');
 
-  await test.step('an unreadable frame leaves the timeline where it was', async () => {
-    await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
-    await expect(page.locator('#clip-name')).toHaveText('f0 to f2, 3 frames, 96 × 64');
-    await done(page);
-    await page.keyboard.press('.');
-    await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');
-    await expect(page.getByRole('slider', { name: 'Current frame' })).toHaveAttribute('aria-valuenow', '0');
-    await expect(page.locator('#caption')).toHaveText('Frame 0');
-  });
+  await upload(page, [...(await clipFrames(2, 96, 64)), { ...BROKEN, name: 'f02.png' }]);
+  await opened(page, 'f00 to f02, 3 frames, 96 × 64');
+  await page.getByRole('button', { name: 'Step forward' }).click();
+  await expect(page.getByRole('alert')).toContainText('“f02.png” is not an image');
+  await expectAt(page, 0);
 });
 
 test('frames that are chosen before the page is ready are opened, not the sample', async ({ page, context }) => {
@@ -120,21 +102,16 @@ test('frames that are chosen before the page is ready are opened, not the sample
     await waiting;
     await route.continue();
   });
-  await page.goto('./', { waitUntil: 'commit' });
-  await upload(page, await clipFrames(4));
+  await page.goto('./#segment=asked', { waitUntil: 'commit' });
+  await upload(page, await clipFrames(3, 96, 64));
   release();
-  await expect(page.locator('#clip-name')).toHaveText('f00 to f03, 4 frames, 100 × 70');
-  await done(page);
+  await opened(page, 'f00 to f02, 3 frames, 96 × 64');
   await expect(page.locator('#samples [aria-current=true]')).toHaveCount(0);
 });
 
-test('what is opened last wins: steps and what was chosen before it do not give it up', async ({ page, context }) => {
-  await openEmpty(page);
+test('what is opened last wins: steps and what was chosen before it do not give it up; it can be cancelled', async ({ page, context }) => {
   const release = await held(page, 'slow.png');
-  await page.reload();
-  await upload(page, await clipFrames(4));
-  await expect(page.locator('#clip-name')).toContainText('4 frames');
-  await done(page);
+  await openClip(page, await clipFrames(3, 96, 64));
 
   await test.step('files about which the page was still in doubt', async () => {
     let go = (): void => undefined;
@@ -144,28 +121,39 @@ test('what is opened last wins: steps and what was chosen before it do not give 
       await route.continue();
     });
     const asked = page.waitForRequest('**/assets/importing-*.js');
-    await upload(page, [await square('early-a.png', 96, 64, 0, 0), await square('early-b.png', 96, 64, 2, 0)]);
+    await upload(page, [await square('early-a.png', 80, 60, 0, 0), await square('early-b.png', 80, 60, 2, 0)]);
     await asked;
-    await upload(page, [await video(page, 6, 'webm', 'vp8')]);
-    await expect(page.locator('#clip-name')).toContainText('clip.webm, 6 frames');
-    await done(page);
+    // Files of this name are no masks.
+    await upload(page, (await clipFrames(3, 96, 64)).map((frame, k) => ({ ...frame, name: `late${k}.webp` })));
+    await opened(page, 'late0 to late2');
     const came = page.waitForResponse('**/assets/importing-*.js');
     go();
     await came;
     await expectToStep(page, 1);
-    await expect(page.locator('#clip-name')).toContainText('clip.webm, 6 frames');
+    await expect(page.locator('#clip-name')).toContainText('late0 to late2');
+  });
+
+  const files = [await square('fast.png', 80, 60, 0, 0), await square('slow.png', 80, 60, 2, 0)];
+  await test.step('a press on Cancel', async () => {
+    await upload(page, files);
+    await expect(page.locator('#status')).toHaveText('Opening…');
+    await expect(page.getByRole('progressbar', { name: 'Progress of opening' })).toBeVisible();
+    await page.locator('#cancel').click();
+    await expect(page.locator('#status')).toHaveText('This frame has no masks yet.');
+    await expect(page.locator('#cancel')).toBeHidden();
+    await expectToStep(page, 2);
   });
 
   await test.step('a step through the clip, and one that leads nowhere', async () => {
-    await upload(page, [await square('fast.png', 96, 64, 0, 0), await square('slow.png', 96, 64, 2, 0)]);
+    await upload(page, files);
     await expect(page.locator('#status')).toHaveText('Opening…');
-    await page.keyboard.press('.');
-    await expect(page.locator('#track')).toHaveAttribute('aria-valuenow', '2');
+    await page.keyboard.press(',');
+    await expect(page.locator('#caption')).toHaveText('Frame 1');
     await page.getByRole('slider', { name: 'Current frame' }).press('Home');
-    await expect(page.locator('#track')).toHaveAttribute('aria-valuenow', '0');
+    await expect(page.locator('#caption')).toHaveText('Frame 0');
     await page.keyboard.press(',');
     await expect(page.locator('#status')).toHaveText('Opening…');
     await release();
-    await opened(page, 'fast and slow, 2 frames, 96 × 64');
+    await opened(page, 'fast and slow, 2 frames, 80 × 60');
   });
 });

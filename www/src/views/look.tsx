@@ -42,13 +42,8 @@ function Look({ store }: { store: Store }): VNode {
       <label class="check">
         <input type="checkbox" name="outlines" checked={outlines} onChange={({ currentTarget }) => store.look({ outlines: currentTarget.checked })} /> Outlines
       </label>
-      <label
-        id="onion-skin"
-        class="check"
-        title="Outlines of the objects in the frame before, dashed, and in the frame after, dotted (U)"
-        hidden={!isClip}
-      >
-        <input type="checkbox" name="onion" checked={onion} onChange={({ currentTarget }) => store.look({ onion: currentTarget.checked })} /> Onion skin
+      <label class="check" title="Outlines of the objects in the frame before, dashed, and in the frame after, dotted (U)">
+        <input type="checkbox" name="onion" checked={onion} disabled={!isClip} onChange={({ currentTarget }) => store.look({ onion: currentTarget.checked })} /> Onion skin
       </label>
     </div>
   );
