@@ -36,6 +36,7 @@ import { mountStatus } from './views/status.js';
 import { mountTimeline } from './views/timeline.js';
 import { mountTitle } from './views/title.js';
 import { mountToast } from './views/toast.js';
+import { mountToolHelp } from './views/tool-help.js';
 import { mountTools } from './views/tools.js';
 import { mountZoom } from './views/zoom.js';
 
@@ -52,11 +53,12 @@ mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, new Lat
 mountLook(find(document, '#look', HTMLFormElement), store, session);
 mountBlink(store);
 mountTools(find(document, '#tools', HTMLFormElement), store, session);
+mountToolHelp(find(stage, '#tool-help', HTMLElement), store);
 mountSamples(find(document, '#samples', HTMLElement), store, session);
 mountTimeline(find(document, '#timeline', HTMLElement), store, session);
 mountRange(find(document, '#timeline', HTMLElement), store, session);
 mountClipRun(find(document, '#clip-run', HTMLElement), store, session);
-mountReview(find(document, '#timeline', HTMLElement), store, session);
+mountReview(find(document, '#timeline', HTMLElement), store);
 mountLanes(find(document, '#timeline', HTMLElement), store, session);
 mountDrop(document.body, session);
 mountFolders(find(document, '#folders', HTMLDialogElement), store);

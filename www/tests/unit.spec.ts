@@ -15,12 +15,12 @@ import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
 import { TimeLeft } from '../src/session/clip/time-left.js';
-import { promptOf, refined } from '../src/session/clip/drawing.js';
+import { refined } from '../src/session/clip/drawing.js';
 import { Pace } from '../src/session/playing.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL } from '../src/state/state.js';
 import { becoming, painted } from '../src/state/said.js';
-import { type ClipState, type Prompt, type TrackedFrame, livesOf, toReview } from '../src/state/tracked.js';
+import { type ClipState, type Prompt, type TrackedFrame, livesOf, promptOf, toReview } from '../src/state/tracked.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 

@@ -212,12 +212,17 @@ export const strings = {
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
   newObject: 'New object',
+  followHelp: 'Frames that follow a correction',
+  pointingHelp: {
+    new: 'Drag a box around something, or press on it: it becomes a new object. Shift adds to the selected one, Alt removes.',
+    add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
+    remove: 'Press on what does not belong to the selected object.',
+  },
   /** `why`: why nothing can be drawn. */
-  toolHelp: (tool: 'look' | keyof typeof TOOLS, isExact: boolean, isBackground: boolean, why: string | null): string => {
-    if (tool !== 'look' && why !== null) return why;
+  toolHelp: (tool: keyof typeof TOOLS, isExact: boolean, isBackground: boolean, why: string | null): string => {
+    if (why !== null) return why;
     if (isBackground && tool === 'eraser') return 'Background is selected, and cannot be erased: select an object first.';
-    if (isBackground && (tool === 'brush' || tool === 'polygon')) return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
-    if (tool === 'look') return 'Press on an object to select it.';
+    if (isBackground && tool !== 'box') return `Background is selected: what you ${tool === 'brush' ? 'paint' : 'outline'} is taken away from objects.`;
     return `${TOOLS[tool]} ${isExact ? 'Nothing else changes.' : 'The other frames follow.'}`;
   },
 

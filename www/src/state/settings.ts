@@ -1,4 +1,4 @@
-//! The settings: their values, and those that they begin with. The form is in `index.html`.
+//! The settings: their values, and those that they begin with.
 
 import type { SegmentOptions } from 'veronese';
 
@@ -14,12 +14,15 @@ export const DEFAULT_SETTINGS: Settings = { motions: 'auto', quality: 'best', su
 /** The paper's limit on the number of motions. */
 const MOST_MOTIONS = 10;
 
+/** Pixels. */
+export const LONGEST_SIDES = [640, 1024, 2048, 4096] as const;
+
 const CHOICES: { readonly [K in keyof Settings]: readonly Settings[K][] } = {
   motions: ['auto', ...Array.from({ length: MOST_MOTIONS }, (_, k) => k + 1)],
   quality: ['fast', 'best'],
   subject: [false, true],
   markUnknown: [false, true],
-  longestSide: [640, 1024, 2048, 4096],
+  longestSide: LONGEST_SIDES,
 };
 
 /** The setting of this name that is written so; `undefined` if there is none. */

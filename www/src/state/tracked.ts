@@ -158,6 +158,11 @@ export function isAnnotated({ status, objects }: Pick<Tracked, 'status' | 'objec
   return status.some(({ annotated, accepted }) => annotated || accepted) || objects.some(({ number, name, class: named, colour, locked, became }) => number !== became || locked || colour !== undefined || name !== '' || named !== '');
 }
 
+/** The prompt of an object in a frame; `null` if there is none. */
+export function promptOf({ annotated }: Pick<Tracked, 'annotated'>, frame: number | null, id: number | null): Prompt | null {
+  return annotated.get(frame ?? -1)?.prompts.find(({ object }) => object === id) ?? null;
+}
+
 /** One object through a clip. */
 export interface Life {
   readonly id: number;
@@ -249,9 +254,11 @@ export function isTracked(tracked: Tracked | null): tracked is Tracked {
   return tracked !== null && tracked.frames.some((frame) => frame !== null);
 }
 
+const NONE: Masks = [];
+
 /** The masks that are on screen: those of the clip, or until the first ones are complete also drafts. */
 export function shownFrames(tracked: Tracked | null): Masks {
-  if (tracked === null) return [];
+  if (tracked === null) return NONE;
   const { frames, previews, run, before } = tracked;
   const isFirst = before.every((frame) => frame === null);
   return run.phase === 'working' && run.stage !== 'corrections' && isFirst ? previews : frames;

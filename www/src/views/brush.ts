@@ -50,7 +50,7 @@ export class Brush {
     session.objects.drawn = () => this.drawn();
     this.#fit(store.get());
     this.#dress(store.get());
-    mountPointing(document, this.#prompt, store);
+    mountPointing(this.#prompt, store);
     mountCursor(find(stage, '.layers', HTMLElement), store);
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {

@@ -9,14 +9,6 @@ export function find<E extends Element>(root: ParentNode, selector: string, kind
   return element;
 }
 
-/** A new element with text. */
-export function element<T extends keyof HTMLElementTagNameMap>(tag: T, text = '', className = ''): HTMLElementTagNameMap[T] {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  if (className !== '') made.className = className;
-  return made;
-}
-
 const SVG = 'http://www.w3.org/2000/svg';
 
 /** A new SVG element with attributes. */

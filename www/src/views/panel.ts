@@ -4,15 +4,15 @@ import { clipFormats } from '../export/clip-formats.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { mountClipExport } from './clip-export.js';
-import { mountClipPreview } from './clip-preview.js';
 import { mountCopies } from './copies.js';
+import { refreshListed } from './listed.js';
 import { find } from './markup.js';
 import { mountProjects } from './projects.js';
 
 export async function mountPanel(panel: HTMLElement, store: Store, session: Session): Promise<void> {
-  mountCopies(find(panel, '#copies', HTMLElement), store, session);
-  const formats = await clipFormats();
-  mountClipExport(panel, store, session, formats);
-  mountClipPreview(panel, store, formats);
-  mountProjects(panel, store, session);
+  const part = (id: string): HTMLElement => find(panel, `#${id}`, HTMLElement);
+  mountCopies(part('copies'), store, session);
+  mountClipExport({ panel, root: part('clip-export'), store, session, formats: await clipFormats() });
+  mountProjects(part('project'), store, session);
+  panel.addEventListener('toggle', () => void refreshListed());
 }

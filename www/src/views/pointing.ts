@@ -1,18 +1,11 @@
-//! The meaning of a press with the box tool: a new object, or more or less of the selected one, whose clicks and box are shown.
+//! The meaning of a press with the box tool: a new object, or more or less of the selected one, whose clicks and box are shown in the picture.
 
-import { promptOf } from '../session/clip/drawing.js';
 import { type Pointing, type State, type Store, seenIn } from '../state/state.js';
-import type { Prompt } from '../state/tracked.js';
-import { drawn, find } from './markup.js';
+import { type Prompt, promptOf } from '../state/tracked.js';
+import { drawn } from './markup.js';
 
 /** Radius of a disc, and half the length of the lines in it, pixels of the screen. */
 const [DISC, LINE] = [7, 4];
-
-const HELP = {
-  new: 'Drag a box around something, or press on it: it becomes a new object. Shift adds to the selected one, Alt removes.',
-  add: 'Press on what also belongs to the selected object, or drag a box around all of it.',
-  remove: 'Press on what does not belong to the selected object.',
-};
 
 /** The meaning of a press, unless a key changes it. */
 export function pointingIn(state: State): Pointing {
@@ -20,23 +13,15 @@ export function pointingIn(state: State): Pointing {
 }
 
 /** The prompt of the selected object in the frame on screen, which can be refined; `null` if there is none. */
-function promptIn(state: State): Prompt | null {
+export function promptIn(state: State): Prompt | null {
   const { tracked, look } = state;
   return tracked === null ? null : promptOf(tracked, seenIn(state)?.index ?? null, look.selected);
 }
 
-export function mountPointing(form: ParentNode, marks: SVGGElement, store: Store): void {
-  const choices = [...form.querySelectorAll<HTMLInputElement>('[name=pointing]')];
-  const help = find(document, '#tool-help [data-help=pointing]', HTMLElement);
-  for (const choice of choices) choice.addEventListener('change', () => store.set({ tool: { ...store.get().tool, pointing: choice.value as Pointing } }));
+export function mountPointing(marks: SVGGElement, store: Store): void {
   const render = (now: State): void => {
     const prompt = promptIn(now);
-    for (const choice of choices) {
-      choice.checked = choice.value === pointingIn(now);
-      choice.disabled = prompt === null && choice.value !== 'new';
-    }
     const isShown = now.tool.name === 'box' && prompt !== null;
-    help.textContent = isShown ? HELP[now.tool.pointing] : '';
     const masks = isShown ? now.tracked?.frames[seenIn(now)?.index ?? -1]?.runs : undefined;
     const unit = 1 / (marks.ownerSVGElement?.getScreenCTM()?.a ?? 1);
     marks.replaceChildren(...(isShown && masks ? marksOf(prompt, (now.pair.first?.width ?? masks.width) / masks.width, unit) : []));

@@ -4,7 +4,7 @@ import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Timeline } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { contextOf, element, find } from './markup.js';
+import { contextOf, find } from './markup.js';
 
 /** Smallest width of a thumbnail, screen pixels. */
 const THUMB = 72;
@@ -16,7 +16,6 @@ export const FAR = 10;
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
   const strip = find(root, '#strip', HTMLCanvasElement);
   const track = find(root, '#track', HTMLElement);
-  const label = find(root, '#clip-name', HTMLElement);
   const play = find(root, '#play', HTMLButtonElement);
   const speeds = find(root, '#speed', HTMLButtonElement);
   for (const button of root.querySelectorAll<HTMLButtonElement>('[data-step]')) {
@@ -40,8 +39,6 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     if (timeline === null) return;
     const { clip } = timeline;
     if (clip !== before.timeline?.clip) {
-      label.replaceChildren(element('span', clip.name), element('span', ', ', 'visually-hidden'), element('small', strings.clipFacts(clip.count, clip.width, clip.height)));
-      label.title = label.textContent;
       track.setAttribute('aria-valuemax', String(clip.count - 1));
       void drawStrip(strip, timeline, () => store.get().timeline?.clip === clip);
     }

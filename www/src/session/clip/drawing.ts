@@ -8,7 +8,7 @@ import { type Path, type StrokeTool, eachPixel } from '../../result/strokes.js';
 import { UNLABELLED } from '../../result/masks.js';
 import { painted, prompted } from '../../state/said.js';
 import type { Pointing, Store } from '../../state/state.js';
-import { type Box, type Prompt, type Tracked, acceptedIn, lockedIn, objectsOf, takesCorrections } from '../../state/tracked.js';
+import { type Box, type Prompt, acceptedIn, lockedIn, objectsOf, promptOf, takesCorrections } from '../../state/tracked.js';
 import type { Objects } from './objects.js';
 
 /** A box with both sides below this share of the frame's width is a click. */
@@ -153,11 +153,6 @@ export class Drawing {
     if (tracked === null) return { reach: 1, kept: 0 };
     return { reach: count([...tracked.status.keys()].filter((index) => takesCorrections(tracked, index))), kept: count(acceptedIn(tracked).filter((index) => index !== frame)) };
   }
-}
-
-/** The prompt of an object in a frame; `null` if there is none. */
-export function promptOf({ annotated }: Pick<Tracked, 'annotated'>, frame: number | null, id: number | null): Prompt | null {
-  return annotated.get(frame ?? -1)?.prompts.find(({ object }) => object === id) ?? null;
 }
 
 /** A prompt with another click, or with a box. A box has all clicks that are the object's. */

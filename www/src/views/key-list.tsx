@@ -1,6 +1,6 @@
 //! The list of the keyboard shortcuts, in groups. Loaded when it is first opened.
 
-import { element } from './markup.js';
+import { render } from 'preact';
 
 /** The keys about one thing, each as it is shown, with its effect in words: none if that is the one of the key before it. */
 interface Group {
@@ -96,23 +96,39 @@ const GROUPS: readonly Group[] = [
 ];
 
 export function listKeys(root: HTMLElement): void {
-  root.replaceChildren(...GROUPS.map(sectionOf));
+  render(
+    <>
+      {GROUPS.map(({ title, keys }) => (
+        <section key={title}>
+          <h3>{title}</h3>
+          <dl>
+            {rowsOf(keys).map(({ shown, does }) => (
+              <div key={does}>
+                <dt>
+                  {shown.map((key, k) => (
+                    <>
+                      {k > 0 && ' '}
+                      <kbd>{key}</kbd>
+                    </>
+                  ))}
+                </dt>
+                <dd>{does}</dd>
+              </div>
+            ))}
+          </dl>
+        </section>
+      ))}
+    </>,
+    root,
+  );
 }
 
-function sectionOf({ title, keys }: Group): HTMLElement {
-  const section = element('section');
-  const list = element('dl');
-  for (const [shown, does] of keys) {
-    if (does === '') {
-      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown));
-      continue;
-    }
-    const row = element('div');
-    const term = element('dt');
-    term.append(element('kbd', shown));
-    row.append(term, element('dd', does));
-    list.append(row);
+/** Keys with the same effect are one row. */
+function rowsOf(keys: Group['keys']): { readonly shown: string[]; readonly does: string }[] {
+  const rows: { readonly shown: string[]; readonly does: string }[] = [];
+  for (const [key, does] of keys) {
+    if (does === '') rows.at(-1)!.shown.push(key);
+    else rows.push({ shown: [key], does });
   }
-  section.append(element('h3', title), list);
-  return section;
+  return rows;
 }

@@ -1,6 +1,8 @@
 //! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are, as a thin line where they are drafts,
 //! and marks where a person has corrected.
 
+import { type VNode, render } from 'preact';
+import { useMemo } from 'preact/hooks';
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { colourOfMask } from '../drawing/paint.js';
@@ -8,7 +10,8 @@ import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
 import { type Life, type Tracked, isDraft, isSeen, livesOf, shownFrames } from '../state/tracked.js';
-import { contextOf, element, find } from './markup.js';
+import { usePart } from './component.js';
+import { contextOf, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
 const LEAST_CONFIDENCE = 0.5;
@@ -20,21 +23,12 @@ const THICKNESS = 0.6;
 const THICKNESS_OF_DRAFTS = 0.2;
 
 export function mountLanes(root: HTMLElement, store: Store, session: Session): void {
-  const names = find(root, '#lane-names', HTMLElement);
+  render(<Names store={store} session={session} />, find(root, '#lane-names', HTMLElement));
   const canvas = find(root, '#lanes', HTMLCanvasElement);
   let lives: Life[] = [];
 
-  const render = ({ tracked, look }: State): void => {
-    if (tracked === null) return;
-    draw(canvas, tracked, lives, look);
-    for (const button of names.querySelectorAll<HTMLButtonElement>('button')) {
-      const id = Number(button.dataset.object);
-      const name = nameOf(look, id);
-      button.textContent = name;
-      button.setAttribute('aria-label', strings.selectObject(name));
-      button.setAttribute('aria-pressed', String(look.selected === id));
-      button.style.setProperty('--colour', cssColour(colourOfMask(id, look)));
-    }
+  const drawNow = ({ tracked, look }: State): void => {
+    if (tracked !== null) draw(canvas, tracked, lives, look);
   };
   store.subscribe((now, before) => {
     const { tracked, look } = now;
@@ -47,11 +41,10 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     if (!sameFrames) {
       lives = livesOf({ frames });
       root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, lives.length)));
-      names.replaceChildren(...lives.map(({ id }) => nameButton(id, session)));
     }
-    render(now);
+    drawNow(now);
   });
-  new ResizeObserver(() => render(store.get())).observe(canvas);
+  new ResizeObserver(() => drawNow(store.get())).observe(canvas);
 }
 
 /** Whether there is room for lanes: from when a clip is being segmented, so that the picture keeps its place when they come. */
@@ -59,14 +52,33 @@ function hasRoom({ tracked }: State): boolean {
   return tracked !== null && (tracked.run.phase === 'working' || isSeen(tracked));
 }
 
-function nameButton(id: number, session: Session): HTMLElement {
-  const button = element('button', '', 'lane-name');
-  button.type = 'button';
-  button.dataset.object = String(id);
-  button.addEventListener('click', () => session.shown.select(id));
-  const item = element('li');
-  item.append(button);
-  return item;
+/** The names of the objects, beside their lanes. */
+function Names({ store, session }: { store: Store; session: Session }): VNode {
+  const frames = usePart(store, ({ tracked }) => shownFrames(tracked));
+  const look = usePart(store, (state) => state.look);
+  const lives = useMemo(() => livesOf({ frames }), [frames]);
+  return (
+    <>
+      {lives.map(({ id }) => {
+        const name = nameOf(look, id);
+        return (
+          <li key={id}>
+            <button
+              type="button"
+              class="lane-name"
+              data-object={id}
+              aria-label={strings.selectObject(name)}
+              aria-pressed={look.selected === id}
+              style={{ '--colour': cssColour(colourOfMask(id, look)) }}
+              onClick={() => session.shown.select(id)}
+            >
+              {name}
+            </button>
+          </li>
+        );
+      })}
+    </>
+  );
 }
 
 function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[], look: Look): void {
