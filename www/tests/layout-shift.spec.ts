@@ -32,7 +32,7 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 }
 
 test('three steps through a clip that is inspected, and choosing a tool, shift nothing, on a desktop and on a phone', async ({ page }) => {
-  await openClip(page, await clipFrames(8));
+  await openSegmented(page, await clipFrames(8));
   for (const [from, width, height] of [[0, 1280, 860], [3, 390, 780]] as const) {
     await page.setViewportSize({ width, height });
     await inspect(page);
