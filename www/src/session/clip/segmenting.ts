@@ -23,7 +23,7 @@ export class ClipSegmenting {
   readonly #shown: Shown;
   readonly #projects: Projects;
   readonly #segmenter = new SegmenterPool({ jobs: workersFor(navigator.hardwareConcurrency || 1) });
-  #warm: Promise<void> | null = null;
+  #isWarm = false;
   #living: Living | null = null;
   /** A clip that is about to be shown, and the number of the request for it. */
   #next: Living | null = null;
@@ -48,7 +48,9 @@ export class ClipSegmenting {
 
   /** Starts a worker, which warms up until it has a clip. Called while the first frames are being read. */
   warmUp(): void {
-    this.#warm ??= this.#segmenter.warmUp().catch(() => undefined); // the clip that needs the worker reports why there is none
+    if (this.#isWarm) return;
+    this.#isWarm = true;
+    this.#segmenter.warmUp().catch(() => undefined); // the clip that needs the worker reports why there is none
   }
 
   /** Opens a clip that is about to be shown, with the work on it. If it fails, what is on screen stays. */
