@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodePng } from 'veronese/codecs';
 
-import { type Upload, clipDone, clipFrames, clipPhase, differences, drag, expect, inspect, labelsOnCanvas, openClip, openSampleClip, openSegmented, opened, said, screen, segmentClip, test, upload, withSmallSampleClip, goTo } from './support.js';
+import { type Upload, clipDone, clipFrames, clipPhase, differences, drag, expect, inspect, labelsOnCanvas, openClip, openSampleClip, openSegmented, opened, said, screen, segmentClip, test, upload, withSmallSampleClip } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -33,7 +33,6 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 
 test('three steps through a clip that is inspected, and choosing a tool, shift nothing, on a desktop and on a phone', async ({ page }) => {
   await openSegmented(page, await clipFrames(8));
-  await goTo(page, 0);
   for (const [from, width, height] of [[0, 1280, 860], [3, 390, 780]] as const) {
     await page.setViewportSize({ width, height });
     await inspect(page);

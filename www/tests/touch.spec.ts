@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipDone, clipFrames, expect, openEmpty, openSegmented, segmentClip, square, test, upload } from './support.js';
+import { clipDone, clipFrames, expect, openSegmented, test } from './support.js';
 
 test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
@@ -75,9 +75,7 @@ async function whole(page: Page): Promise<void> {
 }
 
 test('fingers zoom, pan, scroll and draw, and strokes stay whoever ends them', async ({ page }) => {
-  await openEmpty(page);
-  await upload(page, [await square('one.png', 192, 108, 0, 0), await square('two.png', 192, 108, 4, 1)]);
-  await segmentClip(page);
+  await openSegmented(page, await clipFrames(2, 192, 108));
   const at = await placeOf(page);
   await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
   const large = await seen(page);
