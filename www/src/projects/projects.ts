@@ -100,7 +100,7 @@ export class Projects {
     await this.#written;
     try {
       const header = opened ?? this.#headers.get(of) ?? (await (await this.#load()).headerOf(of));
-      // Browsers that read a video approximately may count other frames.
+      // Browsers may count the frames of a video differently.
       if (header === null || header.frames === count) return header;
       this.#store.say(strings.projects.otherFrames(name, header.frames, count), 'frame-count-mismatch');
     } catch (error) {
