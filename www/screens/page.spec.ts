@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, clipDone, clipFrames, done, expect, goTo, openClip, openExport, sample, screen, square, test, upload } from '../tests/support.js';
+import { PAIR, clipDone, clipFrames, done, expect, goTo, inspect, openClip, openExport, sample, screen, square, test, upload } from '../tests/support.js';
 
 const SIZES = [[1440, 900], [1280, 720], [390, 844]] as const;
 const SCHEMES = ['light', 'dark'] as const;
@@ -31,22 +31,18 @@ for (const { width, height, colorScheme } of ALL) {
 
     test('a pair', async ({ page }) => {
       await page.goto(PAIR);
-      await done(page);
+      await clipDone(page);
       await shot(page, 'pair');
       await shot(page, 'pair-whole', true);
-      await page.locator('#look [value=split]').check({ force: true });
-      await page.locator('#look [name=arrows]').check({ force: true });
+      await inspect(page);
+      await page.locator('#inspect [value=split]').check({ force: true });
       await page.locator('.stage').scrollIntoViewIfNeeded();
       await shot(page, 'split');
-      await page.locator('#look [value=first]').check({ force: true });
-      await page.locator('#look [name=residual]').check({ force: true });
-      await page.locator('#look [name=opacity]').fill('0');
-      await page.locator('#zoom-in').click();
-      await shot(page, 'residual');
-      await page.locator('#zoom-fit').click();
-      await expect(page.locator('#zoom-out')).toBeDisabled();
-      await page.locator('#look [name=residual]').uncheck({ force: true });
-      await page.locator('#look [name=opacity]').fill('50');
+      await page.locator('#inspect [name=motions]').check({ force: true });
+      await page.locator('#motions .more summary').nth(1).click();
+      await page.locator('#settings details summary').click();
+      await page.evaluate(() => window.scrollTo(0, 0));
+      await shot(page, 'motions', true);
       await page.locator('#tools [value=brush]').check({ force: true });
       const box = (await page.locator('.layers').boundingBox())!;
       await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
@@ -54,11 +50,7 @@ for (const { width, height, colorScheme } of ALL) {
       await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
       await shot(page, 'brush');
       await page.mouse.up();
-      await done(page);
-      await page.locator('#motions .more summary').nth(1).click();
-      await page.locator('#settings details summary').click();
-      await page.evaluate(() => window.scrollTo(0, 0));
-      await shot(page, 'details', true);
+      await clipDone(page);
       await page.keyboard.press('?');
       await shot(page, 'keys');
       await page.keyboard.press('Escape');
@@ -108,7 +100,7 @@ test('progress', async ({ page, context }) => {
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.screenshot({ path: screen('progress') });
   release();
-  await done(page);
+  await clipDone(page);
 });
 
 /** The panel of exports of the clip that is open, in all sizes, light and dark. */

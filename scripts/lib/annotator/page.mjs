@@ -15,7 +15,6 @@ const THUMB = 16;
 export async function annotatedPage(page, address, settings) {
   page.setDefaultTimeout(PATIENCE);
   await page.goto(`${address}#sample=intel-two-cars&segment=asked&${settings}`);
-  await reached(page, '#run', 'done');
   const log = [];
   let milliseconds = 0;
   const act = async (name, does) => {
@@ -76,7 +75,7 @@ export async function annotatedPage(page, address, settings) {
 async function open(page, files) {
   await page.locator('#open-pair').setInputFiles(files);
   await page.waitForFunction((count) => document.querySelector('#clip-name').textContent.includes(`${count} frames`), files.length);
-  await reached(page, '#run', 'done');
+  await reached(page, '#run', 'idle');
 }
 
 /** Does something, and waits until the masks of the clip have changed. */
