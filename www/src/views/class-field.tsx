@@ -40,6 +40,7 @@ export function ClassField({ value, label, title, disabled = false, take }: Give
       autocomplete="off"
       onFocus={({ currentTarget }) => (before.current = currentTarget.value)}
       onChange={({ currentTarget }) => take(currentTarget.value.trim())}
+      onBlur={({ currentTarget }) => (currentTarget.value = value)}
       onKeyDown={key}
     />
   );

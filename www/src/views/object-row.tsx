@@ -176,7 +176,10 @@ function Name({ id, name, session }: Pick<Given, 'id' | 'name' | 'session'>): VN
       spellcheck={false}
       autocomplete="off"
       onChange={({ currentTarget }) => session.objects.setAppearance(id, { name: currentTarget.value.trim() })}
-      onBlur={({ currentTarget }) => (currentTarget.readOnly = true)}
+      onBlur={({ currentTarget }) => {
+        currentTarget.readOnly = true;
+        currentTarget.value = name;
+      }}
       onKeyDown={key}
     />
   );
