@@ -96,12 +96,6 @@ test('a box, a press and the keyboard make a new object in all frames, and undo 
     await page.keyboard.press('Control+z');
     await said(page, /^Undone/);
   });
-
-  await test.step('a pair has no box', async () => {
-    await page.locator('#kinds [value=groups]').check();
-    await expect(tool(page)).toBeHidden();
-    await expect(page.locator('#tools [value=look]')).toBeChecked();
-  });
 });
 
 test.describe('on a phone', () => {
