@@ -178,7 +178,7 @@ test('of several the newest comes first, and a sample needs no copy', async ({ p
   await page.getByText('1 more').click();
   await expect(work.nth(1)).toHaveAccessibleName(/^f00 to f03/);
   await work.first().click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+  await expect(page.locator('#clip-name')).toHaveText('parallax, 2 frames, 400 × 300');
   await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Window');
   await expect(page.getByRole('button', { name: 'Parallax', exact: true })).toHaveAttribute('aria-current', 'true');
   // Now the clip is the newest that is not open.
