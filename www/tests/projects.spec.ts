@@ -138,12 +138,12 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   await expect(page.locator('#notice')).toContainText('The project of “f00 to f03” is forgotten.');
   await expect(page.locator('#projects')).toBeHidden();
   await reopen(page, files);
-  await expect(page.locator('#kind-objects')).toBeHidden();
+  await expect(page.locator('#objects')).toBeHidden();
   // A damaged one changes nothing.
   await upload(page, [{ ...project, name: 'other.veronese', buffer: project.buffer.subarray(0, -9) }]);
   await expect(page.locator('#notice-code')).toHaveText('damaged-project');
   await expect(page.locator('#notice-sentence')).toContainText('“other.veronese”');
-  await expect(page.locator('#kind-objects')).toBeHidden();
+  await expect(page.locator('#objects')).toBeHidden();
   // Over the open clip.
   await upload(page, [project]);
   await isContinued(page, masks, 4);
@@ -191,17 +191,17 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 4 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
   await expect(second.locator('#notice-sentence')).toContainText('“f00 to f03” is open in another tab');
-  await rename(second, '#objects', 1, 'Ball');
+  await rename(second, 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);
   await expect(second.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
   await second.keyboard.press('Escape');
 
   // The first tab keeps its own work as before, and that stays when it is gone.
-  await rename(first, '#objects', 2, 'Box');
+  await rename(first, 2, 'Box');
   await kept(first);
   await first.close();
-  await rename(second, '#objects', 2, 'Square');
+  await rename(second, 2, 'Square');
   await second.locator('#notice-close').click();
   await hide(second);
   expect(await leaves(second)).toBe(false);
@@ -210,7 +210,7 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   second.on('dialog', (dialog) => void dialog.accept());
   await reopen(second, files);
   await expect(second.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
-  await rename(second, '#objects', 1, 'Ball');
+  await rename(second, 1, 'Ball');
   await kept(second);
   await reopen(second, files);
   for (const [row, name] of [[1, 'Ball'], [2, 'Box']] as const) await expect(second.locator('#objects .motion-name').nth(row)).toHaveValue(name);
