@@ -1,6 +1,6 @@
 //! A clip of one's own is segmented by itself, and what is drawn with can be seen.
 
-import { clipDone, expect, holdSamples, clipFrames, test, upload } from './support.js';
+import { clipDone, expect, holdSamples, clipFrames, openSegmented, test, upload } from './support.js';
 
 test('a clip of one\'s own is segmented when it is opened; a setting keeps it off, also at the next visit', async ({ page }) => {
   await holdSamples(page);
@@ -17,7 +17,7 @@ test('a clip of one\'s own is segmented when it is opened; a setting keeps it of
   await upload(page, (await clipFrames(6)).slice(1));
   await expect(page.locator('#clip-name')).toContainText('5 frames');
   await expect(page.getByRole('button', { name: 'Segment the clip' })).toBeVisible();
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  await expect(page.locator('#status')).toHaveText('This frame has no masks yet.');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'idle');
   await automatic.check();
   await page.reload();
@@ -25,10 +25,7 @@ test('a clip of one\'s own is segmented when it is opened; a setting keeps it of
 });
 
 test('what is selected is named beside the pointer, and painting with the background says what it does', async ({ page }) => {
-  await holdSamples(page);
-  await page.goto('./#sample=parallax&quality=fast');
-  await upload(page, await clipFrames(4));
-  await clipDone(page);
+  await openSegmented(page, await clipFrames(4));
   const [cursor, help] = [page.locator('#cursor'), page.locator('#tool-help')];
   // It rests there from now on.
   await page.locator('.layers').hover();
