@@ -41,14 +41,14 @@ for (const found of BROWSERS) {
       await screenshot(browser, `browser-${found.name}-start`);
 
       // The motions between the two.
-      await find('#inspect summary').click();
+      await find('#inspect > summary').click();
       await browser.untilText('#inspect-status', 'found in');
       await find('#inspect [name=motions]').click();
       await browser.untilText('#caption', 'Motions');
       const { labels } = await segmentedInNode(...pair);
       expect(differences(await masks(browser), labels)).toBe(0);
       expect(new Set(labels).size).toBeGreaterThan(2);
-      await find('#inspect summary').click();
+      await find('#inspect > summary').click();
 
       // The sample clip: every browser decodes its frames to the same pixels.
       await find('#samples .sample').click();

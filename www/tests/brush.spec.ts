@@ -9,7 +9,7 @@ const WIDTH = 100;
 /** Differences that rounding to whole pixels of the screen explains. */
 const NEAR = 1.5;
 
-/** Opens and segments a clip before any pair was painted, and takes the brush. */
+/** Opens a clip with its masks, and takes the brush. */
 async function clipWithBrush(page: Page): Promise<void> {
   await openSegmented(page, await clipFrames(4));
   await page.locator('#tools [value=brush]').locator('..').click();

@@ -138,12 +138,12 @@ test('a project is saved as a file and opened where nothing is left of it, over 
   await expect(page.locator('#notice')).toContainText('The project of “f00 to f03” is forgotten.');
   await expect(page.locator('#projects')).toBeHidden();
   await reopen(page, files);
-  await expect(page.locator('#kind-objects')).toBeHidden();
+  await expect(page.locator('#objects')).toBeHidden();
   // A damaged one changes nothing.
   await upload(page, [{ ...project, name: 'other.veronese', buffer: project.buffer.subarray(0, -9) }]);
   await expect(page.locator('#notice-code')).toHaveText('damaged-project');
   await expect(page.locator('#notice-sentence')).toContainText('“other.veronese”');
-  await expect(page.locator('#kind-objects')).toBeHidden();
+  await expect(page.locator('#objects')).toBeHidden();
   // Over the open clip.
   await upload(page, [project]);
   await isContinued(page, masks, 4);
