@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Place, clipFrames, differences, drag, expect, labelsOnCanvas, openSegmented, said, test } from './support.js';
+import { type Place, clipFrames, differences, drag, expect, labelsOnCanvas, mergeWith, openSegmented, said, test } from './support.js';
 
 const [WIDTH, HEIGHT] = [100, 70];
 
@@ -89,5 +89,17 @@ test('masks are corrected with brush, eraser and the list', async ({ page }) => 
     await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
     await said(page, /^Corrected/);
     expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
+
+    // One that comes back is not chosen any more.
+    await undo.click();
+    await expect(rows).toHaveCount(3);
+    await row(page, 1).getByText('More', { exact: true }).click();
+    await mergeWith(row(page, 1), 2);
+    await expect(rows).toHaveCount(2);
+    await said(page, /^Corrected/);
+    await undo.click();
+    await expect(rows).toHaveCount(3);
+    await expect(row(page, 1).locator('[data-action=merge-with]')).toHaveValue('');
+    await expect(row(page, 1).getByRole('button', { name: 'Merge' })).toBeDisabled();
   });
 });

@@ -1,11 +1,12 @@
 //! What else can be done with an object, and with all others.
 
 import type { VNode } from 'preact';
-import { useState } from 'preact/hooks';
+import { useLayoutEffect, useState } from 'preact/hooks';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { livesOf } from '../state/tracked.js';
+import { memo } from './component.js';
 
 interface Given {
   readonly id: number;
@@ -17,11 +18,15 @@ interface Given {
   readonly session: Session;
 }
 
-export function ObjectMore({ id, name, ready, others, store, session }: Given): VNode {
+export const ObjectMore = memo(function ({ id, name, ready, others, store, session }: Given): VNode {
   // A select changes with every arrow key, so it only chooses.
   const [into, setInto] = useState('');
   const partners = others.filter(([other]) => other !== id);
   const isChosen = partners.some(([other]) => String(other) === into);
+  // One that comes back is not chosen any more.
+  useLayoutEffect(() => {
+    if (!isChosen) setInto('');
+  }, [isChosen]);
   const isAlone = partners.length === 0;
   const otherIds = (): number[] => livesOf(store.get().tracked ?? { frames: [] }).map((life) => life.id).filter((other) => other !== id);
   const aboutOthers = [
@@ -78,4 +83,4 @@ export function ObjectMore({ id, name, ready, others, store, session }: Given): 
       </div>
     </details>
   );
-}
+});
