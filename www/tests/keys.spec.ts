@@ -103,6 +103,13 @@ test('a click selects a name, a double click or F2 renames, Escape leaves it', a
   await page.keyboard.press('Escape');
   await expect(rows.nth(2).locator('.motion-name')).toHaveValue('Box');
   await expect(name).toHaveValue('Disc');
+  // A name that is empty is the default, also where it was that before.
+  for (let k = 0; k < 2; k++) {
+    await name.dblclick({ position: { x: 12, y: 10 } });
+    await page.keyboard.press('Backspace');
+    await page.keyboard.press('Enter');
+    await expect(name).toHaveValue('Object 1');
+  }
 });
 
 test('the list of keys is in groups, and nothing in it overlaps', async ({ page }) => {

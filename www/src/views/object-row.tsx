@@ -16,7 +16,7 @@ interface Given {
   readonly id: number;
   readonly name: string;
   readonly colour: Colour;
-  readonly share: string;
+  /** The frames that show it, or what to do with one that is about to be painted. */
   readonly facts: string;
   readonly class: string;
   /** The frame where it is least certain, unless a person has looked there. */
@@ -44,7 +44,7 @@ const press = (): void => {
 };
 
 export const ObjectRow = memo(function (given: Given): VNode {
-  const { id, name, share, facts, isShown, isSolo, isSelected, isChosen, isKnown, isLocked, ready, store, session } = given;
+  const { id, name, isShown, isSolo, isSelected, isChosen, isKnown, isLocked, ready, store, session } = given;
   // A row that is selected has its actions elsewhere, and another one that was loses its own: nothing may move away from a pointer that is down.
   const select = ({ target }: Event): void => {
     if (!isPressed && (!(target instanceof Element) || target.closest('.motion-actions') === null)) session.shown.select(id);
@@ -77,9 +77,9 @@ export const ObjectRow = memo(function (given: Given): VNode {
         {isObject && <Thumbnail id={id} store={store} />}
         {isObject && <Swatch {...given} />}
         <Name id={id} name={name} session={session} />
-        <span class="motion-share">{share}</span>
+        <Share id={id} store={store} />
       </div>
-      {isObject && <p class="motion-facts faint">{facts}</p>}
+      {isObject && <Facts {...given} />}
       {isObject && (
         <div class="motion-actions">
           <button
@@ -119,6 +119,20 @@ export const ObjectRow = memo(function (given: Given): VNode {
     </li>
   );
 });
+
+/** How much of the frame it covers. What is about the frame on screen renders by itself, so that a step through frames renders no rows. */
+function Share({ id, store }: Pick<Given, 'id' | 'store'>): VNode {
+  const share = usePart(store, ({ result }) => {
+    const pixels = id === 0 ? result?.masks.rest : result?.masks.objects.find((object) => object.id === id)?.pixels;
+    return result === null || pixels === undefined ? '' : strings.percent(pixels / result.masks.labels.length);
+  });
+  return <span class="motion-share">{share}</span>;
+}
+
+function Facts({ id, facts, isKnown, store }: Given): VNode {
+  const isAway = usePart(store, ({ result }) => result !== null && result.masks.objects.every((object) => object.id !== id));
+  return <p class="motion-facts faint">{isKnown && isAway ? `${facts} · ${strings.away}` : facts}</p>;
+}
 
 /** Its part of the frame. Where it is not in sight, it looks as it did. */
 function Thumbnail({ id, store }: Pick<Given, 'id' | 'store'>): VNode {

@@ -45,7 +45,6 @@ function Nothing({ root, store }: { root: HTMLElement; store: Store }): VNode {
 function Objects({ list, store, session }: Given & { list: HTMLElement }): VNode {
   const tracked = usePart(store, (state) => state.tracked);
   const look = usePart(store, (state) => state.look);
-  const result = usePart(store, (state) => state.result);
   const seen = isSeen(tracked) ? tracked : null;
   const lives = useLives(seen);
   const ids = seen === null ? [] : idsOf(seen, lives, look.selected);
@@ -71,16 +70,13 @@ function Objects({ list, store, session }: Given & { list: HTMLElement }): VNode
     <>
       {ids.map((id) => {
         const life = lives.get(id);
-        const here = result?.masks.objects.find((object) => object.id === id);
-        const pixels = id === 0 ? result?.masks.rest : here?.pixels;
         return (
           <ObjectRow
             key={id}
             id={id}
             name={nameOf(look, id)}
             colour={colourOfMask(id, look)}
-            share={result === null || pixels === undefined ? '' : strings.percent(pixels / result.masks.labels.length)}
-            facts={id === 0 ? '' : factsOf(life, here === undefined && result !== null)}
+            facts={life === undefined ? strings.newObjectHelp : strings.life(life.first, life.last)}
             class={entries.get(id)?.class ?? ''}
             doubtful={life === undefined || seen.checked.get(id) === life.doubtful.index ? null : life.doubtful.index}
             isShown={isShown(id, look)}
@@ -120,12 +116,6 @@ function useOthers(ids: readonly number[], look: State['look']): readonly (reado
   const now = ids.filter((id) => id !== 0).map((id) => [id, nameOf(look, id)] as const);
   if (now.join() !== known.current.join()) known.current = now;
   return known.current;
-}
-
-function factsOf(life: Life | undefined, away: boolean): string {
-  if (life === undefined) return strings.newObjectHelp;
-  const lives = strings.life(life.first, life.last);
-  return away ? `${lives} · ${strings.away}` : lives;
 }
 
 /** The object whose row has the focus. */
