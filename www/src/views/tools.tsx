@@ -25,11 +25,12 @@ const POINTINGS: readonly (readonly [Pointing, string, string])[] = [
   ['remove', 'Remove', 'Not of the selected object (Alt, or the right button)'],
 ];
 
+/** In a narrow rail the sign alone is seen: two em spaces follow it. */
 const SPREADS: readonly (readonly [Tool['spread'], string])[] = [
-  ['both', '↔  both ways'],
-  ['forward', '→  later frames'],
-  ['backward', '←  earlier frames'],
-  ['none', '·  this frame alone'],
+  ['both', '↔\u2003\u2003both ways'],
+  ['forward', '→\u2003\u2003later frames'],
+  ['backward', '←\u2003\u2003earlier frames'],
+  ['none', '·\u2003\u2003this frame alone'],
 ];
 
 export function mountTools(form: HTMLFormElement, store: Store, session: Session): void {
