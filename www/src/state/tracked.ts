@@ -173,8 +173,16 @@ export interface Life {
   readonly doubtful: { readonly index: number; readonly confidence: number };
 }
 
-/** All objects of a clip by number. */
-export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
+const known = new WeakMap<Masks, readonly Life[]>();
+
+/** All objects of a clip by number. Masks do not change, so they are looked through once. */
+export function livesOf({ frames }: Pick<Tracked, 'frames'>): readonly Life[] {
+  const lives = known.get(frames) ?? livesIn(frames);
+  known.set(frames, lives);
+  return lives;
+}
+
+function livesIn(frames: Masks): Life[] {
   const lives = new Map<number, Life>();
   frames.forEach((frame, index) => {
     for (const { id, confidence } of frame?.objects ?? []) {

@@ -2,14 +2,13 @@
 //! and marks where a person has corrected.
 
 import { type VNode, render } from 'preact';
-import { useMemo } from 'preact/hooks';
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, isDraft, isSeen, livesOf, shownFrames } from '../state/tracked.js';
+import { type Tracked, isDraft, isSeen, livesOf, shownFrames } from '../state/tracked.js';
 import { usePart } from './component.js';
 import { contextOf, find } from './markup.js';
 
@@ -25,10 +24,8 @@ const THICKNESS_OF_DRAFTS = 0.2;
 export function mountLanes(root: HTMLElement, store: Store, session: Session): void {
   render(<Names store={store} session={session} />, find(root, '#lane-names', HTMLElement));
   const canvas = find(root, '#lanes', HTMLCanvasElement);
-  let lives: Life[] = [];
-
   const drawNow = ({ tracked, look }: State): void => {
-    if (tracked !== null) draw(canvas, tracked, lives, look);
+    if (tracked !== null) draw(canvas, tracked, look);
   };
   store.subscribe((now, before) => {
     const { tracked, look } = now;
@@ -38,10 +35,7 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
     if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
     root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
-    if (!sameFrames) {
-      lives = livesOf({ frames });
-      root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, lives.length)));
-    }
+    root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, livesOf({ frames }).length)));
     drawNow(now);
   });
   new ResizeObserver(() => drawNow(store.get())).observe(canvas);
@@ -56,10 +50,9 @@ function hasRoom({ tracked }: State): boolean {
 function Names({ store, session }: { store: Store; session: Session }): VNode {
   const frames = usePart(store, ({ tracked }) => shownFrames(tracked));
   const look = usePart(store, (state) => state.look);
-  const lives = useMemo(() => livesOf({ frames }), [frames]);
   return (
     <>
-      {lives.map(({ id }) => {
+      {livesOf({ frames }).map(({ id }) => {
         const name = nameOf(look, id);
         return (
           <li key={id}>
@@ -81,12 +74,13 @@ function Names({ store, session }: { store: Store; session: Session }): VNode {
   );
 }
 
-function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[], look: Look): void {
+function draw(canvas: HTMLCanvasElement, tracked: Tracked, look: Look): void {
   const dense = Math.min(2, devicePixelRatio);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * dense));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
   const context = contextOf(canvas);
   const frames = shownFrames(tracked);
+  const lives = livesOf({ frames });
   const [column, row] = [canvas.width / frames.length, canvas.height / Math.max(LEAST_LANES, lives.length)];
   const places = new Map(lives.map(({ id }, k) => [id, k]));
   frames.forEach((frame, index) => {

@@ -46,7 +46,7 @@ function Objects({ list, store, session }: Given & { list: HTMLElement }): VNode
   const tracked = usePart(store, (state) => state.tracked);
   const look = usePart(store, (state) => state.look);
   const seen = isSeen(tracked) ? tracked : null;
-  const lives = useLives(seen);
+  const lives = new Map(livesOf({ frames: shownFrames(seen) }).map((life) => [life.id, life]));
   const ids = seen === null ? [] : idsOf(seen, lives, look.selected);
   const choosing = look.among !== null;
 
@@ -101,13 +101,6 @@ function idsOf({ objects }: Tracked, lives: ReadonlyMap<number, Life>, selected:
   const ids = [0, ...lives.keys()];
   const isNew = selected !== null && isObject(selected) && !objects.some(({ number }) => number === selected);
   return isNew ? [...ids, selected] : ids;
-}
-
-function useLives(tracked: Tracked | null): ReadonlyMap<number, Life> {
-  const known = useRef<{ readonly frames: Tracked['frames']; readonly lives: ReadonlyMap<number, Life> }>({ frames: [], lives: new Map() });
-  const frames = shownFrames(tracked);
-  if (frames !== known.current.frames) known.current = { frames, lives: new Map(livesOf({ frames }).map((life) => [life.id, life])) };
-  return known.current.lives;
 }
 
 /** Numbers and names of all objects: the same while these are. */
