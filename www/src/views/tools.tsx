@@ -19,7 +19,7 @@ const TOOLS: readonly (readonly [ToolName, string, string])[] = [
   ['box', 'Box', 'M4 7V4h3M13 4h3v3M16 13v3h-3M7 16H4v-3M9 10h2M10 9v2'],
 ];
 
-const POINTINGS: readonly (readonly [Pointing, string, string])[] = [
+const PRESSES: readonly (readonly [Pointing, string, string])[] = [
   ['new', 'New', 'A new object'],
   ['add', 'Add', 'More of the selected object (Shift)'],
   ['remove', 'Remove', 'Not of the selected object (Alt, or the right button)'],
@@ -93,7 +93,7 @@ function Tools({ store, session }: { store: Store; session: Session }): VNode {
           </label>
           <fieldset class="pointing">
             <legend class="visually-hidden">What a press or a box is</legend>
-            {POINTINGS.map(([name, title, help]) => (
+            {PRESSES.map(([name, title, help]) => (
               <label key={name} title={help}>
                 <input
                   type="radio"
