@@ -115,8 +115,9 @@ test('a motion becomes an object of its own, which is followed', async ({ page }
   await openClip(page, [await parts('first.png', 0), await parts('second.png', 1)]);
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-status')).toHaveText('One object in 2 frames.'); // its parts touch
-  await inspect(page);
+  // The key inspects, too.
   await page.keyboard.press('g');
+  await inspect(page);
   const motions = await labelsOnCanvas(page);
   await page.locator('#motions > li').nth(2).getByRole('button', { name: 'Make an object' }).click();
   await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 2 frames have changed.');

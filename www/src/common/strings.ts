@@ -1,5 +1,5 @@
-//! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them, and those
-//! of keys. Static text is in `index.html`.
+//! The texts that say what is so now. Labels that do not change stand in the components and in `index.html`, and texts about masks that are
+//! imported with what reads them, which is loaded later.
 
 import type { Note } from 'veronese';
 import type { MotionParts } from '../result/describe.js';
@@ -212,7 +212,6 @@ export const strings = {
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
   newObject: 'New object',
-  followHelp: 'Frames that follow a correction',
   pointingHelp: {
     new: 'Drag a box around something, or press on it: it becomes a new object. Shift adds to the selected one, Alt removes.',
     add: 'Press on what also belongs to the selected object, or drag a box around all of it.',

@@ -131,7 +131,7 @@ export class Frames {
   }
 
   /** A frame of a clip at the size that the settings ask for. */
-  async read(clip: Clip, index: number): Promise<LoadedFrame> {
+  async #read(clip: Clip, index: number): Promise<LoadedFrame> {
     return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
   }
 
@@ -141,7 +141,7 @@ export class Frames {
     const frames: LoadedFrame[] = [];
     for (const at of [index, besideOf(clip, index)]) {
       const known = [pair.first, pair.second, ...frames].find((frame) => frame !== null && isFrameOf(frame, clip, at, settings.longestSide));
-      frames.push(known ?? (await this.read(clip, at)));
+      frames.push(known ?? (await this.#read(clip, at)));
     }
     return frames;
   }

@@ -11,6 +11,7 @@ export class Inspecting {
   /** The frames and settings of the request under way, or of the last one. */
   #of: Pick<State, 'pair' | 'settings'> | null = null;
   #request = new AbortController();
+  #isOpen = false;
 
   constructor(store: Store) {
     this.#store = store;
@@ -21,13 +22,12 @@ export class Inspecting {
     const now = this.#store.get();
     const { pair, settings, inspecting, inspected, look } = now;
     const isSame = inspecting && this.#of?.pair === pair && this.#of.settings === settings;
-    if (isSame) return;
-    if (this.#of !== null) {
-      this.#of = null;
-      this.#request.abort();
-      // Its worker is of no more use.
-      if (!inspecting) this.#segmenter.close();
-    }
+    if (isSame || (!inspecting && !this.#isOpen && !look.motions)) return;
+    this.#of = null;
+    this.#request.abort();
+    // Its worker is of no more use.
+    if (this.#isOpen && !inspecting) this.#segmenter.close();
+    this.#isOpen = inspecting;
     // Before the state is set, which leads here again.
     const begins = mayInspect(now);
     if (begins) this.#of = { pair, settings };

@@ -19,14 +19,14 @@ export function mountBlink(store: Store): void {
 /** Starts or stops blinking. With reduced motion, each call shows the other frame instead. */
 export function toggleBlinking(store: Store): void {
   const { look, pair } = store.get();
-  if (pair.first === null || pair.second === null) return;
+  if (pair.second === null) return;
   if (prefersStillness()) flip(store);
   else store.look({ blinking: !look.blinking, view: look.view === 'split' ? 'first' : look.view });
 }
 
 export function flip(store: Store): void {
   const { look, pair } = store.get();
-  if (pair.first === null || pair.second === null) return;
+  if (pair.second === null) return;
   store.look({ view: look.view === 'second' ? 'first' : 'second' });
 }
 

@@ -207,7 +207,7 @@ export class Brush {
 
   /** Strokes are in pixels of the frame, whatever its masks are, and whether there are any. */
   #fit({ pair }: State): void {
-    const frame = pair.first ?? pair.second;
+    const frame = pair.first;
     if (frame !== null) this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${frame.width} ${frame.height}`);
   }
 

@@ -12,7 +12,7 @@ export function mountCompare(stage: HTMLElement, store: Store): void {
   line.addEventListener('pointerdown', (event) => event.stopPropagation());
   store.subscribe(({ look, viewport, pair }, before) => {
     if (look === before.look && viewport === before.viewport && pair === before.pair) return;
-    const split = look.view === 'split' && pair.first !== null && pair.second !== null;
+    const split = look.view === 'split' && pair.second !== null;
     line.hidden = !split;
     layers.classList.toggle('split', split);
     if (!split) return;

@@ -169,7 +169,7 @@ function coalesced(event: PointerEvent): PointerEvent[] {
 
 /** The position in the frame; pixel centres have integer coordinates. */
 function pixelAt({ pair, viewport }: State, view: readonly [number, number]): [number, number] {
-  const frame = pair.first ?? pair.second;
+  const frame = pair.first;
   const [x, y] = inPicture(viewport, view);
   return [x * (frame?.width ?? 1) - 0.5, y * (frame?.height ?? 1) - 0.5];
 }

@@ -25,8 +25,9 @@ const VIEWS: readonly (readonly [Look['view'], string])[] = [
 /** Draws the motions in the place of the objects, or no longer. They are found when a frame is inspected. */
 export function toggleMotions(store: Store): void {
   const motions = !store.get().look.motions;
-  store.look({ motions, ...(motions && { view: 'first', blinking: false }) });
+  // First, because motions are drawn of a frame that is inspected alone.
   if (motions) store.set({ inspecting: true });
+  store.look({ motions, ...(motions && { view: 'first', blinking: false }) });
 }
 
 export function Inspect({ store, session }: Given): VNode {

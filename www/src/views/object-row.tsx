@@ -8,6 +8,7 @@ import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { ClassField } from './class-field.js';
 import { memo, usePart } from './component.js';
+import { Icon } from './icon.js';
 import { ObjectMore } from './object-more.js';
 import { rename } from './renaming.js';
 import { drawThumbnail } from './thumbnail.js';
@@ -91,9 +92,7 @@ export const ObjectRow = memo(function (given: Given): VNode {
             title="Show this one alone"
             onClick={() => store.look({ solo: isSolo ? null : id })}
           >
-            <svg viewBox="0 0 20 20" width="16" height="16" aria-hidden="true">
-              <path d="M10 4.5a5.5 5.5 0 1 1 0 11 5.5 5.5 0 0 1 0-11zM10 9v2" />
-            </svg>
+            <Icon path="M10 4.5a5.5 5.5 0 1 1 0 11 5.5 5.5 0 0 1 0-11zM10 9v2" size={16} />
             <span>Solo</span>
           </button>
           <button
@@ -106,9 +105,7 @@ export const ObjectRow = memo(function (given: Given): VNode {
             disabled={!ready || !isKnown}
             onClick={() => session.objects.toggleLock(id)}
           >
-            <svg viewBox="0 0 20 20" width="16" height="16" aria-hidden="true">
-              <path d="M5 9h10v7H5zM7 9V6.5a3 3 0 0 1 6 0V9" />
-            </svg>
+            <Icon path="M5 9h10v7H5zM7 9V6.5a3 3 0 0 1 6 0V9" size={16} />
             <span>Lock</span>
           </button>
           <ClassField value={given.class} label={strings.classOf(name)} title="Class (T)" take={(named) => session.objects.setClasses(new Map([[id, named]]))} />

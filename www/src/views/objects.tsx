@@ -99,7 +99,8 @@ function Objects({ list, store, session }: Given & { list: HTMLElement }): VNode
 /** The background, the objects, and one that is selected but not painted yet. */
 function idsOf({ objects }: Tracked, lives: ReadonlyMap<number, Life>, selected: number | null): number[] {
   const ids = [0, ...lives.keys()];
-  const isNew = selected !== null && isObject(selected) && !objects.some(({ number }) => number === selected);
+  // Those of drafts are not among the objects of the clip yet.
+  const isNew = selected !== null && isObject(selected) && !lives.has(selected) && !objects.some(({ number }) => number === selected);
   return isNew ? [...ids, selected] : ids;
 }
 

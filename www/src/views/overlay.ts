@@ -28,9 +28,9 @@ export function mountOverlay(stage: HTMLElement, store: Store): void {
     const { result, look } = now;
     if (look.opacity !== before.look.opacity) fill.style.opacity = String(look.opacity);
     if (look.outlines !== before.look.outlines) outlines.hidden = !look.outlines;
-    const masks = seenIn(now);
+    const masks = masksSeen(now);
     const repaints = (['hidden', 'solo', 'colours', 'motions'] as const).some((key) => look[key] !== before.look[key]);
-    if (masks === seenIn(before) && !repaints) return;
+    if (masks === masksSeen(before) && !repaints) return;
     if (before.result === null && result !== null && !prefersStillness()) for (const canvas of [fill, outlines]) appear(canvas);
     const painting = look.motions ? MOTIONS : look;
     paint(fill, fillWork, masks, (...rows) => fillOf(rows[0], painting, rows[1], rows[2]));
@@ -44,7 +44,7 @@ function appear(canvas: HTMLCanvasElement): void {
 }
 
 /** The masks of the frame that is seen: of motions those of the first. */
-function seenIn({ result, look, inspected }: State): Labels | null {
+function masksSeen({ result, look, inspected }: State): Labels | null {
   const isSecond = look.view === 'second';
   if (look.motions) return isSecond ? null : (inspected?.segmentation ?? null);
   return (isSecond ? result?.second : result?.masks) ?? null;

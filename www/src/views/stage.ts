@@ -32,11 +32,10 @@ export function mountStage(stage: HTMLElement, store: Store): void {
   });
 }
 
-/** The frame to show; the other one if it is the only one. */
-export function shownSlot({ pair, look }: State): Slot | null {
-  const wanted: Slot = look.view === 'second' ? 'second' : 'first';
-  const others: Slot[] = [wanted, 'first', 'second'];
-  return others.find((slot) => pair[slot] !== null) ?? null;
+/** Which of the two frames is seen, alone or on the left; `null` if none is open. */
+function shownSlot({ pair, look }: State): Slot | null {
+  if (look.view === 'second' && pair.second !== null) return 'second';
+  return pair.first === null ? null : 'first';
 }
 
 function captionOf(state: State): string {

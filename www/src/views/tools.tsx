@@ -1,11 +1,11 @@
 //! The tools: view, brush, eraser, polygon, box; the size of the brush, what a press is, what follows, whether drawing is exact; undo and redo.
 
 import { type VNode, render } from 'preact';
-import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Pointing, Store, Tool, ToolName } from '../state/state.js';
 import { isSeen } from '../state/tracked.js';
 import { usePart } from './component.js';
+import { Icon } from './icon.js';
 import { pointingIn, promptIn } from './pointing.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -24,6 +24,8 @@ const PRESSES: readonly (readonly [Pointing, string, string])[] = [
   ['add', 'Add', 'More of the selected object (Shift)'],
   ['remove', 'Remove', 'Not of the selected object (Alt, or the right button)'],
 ];
+
+const FOLLOW = 'Frames that follow a correction';
 
 /** In a narrow rail the sign alone is seen: two em spaces follow it. */
 const SPREADS: readonly (readonly [Tool['spread'], string])[] = [
@@ -51,7 +53,6 @@ function Tools({ store, session }: { store: Store; session: Session }): VNode {
   const undo = usePart(store, ({ tracked }) => tracked?.steps.undo ?? 0);
   const redo = usePart(store, ({ tracked }) => tracked?.steps.redo ?? 0);
   const set = (change: Partial<Tool>): void => store.set({ tool: { ...store.get().tool, ...change } });
-  const help = strings.followHelp;
   return (
     <>
       <fieldset class="rail">
@@ -110,7 +111,14 @@ function Tools({ store, session }: { store: Store; session: Session }): VNode {
         </div>
         <label class="follow" hidden={!isClip}>
           <span>Follow</span>
-          <select name="spread" aria-label={help} title={help} value={tool.spread} disabled={tool.exact} onChange={({ currentTarget }) => set({ spread: currentTarget.value as Tool['spread'] })}>
+          <select
+            name="spread"
+            aria-label={FOLLOW}
+            title={FOLLOW}
+            value={tool.spread}
+            disabled={tool.exact}
+            onChange={({ currentTarget }) => set({ spread: currentTarget.value as Tool['spread'] })}
+          >
             {SPREADS.map(([value, title]) => (
               <option key={value} value={value}>
                 {title}
@@ -137,14 +145,6 @@ function Tools({ store, session }: { store: Store; session: Session }): VNode {
         </button>
       </div>
     </>
-  );
-}
-
-function Icon({ path }: { path: string }): VNode {
-  return (
-    <svg viewBox="0 0 20 20" width="20" height="20" aria-hidden="true">
-      <path d={path} />
-    </svg>
   );
 }
 

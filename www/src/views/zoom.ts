@@ -19,7 +19,7 @@ export class Zoom {
   /** Screen pixels per pixel of the frame at zoom 1. */
   fit(): number {
     const { pair } = this.store.get();
-    const frame = pair.first ?? pair.second;
+    const frame = pair.first;
     return frame === null ? 1 : Math.max(1e-3, this.layers.offsetWidth / frame.width);
   }
 
@@ -62,7 +62,7 @@ export function mountZoom(stage: HTMLElement, store: Store): Zoom {
 
   const render = (): void => {
     const { viewport, pair } = store.get();
-    const frame = pair.first ?? pair.second;
+    const frame = pair.first;
     if (frame === null) return;
     const scale = viewport.zoom * zoom.fit();
     const [left, top] = [0.5 - viewport.x * viewport.zoom, 0.5 - viewport.y * viewport.zoom];
